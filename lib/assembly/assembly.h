@@ -54,6 +54,7 @@ typedef struct se3di_assembly {
     double *C;           /* joint blocks */
     double *f;           /* [rows * 3] jets of the functions of time */
     double *wrench;      /* [dense bodies * 6] */
+    double power[2];     /* of gravity and elements with it: dissipated, fed in [W] */
     const double *push;  /* the same, from outside the model's elements (particles); NULL: none */
     double time;         /* of the last functions of time */
     uint32_t user_count; /* constraints with a callback */

@@ -273,6 +273,7 @@ static se3d_status sum_elements(se3di_assembly *assembly, double t, se3di_force_
             status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
                                         : "its function is not finite or failed");
     }
+    memcpy(assembly->power, sums->power, sizeof assembly->power);
     return SE3D_OK;
 }
 

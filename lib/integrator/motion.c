@@ -30,7 +30,7 @@ static se3d_status derive(se3di_equations *equations, double t, const double *l,
 static se3d_status evaluate(se3di_equations *equations, double t, double *derivative)
 {
     SE3DI_TRY(se3di_state_evaluate(equations, t));
-    return derive(equations, t, equations->l, derivative);
+    return se3di_state_derivative_of(equations, t, derivative);
 }
 
 static se3d_status evaluate_at(se3di_equations *equations, double t, const double *y,

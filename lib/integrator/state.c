@@ -99,8 +99,8 @@ se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, cons
                                              : SE3D_OK;
 }
 
-se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
-                                   const double *l, double *derivative)
+/* All of a derivative but the powers. @return where these begin */
+static double *put_rates(const se3di_assembly *assembly, const double *qddot, double *derivative)
 {
     const se3di_model *model = assembly->model;
     size_t block = (size_t)assembly->formulation->block;
@@ -111,7 +111,24 @@ se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const dou
         memcpy(out + 3, frame->pdot, 4 * sizeof *out);
         assembly->formulation->get_acceleration(frame, qddot + k * block, out + 7);
     }
-    return se3di_state_powers(assembly, t, l, out);
+    return out;
+}
+
+se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
+                                   const double *l, double *derivative)
+{
+    return se3di_state_powers(assembly, t, l, put_rates(assembly, qddot, derivative));
+}
+
+se3d_status se3di_state_derivative_of(se3di_equations *equations, double t, double *derivative)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    double *power = put_rates(assembly, equations->x, derivative);
+    if (!has_power(assembly) || se3di_forces_have_memory(assembly->model)) {
+        return se3di_state_powers(assembly, t, equations->l, power);
+    }
+    memcpy(power, assembly->power, sizeof assembly->power);
+    return se3di_state_complete_powers(assembly, t, equations->l, power);
 }
 
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy)

@@ -32,6 +32,9 @@ void se3di_state_set_rates(se3di_assembly *assembly, const double *derivative);
 se3d_status se3di_state_derivative(se3di_assembly *assembly, double t, const double *qddot,
                                    const double *l, double *derivative);
 
+/* The same where accelerations and multipliers were found last: elements without a memory tell
+ * their powers with their wrenches. */
+se3d_status se3di_state_derivative_of(se3di_equations *equations, double t, double *derivative);
 /* Its last three numbers; l NULL: no power depends on multipliers. */
 se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l,
                                double power[3]);
