@@ -444,7 +444,7 @@ static se3d_status keep_state(se3di_run *run)
 {
     se3di_model *model = run->model;
     run->has_before = 0;
-    if (se3di_saved_fill(&run->before, model, &model->allocator) < 0) {
+    if (se3di_saved_refill(&run->before, model, &model->allocator) < 0) {
         return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory to keep the state");
     }
     run->has_before = 1;

@@ -268,16 +268,32 @@ static se3d_status build_dense(se3di_explicit *m)
     return SE3D_OK;
 }
 
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+/* y = s (form + y) */
+static void add_form(double s, const double *form, size_t count, double *y)
+{
+    const pair factor = {s, s};
+    size_t k = 0;
+    for (; k + 2 <= count; k += 2) {
+        pair *to = (pair *)(void *)(y + k);
+        *to = factor * (*(const pair *)(const void *)(form + k) + *to);
+    }
+    for (; k < count; ++k) {
+        y[k] = s * (form[k] + y[k]);
+    }
+}
+
 static void interpolate(const se3di_explicit *m, double t, double *y)
 {
-    double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
-    int forms = 3 + m->tableau->dense_rows;
+    const double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
+    const int forms = 3 + m->tableau->dense_rows;
+    memset(y, 0, m->count * sizeof *y);
+    for (int row = forms - 1; row >= 0; --row) {
+        add_form(row % 2 == 0 ? s : 1.0 - s, m->forms + (size_t)row * m->count, m->count, y);
+    }
     for (size_t k = 0; k < m->count; ++k) {
-        double sum = 0.0;
-        for (int row = forms - 1; row >= 0; --row) {
-            sum = (row % 2 == 0 ? s : 1.0 - s) * (m->forms[(size_t)row * m->count + k] + sum);
-        }
-        y[k] = m->y0[k] + sum;
+        y[k] = m->y0[k] + y[k];
     }
 }
 

@@ -20,6 +20,7 @@
 #define LEAST_STEP  3e-14 /* of the time */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
 #define LARGEST     1e50  /* coordinate or velocity whose squares are far from infinite */
+#define GAP_PART    0.25  /* of what rows may violate, at the quarters of a step */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
@@ -273,6 +274,7 @@ static void accept(se3di_explicit *m, double t)
     m->past->at.begin = m->past->at.time;
     m->past->at.time = t;
     m->past->dense = m->past->at.renewed = 0.0;
+    m->past->gap = -1.0;
     m->has_stages = 1;
     const size_t work = m->count - SE3DI_STATE_WORK;
     m->motion->keep(m->equations, m->y1);
@@ -509,6 +511,7 @@ static void take_state(se3di_explicit *m, int stands)
     se3di_forces_stay(m->assembly->model);
     m->past->at.time = m->past->at.begin = m->assembly->model->time;
     m->past->dense = 0.0;
+    m->past->gap = -1.0;
     if (stands) {
         m->motion->stand(m->equations, m->y1);
     } else {
@@ -829,6 +832,40 @@ void se3di_explicit_interpolate(const se3di_integration *integration, double t, 
     m.motion->show(m.equations, is_within ? m.y : m.y1, y);
 }
 
+/* What the interpolation of the last step violates constraints by, at the quarters of the step: a
+ * part of the history, so that what is shown does not depend on what was shown before. */
+static se3d_status measure_gap(se3di_explicit *m)
+{
+    const double begin = m->past->at.begin, h = m->past->at.time - begin;
+    double worst = 0.0;
+    for (int k = 1; k < 4; ++k) {
+        const double t = begin + 0.25 * k * h;
+        double gap;
+        m->methods->interpolate(m, t, m->y);
+        m->motion->set(m->equations, m->y);
+        SE3DI_TRY(se3di_state_measure_gap(m->equations, t, &m->past->scale, &gap));
+        worst = gap <= worst ? worst : gap;
+    }
+    m->past->gap = worst;
+    return SE3D_OK;
+}
+
+/* *needed: a row of the motion within the last step is to be projected onto the constraints; of
+ * bodies that a step keeps well within them all along it is not even compared with them. */
+static se3d_status needs_projection(se3di_explicit *m, int *needed)
+{
+    const se3di_integration *integration = m->step.integration;
+    const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
+                                           integration->settings.tolerance);
+    *needed = 1;
+    if (m->motion != &se3di_motion_bodies || !(rough > 0.0)) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(m->past->gap < 0.0 ? measure_gap(m) : SE3D_OK);
+    *needed = !(m->past->gap <= GAP_PART * rough);
+    return SE3D_OK;
+}
+
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
 {
     se3di_explicit m = begin(integration);
@@ -839,9 +876,11 @@ se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
     if (at_begin || m.past->at.time <= t_end) { /* earlier if it leaves a stiff motion */
         return publish(&m, m.past->at.time <= t_end);
     }
-    m.methods->interpolate(&m, t_end, m.y);
+    int needs;
     se3di_forces_show(m.assembly->model, 1);
-    return show(&m, m.y, t_end, 1);
+    SE3DI_TRY(needs_projection(&m, &needs));
+    m.methods->interpolate(&m, t_end, m.y);
+    return show(&m, m.y, t_end, needs);
 }
 
 static int is_count(double value)

@@ -33,8 +33,9 @@ typedef struct se3di_explicit_past {
     double lost;         /* gauss: 1: rows were dependent at its end that are not all along */
     double length;       /* Runge-Kutta: of the last step, as its stages were made */
     double unscaled;     /* 1: steps without error control have not grown the scale */
+    double gap;          /* what the interpolation violates constraints by, < 0: not measured */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 22 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 23 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;

@@ -328,6 +328,22 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
     return SE3D_OK;
 }
 
+se3d_status se3di_state_measure_gap(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale, double *gap)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    *gap = 0.0;
+    if (assembly->row_count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    const double positions = eval_gap(equations, scale->length);
+    se3di_assembly_eval_jacobian(assembly);
+    const double rates = eval_rate_gap(equations, scale);
+    *gap = positions <= rates ? rates : positions; /* NaN stays */
+    return SE3D_OK;
+}
+
 void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
                              const double *generalised, double force[3], double torque[3])
 {

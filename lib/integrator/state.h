@@ -71,6 +71,10 @@ se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
  * factorisation serves. */
 se3d_status se3di_state_project(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double accuracy, int is_factored);
+/* *gap: the largest relative violation of constraints by the present positions and velocities at t,
+ * measured as `accuracy` is. */
+se3d_status se3di_state_measure_gap(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale, double *gap);
 /* The positions alone, where functions of time and (in r-omega) mass blocks are evaluated. */
 se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
                                           const se3di_state_scale *scale, double accuracy);

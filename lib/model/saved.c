@@ -67,16 +67,14 @@ static void restore_ranks(const se3di_saved *saved, se3di_model *model)
     model->left_out_gap = saved->left_out_gap;
 }
 
-se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
-                             const se3d_allocator *allocator)
+/* All but the history. */
+static void save_state(se3di_saved *saved, const se3di_model *model)
 {
-    SE3DI_TRY(fit(saved, model, allocator));
     double *turns = saved->turns.data;
     double *wrench = saved->wrench.data;
     copy(saved->frames.data, model->frames, saved->frames.count * sizeof *model->frames);
     copy(saved->acceleration.data, model->acceleration, saved->acceleration.count * sizeof(double));
     copy(saved->lambda.data, model->lambda, saved->lambda.count * sizeof(double));
-    copy(saved->history.data, model->history, saved->history.count * sizeof(double));
     copy(saved->contacts.data, model->contacts.list,
          saved->contacts.count * sizeof *model->contacts.list);
     for (size_t k = 0; k < saved->turns.count; ++k) {
@@ -101,6 +99,35 @@ se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
     saved->time = model->time;
     saved->time_rest = model->time_rest;
     saved->rest_time = model->rest_time;
+}
+
+se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
+                             const se3d_allocator *allocator)
+{
+    SE3DI_TRY(fit(saved, model, allocator));
+    copy(saved->history.data, model->history, saved->history.count * sizeof(double));
+    saved->history_stamp = model->history_stamp;
+    save_state(saved, model);
+    return SE3D_OK;
+}
+
+/* Its first two numbers are the times at which its last step has ended and begun. */
+static int is_history_kept(const se3di_saved *saved, const se3di_model *model)
+{
+    return saved->history.count > 1 && saved->history.count == model->history_count &&
+           saved->history_tag == model->history_tag &&
+           saved->history_stamp == model->history_stamp &&
+           memcmp(saved->history.data, model->history, 2 * sizeof(double)) == 0;
+}
+
+se3d_status se3di_saved_refill(se3di_saved *saved, const se3di_model *model,
+                               const se3d_allocator *allocator)
+{
+    if (!is_history_kept(saved, model)) {
+        return se3di_saved_fill(saved, model, allocator);
+    }
+    SE3DI_TRY(fit(saved, model, allocator));
+    save_state(saved, model);
     return SE3D_OK;
 }
 

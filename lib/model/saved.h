@@ -19,6 +19,7 @@ typedef struct se3di_saved {
     uint64_t history_tag;
     int64_t history_redundant;
     uint64_t history_inputs, history_values;
+    uint64_t history_stamp; /* of the model when the history was copied */
     int32_t settled;
     int32_t work_valid;
     int32_t ranks_known;
@@ -40,6 +41,10 @@ typedef struct se3di_saved {
  * @return OK, NO_MEMORY (what it holds is then undefined) */
 se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
                              const se3d_allocator *allocator);
+/* The same; a history that was copied before and has not gone on since is not copied again, but for
+ * what its interpolation is made of. `saved` is the caller's own, of this model alone. */
+se3d_status se3di_saved_refill(se3di_saved *saved, const se3di_model *model,
+                               const se3d_allocator *allocator);
 /* The state is that of a model with as many bodies, rows, angles, forces and shapes. */
 int se3di_saved_fits(const se3di_saved *saved, const se3di_model *model);
 /* Make room in the model, so that se3di_saved_restore cannot fail. @return OK, NO_MEMORY */
