@@ -13,6 +13,8 @@
 #define HELD_EACH 8.0  /* steps between looks if there is no sign */
 #define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
 #define CAUTION   0.01 /* of a first step that has one estimate of two */
+#define LOOP_PACE 0.35 /* where radau is worth its steps, */
+#define LOOP_AT   (SE3DI_EXPLICIT_PART * 1e-6) /* at this tolerance */
 #define TIMES     1e-8 /* of the time: shorter steps are not known to the digits that this takes */
 #define SHORTEST  0.05 /* of steps in this one, before which the second estimate is rounding */
 #define GROWTH    3.0  /* largest, of a step: one small error may be chance */
@@ -190,6 +192,40 @@ static double decay_of(const se3di_explicit *m, const double *y_change, const do
     return square > 0.0 ? -product / square : 0.0;
 }
 
+/* The sum of squares of velocities in a change, relative to the scales. */
+static double square_of(const se3di_explicit *m, const double *change)
+{
+    const double *y = m->motion->spread(m->equations, change, m->bodies[0]);
+    const double v = 1.0 / (m->past->scale.speed * m->past->scale.speed);
+    const double w = 1.0 / (m->past->scale.spin * m->past->scale.spin);
+    double sum = 0.0;
+    for (size_t k = 7; k < SE3DI_STATE_SIZE * m->assembly->body_count; k += SE3DI_STATE_SIZE) {
+        if (!se3di_state_is_carrier(m->assembly, k / SE3DI_STATE_SIZE)) {
+            sum += v * se3di_dot(y + k, y + k) + w * se3di_dot(y + k + 3, y + k + 3);
+        }
+    }
+    return sum;
+}
+
+/* Whether another method would make longer steps than stability allows. The step times the rate at
+ * which the motion itself changes is |h (y'(end) - y'(begin))| / |y(end) - y(begin)| of the
+ * velocities. If bodies and joints make loops radau takes about twice the time for a step, which is
+ * accurate up to 0.7 of that at the tolerance 1e-6: it gains something only if stability limits
+ * steps far below. */
+static int gains_by_leaving(se3di_explicit *m, double h)
+{
+    const double *end = se3di_explicit_end(m);
+    if (!se3di_kkt_has_loop(m->equations->kkt)) {
+        return 1;
+    }
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum[k] = m->y[k] - m->y0[k];
+        m->sum3[k] = h * (end[k] - m->K[k]);
+    }
+    const double accurate = LOOP_PACE * se3di_pow(m->tolerance / LOOP_AT, 0.2);
+    return square_of(m, m->sum3) < accurate * accurate * square_of(m, m->sum);
+}
+
 /* The step is far below what the motion asks for, and of the size of a decay. Disturbances of each
  * step (its projection) keep such a decay alive long before stability is lost. */
 static int is_held_by_decay(const se3di_explicit *m, double h)
@@ -225,9 +261,10 @@ static void watch_stability(se3di_explicit *m, double h)
     memset(m->sum + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum);
     memset(m->sum3 + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum3);
     const double apart = se3di_explicit_measure(m, m->sum);
-    se3di_explicit_count_sign(
-        m, apart > 0.01 && (se3di_explicit_measure(m, m->sum3) > tableau->stable * apart ||
-                            is_held_by_decay(m, h)));
+    const int is_held =
+        apart > 0.01 &&
+        (se3di_explicit_measure(m, m->sum3) > tableau->stable * apart || is_held_by_decay(m, h));
+    se3di_explicit_count_sign(m, is_held && gains_by_leaving(m, h));
 }
 
 /* The stages of the last step once more: what was to be done after them failed, and they are not a

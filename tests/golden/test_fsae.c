@@ -238,6 +238,27 @@ static void the_corner_weights_sum_to_the_weight(void)
     close_rig(&r);
 }
 
+/* The dampers hold dop853 to its limit of stability, at steps that radau would not make longer. */
+static void auto_stays_with_dop853_on_the_road(void)
+{
+    rig r;
+    double at = 0.0;
+    const char *method = "", *left = "";
+    se3d_solver_def def = se3d_solver_def_default();
+    if (!open_rig("car", &r)) {
+        return;
+    }
+    run(&r, 0.0);
+    se3d_solver_destroy(r.solver);
+    CHECK(!se3d_model_get_solver(r.model, 2, &def));
+    CHECK(!se3d_solver_create(r.system, &def, &r.solver));
+    run(&r, 0.5);
+    CHECK(!se3d_solver_get_method(r.solver, &method));
+    CHECK(!se3d_solver_get_switch(r.solver, &at, &left));
+    CHECK(strcmp(method, "dop853") == 0 && !*left);
+    close_rig(&r);
+}
+
 /* The sum over the tyres of one of what they tell. */
 static double sum_tyres(const rig *r, size_t which)
 {
@@ -328,6 +349,7 @@ int main(void)
     RUN(the_hand_wheel_steers_to_its_side);
     RUN(the_roll_rate_is_the_slope_of_the_roll_rig);
     RUN(the_corner_weights_sum_to_the_weight);
+    RUN(auto_stays_with_dop853_on_the_road);
     RUN(tyres_do_not_wobble);
     RUN(the_car_brakes_in_a_straight_line);
     return check_finish();
