@@ -5,6 +5,9 @@
  * y to the left in the road, z along the road's normal. Forces and moments act on the wheel.
  * Equations, signs and sources: docs/theory/tyre.md.
  *
+ * Slip that lags is a state (se3d/state.h) of the tyre's own, one for each direction: it is
+ * integrated with the motion, in every method, and counts among the states of the system.
+ *
  * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_TYRE_H
 #define SE3D_TYRE_H
@@ -27,8 +30,8 @@ typedef enum se3d_tyre_law {
 typedef enum se3d_tyre_side { SE3D_TYRE_LEFT = 0, SE3D_TYRE_RIGHT = 1 } se3d_tyre_side;
 
 /* Coefficients of the Magic Formula, X(NAME, number, value without it), named as in files (.tir):
- * loads [N], LONGVL [m/s], pressures [Pa], limits of slip angle and camber [rad], all others [1].
- * Limits and pressures that are 0 are not there. @since 0.1 */
+ * loads [N], LONGVL [m/s], pressures [Pa], limits of slip angle and camber [rad], stiffnesses
+ * [N/m], all others [1]. Limits and pressures that are 0 are not there. @since 0.1 */
 /* clang-format off */
 #define SE3D_TYRE_COEFFICIENT_LIST(X)                                                              \
     X(FNOMIN, 0, 0)                                                                                \
@@ -199,7 +202,22 @@ typedef enum se3d_tyre_side { SE3D_TYRE_LEFT = 0, SE3D_TYRE_RIGHT = 1 } se3d_tyr
     X(QSY5, 165, 0)                                                                                \
     X(QSY6, 166, 0)                                                                                \
     X(QSY7, 167, 1)                                                                                \
-    X(QSY8, 168, 1)
+    X(QSY8, 168, 1)                                                                                \
+    X(PTX1, 169, 0)                                                                                \
+    X(PTX2, 170, 0)                                                                                \
+    X(PTX3, 171, 0)                                                                                \
+    X(PTY1, 172, 0)                                                                                \
+    X(PTY2, 173, 0)                                                                                \
+    X(LSGKP, 174, 1)                                                                               \
+    X(LSGAL, 175, 1)                                                                               \
+    X(LONGITUDINAL_STIFFNESS, 176, 0)                                                              \
+    X(LATERAL_STIFFNESS, 177, 0)                                                                   \
+    X(PCFX1, 178, 0)                                                                               \
+    X(PCFX2, 179, 0)                                                                               \
+    X(PCFX3, 180, 0)                                                                               \
+    X(PCFY1, 181, 0)                                                                               \
+    X(PCFY2, 182, 0)                                                                               \
+    X(PCFY3, 183, 0)
 /* clang-format on */
 
 /* See SE3D_TYRE_COEFFICIENT_LIST. @since 0.1 */
@@ -207,7 +225,7 @@ typedef enum se3d_tyre_coefficient {
 #define SE3D_TYRE_COEFFICIENT(NAME, number, value) SE3D_TYRE_##NAME = number,
     SE3D_TYRE_COEFFICIENT_LIST(SE3D_TYRE_COEFFICIENT)
 #undef SE3D_TYRE_COEFFICIENT
-        SE3D_TYRE_COEFFICIENTS = 169
+        SE3D_TYRE_COEFFICIENTS = 184
 } se3d_tyre_coefficient;
 
 /* The definition of a tyre. @since 0.1 */
@@ -239,7 +257,10 @@ typedef struct se3d_tyre_def {
                                    patch_length nor rolling_resistance */
     size_t coefficient_count;   /* those behind it have their values of the list */
     int32_t measured_side;      /* se3d_tyre_side that the coefficients hold for */
-    int32_t reserved;
+    int32_t is_transient; /* 1: slip lags by relaxation lengths, those below or, where they are 0,
+                             those of a Magic Formula's coefficients; default 0 */
+    double relaxation_x;  /* relaxation length of the slip ratio, >= 0 [m]; > 0: it lags */
+    double relaxation_y;  /* of the slip angle, >= 0 [m]; > 0: it lags */
 } se3d_tyre_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_tyre_def_default. @since 0.1 */
@@ -276,7 +297,8 @@ SE3D_API se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre
  * point. SLIP_RATIO is positive in driving, SLIP_ANGLE [rad] as the wheel slips to the left,
  * INCLINATION [rad] as its top leans to the right. Off the road, forces and slips are 0 and
  * DEFLECTION is minus the gap [m]. SPEED is that of the contact point, forward [m/s]. CONTACT is in
- * the ground frame [m]. @since 0.1 */
+ * the ground frame [m]. LAGGED_RATIO and LAGGED_ANGLE are the slips that the forces follow:
+ * SLIP_RATIO and SLIP_ANGLE, or what lags behind them by the relaxation length. @since 0.1 */
 #define SE3D_TYRE_VALUE_LIST(X)                                                                    \
     X(FX, 0, fx)                                                                                   \
     X(FY, 1, fy)                                                                                   \
@@ -293,14 +315,16 @@ SE3D_API se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre
     X(SPEED, 12, speed)                                                                            \
     X(CONTACT_X, 13, contact_x)                                                                    \
     X(CONTACT_Y, 14, contact_y)                                                                    \
-    X(CONTACT_Z, 15, contact_z)
+    X(CONTACT_Z, 15, contact_z)                                                                    \
+    X(LAGGED_RATIO, 16, lagged_ratio)                                                              \
+    X(LAGGED_ANGLE, 17, lagged_angle)
 
 /* See SE3D_TYRE_VALUE_LIST. @since 0.1 */
 typedef enum se3d_tyre_value {
 #define SE3D_TYRE_VALUE(NAME, number, name) SE3D_TYRE_##NAME = number,
     SE3D_TYRE_VALUE_LIST(SE3D_TYRE_VALUE)
 #undef SE3D_TYRE_VALUE
-        SE3D_TYRE_VALUES = 16
+        SE3D_TYRE_VALUES = 18
 } se3d_tyre_value;
 
 /* Get what a tyre tells in the present state.

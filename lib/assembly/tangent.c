@@ -9,10 +9,12 @@
 #include "base/sort.h"
 #include "force/measure.h"
 #include "force/signal.h"
+#include "force/tyre.h"
 #include "joint/user.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "model/state.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -89,6 +91,16 @@ static void note_signals(se3di_tangent *tangent, const se3di_force *force, size_
     }
 }
 
+/* The bodies of a tyre with the state of its slip that lags. */
+static void note_lag(se3di_tangent *tangent, const se3di_force *state, size_t *count)
+{
+    if (state->tyre_index >= 0) {
+        const se3di_force *tyre = &tangent->assembly->model->forces[state->tyre_index];
+        note_pair(tangent, tyre->body_i, state->body_j, count);
+        note_pair(tangent, tyre->body_j, state->body_j, count);
+    }
+}
+
 /* Count the pairs, and write them if there is room. */
 static size_t list_pairs(se3di_tangent *tangent)
 {
@@ -98,6 +110,7 @@ static size_t list_pairs(se3di_tangent *tangent)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         note_pair(tangent, model->forces[k].body_i, model->forces[k].body_j, &count);
         note_signals(tangent, &model->forces[k], &count);
+        note_lag(tangent, &model->forces[k], &count);
     }
     for (size_t k = 0; k < model->term_count; ++k) {
         if (model->terms[k].type != SE3DI_PRIMITIVE_CD) {
@@ -410,6 +423,30 @@ static void leave_excess(const se3di_model *model, const se3di_force *force, dou
     }
 }
 
+/* The rate of a slip that lags: its derivatives, and what the wrench of the tyre has of it. */
+static void add_lag(se3di_tangent *tangent, const se3di_force *state)
+{
+    const se3di_model *model = tangent->assembly->model;
+    const se3di_force *tyre = &model->forces[state->tyre_index];
+    const uint32_t bodies[2] = {tyre->body_i, tyre->body_j}, carrier = state->body_j;
+    const double zero[72] = {0.0};
+    double own[72] = {SE3DI_CARRIER_MASS};
+    se3di_tyre_lag lag;
+    se3di_tyre_lag_eval(model, tyre, state->coordinate, 1, &lag);
+    own[0] *= lag.own;
+    add_force_block(tangent, carrier, carrier, zero, own);
+    for (int b = 0; b < 2; ++b) {
+        double K[72] = {0.0}, D[72] = {0.0}, gain[72] = {0.0};
+        for (int c = 0; c < 6; ++c) {
+            K[c] = SE3DI_CARRIER_MASS * lag.K[6 * b + c];
+            D[c] = SE3DI_CARRIER_MASS * lag.D[6 * b + c];
+            gain[12 * c] = lag.gain[6 * b + c];
+        }
+        add_force_block(tangent, carrier, bodies[b], K, D);
+        add_force_block(tangent, bodies[b], carrier, zero, gain);
+    }
+}
+
 static se3d_status add_forces(se3di_tangent *tangent, double t)
 {
     const se3di_model *model = tangent->assembly->model;
@@ -421,6 +458,9 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
         leave_excess(model, force, tangent->excess ? tangent->excess[k] : 0.0, &effect);
         add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
+        if (force->tyre_index >= 0 && !tangent->is_convex) {
+            add_lag(tangent, force);
+        }
         for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
             if (force->function[c] >= 0) {
                 SE3DI_TRY(add_signals(tangent, force, c, t));

@@ -4,15 +4,21 @@
  *
  *     wrench on j = (m f, 0, 0, 0, 0, 0)       D of a signal s = z:  dz/dv = (1, 0, 0)
  *
- * No work is done and nothing dissipated.  docs/theory/states.md */
+ * No work is done and nothing dissipated. States of tyres are slips that lag, see force/tyre.c.
+ * docs/theory/states.md */
 #include "model/state.h"
 #include "force/signal.h"
+#include "force/tyre.h"
 
 static se3d_status eval_state(const se3di_model *model, const se3di_force *force, double t,
                               se3di_effect *effect)
 {
     double jet[3] = {0.0, 0.0, 0.0};
-    if (force->function[0] >= 0) {
+    if (force->tyre_index >= 0) {
+        se3di_tyre_lag lag;
+        se3di_tyre_lag_eval(model, &model->forces[force->tyre_index], force->coordinate, 0, &lag);
+        jet[0] = lag.rate;
+    } else if (force->function[0] >= 0) {
         SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
     }
     effect->coordinate = se3di_state_value(model, force);

@@ -10,16 +10,20 @@
  *
  * F = Fx x + Fy y + Fz n acts at C, with Mx x + My a + Mz n. My holds Fx (l - r_e): the moment of
  * Fx about the axis is -r_e Fx, so that what is lost in the road is -Fx V_sx - Fy V_sy.
- * docs/theory/tyre.md */
+ *
+ * Slip may lag by relaxation lengths: z' = V (slip - z) / sigma, z a state (model/state.h) of the
+ * tyre's own, V the speed that the slip is relative to.                docs/theory/tyre.md */
 #include "force/tyre.h"
 
 #include "force/measure.h"
 #include "math/vec3.h"
+#include "model/state.h"
 
 #include <math.h>
 #include <string.h>
 
-#define UPRIGHT 1e-3 /* cos g: a wheel that lies touches nothing */
+#define UPRIGHT  1e-3 /* cos g: a wheel that lies touches nothing */
+#define SHORTEST 0.1  /* relaxation length over the radius: those of light wheels vanish */
 
 typedef struct patch {
     double n[3], a[3], x[3], y[3], d[3];
@@ -64,6 +68,10 @@ static void take_patch(const se3di_model *model, const se3di_force *force, patch
     c->cosine = sqrt(fmax(0.0, 1.0 - sine * sine));
     c->radius = force->rest;
     c->input[SE3DI_PATCH_SINE] = sine;
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t carrier = force->tyre->carrier[k];
+        c->input[SE3DI_PATCH_LAGGED + k] = force->tyre->lags[k] ? model->frames[carrier].v[0] : 0.0;
+    }
     if (c->cosine < UPRIGHT) {
         c->length = c->radius;
         return;
@@ -117,6 +125,16 @@ static se3di_dual find_rolling_radius(const se3di_force *force, se3di_dual defle
                        : se3di_dual_line(force->rest, -1.0 / 3.0, deflection);
 }
 
+/* The slips that the law follows, in place of those of the instant. */
+static se3di_dual *find_slip(const se3di_force *force, se3di_tyre_slip *slip, int direction)
+{
+    if (force->tyre->law == SE3D_TYRE_BRUSH) {
+        return &slip->shear[direction];
+    }
+    return direction ? &slip->tangent : &slip->ratio;
+}
+
+/* Those of the instant. */
 static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip *slip)
 {
     const se3di_tyre *tyre = force->tyre;
@@ -137,6 +155,19 @@ static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip 
     slip->ratio = se3di_dual_scale(-1.0, se3di_dual_div(slip->slide[0], speed));
     slip->tangent = se3di_dual_div(slip->slide[1], speed);
     slip->way = se3di_dual_div(slip->speed, speed);
+    slip->shear[0] = se3di_dual_div(slip->slide[0], slip->roll);
+    slip->shear[1] = se3di_dual_div(slip->slide[1], slip->roll);
+}
+
+/* A slip that lags is a number of its own. */
+static void take_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *slip)
+{
+    for (int k = 0; k < 2; ++k) {
+        const int at = SE3DI_PATCH_LAGGED + k;
+        if (force->tyre->lags[k]) {
+            *find_slip(force, slip, k) = se3di_dual_seed(c->input[at], at, 1.0);
+        }
+    }
 }
 
 static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
@@ -144,6 +175,7 @@ static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_sli
 {
     memset(forces, 0, sizeof *forces);
     take_slip(force, c, slip);
+    take_lag(force, c, slip);
     if (!(slip->load.v > 0.0)) {
         return;
     }
@@ -254,6 +286,7 @@ static void vary_velocity(const patch *c, const turn *t, patch *out)
     out->input[SE3DI_PATCH_SPEED] = se3di_dot(out->x, c->v) + se3di_dot(c->x, out->v) +
                                     spin * c->length + c->input[SE3DI_PATCH_SPIN] * out->length;
     out->input[SE3DI_PATCH_SIDE_SPEED] = se3di_dot(out->y, c->v) + se3di_dot(c->y, out->v);
+    out->input[SE3DI_PATCH_LAGGED] = out->input[SE3DI_PATCH_LAGGED + 1] = 0.0;
 }
 
 /* One column of K or D: what the wrench changes by. */
@@ -291,22 +324,44 @@ static void vary_wrench(const se3di_frame *const frames[2], const patch *c,
     }
 }
 
+/* A unit of coordinate k of 12, or of velocity k - 12. */
+static turn turn_of(const se3di_frame *const frames[2], int k)
+{
+    turn t = {.r_i = {0.0, 0.0, 0.0}};
+    double *const parts[8] = {t.r_i, t.f_i, t.r_j, t.f_j, t.v_i, t.w_i, t.v_j, t.w_j};
+    const double *A = frames[k % 12 / 6]->A;
+    for (int m = 0; m < 3; ++m) {
+        parts[k / 3][m] = k / 3 % 2 ? A[3 * m + k % 3] : m == k % 3;
+    }
+    return t;
+}
+
 static void add_derivatives(const se3di_frame *const frames[2], const patch *c,
                             const se3di_tyre_forces *forces, se3di_effect *effect)
 {
     for (int k = 0; k < 24; ++k) {
-        turn t = {.r_i = {0.0, 0.0, 0.0}};
-        double *const parts[8] = {t.r_i, t.f_i, t.r_j, t.f_j, t.v_i, t.w_i, t.v_j, t.w_j};
-        const double *A = frames[k % 12 / 6]->A;
-        double *part = parts[k / 3], column[12];
-        for (int m = 0; m < 3; ++m) {
-            part[m] = k / 3 % 2 ? A[3 * m + k % 3] : m == k % 3;
-        }
+        const turn t = turn_of(frames, k);
+        double column[12];
         vary_wrench(frames, c, forces, &t, column);
         for (int r = 0; r < 12; ++r) {
             (k < 12 ? effect->K : effect->D)[12 * r + k % 12] = column[r];
         }
     }
+}
+
+/* What F and M at the patch are on road and wheel. */
+static void to_wrench(const se3di_frame *const frames[2], const patch *c, const double of[6],
+                      double wrench[12])
+{
+    double F[3], M[3], T[3];
+    compose(c, of, F, M);
+    se3di_scale(-1.0, F, wrench);
+    se3di_copy(F, wrench + 6);
+    moment_about(c->b, F, M, T);
+    se3di_mul_transposed(frames[0]->A, T, wrench + 3);
+    se3di_scale(-1.0, wrench + 3, wrench + 3);
+    moment_about(c->q, F, M, T);
+    se3di_mul_transposed(frames[1]->A, T, wrench + 9);
 }
 
 static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
@@ -318,7 +373,7 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     patch c;
     se3di_tyre_slip slip;
     se3di_tyre_forces forces;
-    double of[6], F[3], M[3], T[3], u[12];
+    double of[6], u[12];
     take_patch(model, force, &c);
     if (!c.touches) {
         return SE3D_OK;
@@ -327,14 +382,7 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     for (int k = 0; k < 6; ++k) {
         of[k] = forces.of[k].v;
     }
-    compose(&c, of, F, M);
-    se3di_scale(-1.0, F, effect->wrench);
-    se3di_copy(F, effect->wrench + 6);
-    moment_about(c.b, F, M, T);
-    se3di_mul_transposed(frames[0]->A, T, effect->wrench + 3);
-    se3di_scale(-1.0, effect->wrench + 3, effect->wrench + 3);
-    moment_about(c.q, F, M, T);
-    se3di_mul_transposed(frames[1]->A, T, effect->wrench + 9);
+    to_wrench(frames, &c, of, effect->wrench);
     const double *in = c.input;
     effect->potential = 0.5 * force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_DEFLECTION];
     effect->power[0] = -force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_RATE];
@@ -348,6 +396,91 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     return SE3D_OK;
 }
 
+/* ---- Slip that lags ------------------------------------------------------------------------*/
+
+/* sigma, at least a part of the radius. */
+static se3di_dual find_length(const se3di_force *force, const se3di_tyre_slip *slip, int direction)
+{
+    const double given = force->tyre->relaxation[direction], least = SHORTEST * force->rest;
+    se3di_dual length[2];
+    if (given > 0.0) {
+        return se3di_dual_of(given);
+    }
+    if (!(slip->load.v > 0.0)) {
+        return se3di_dual_of(least);
+    }
+    se3di_tyre_magic_relaxation(force, slip, length);
+    return length[direction].v > least ? length[direction] : se3di_dual_of(least);
+}
+
+/* z' = V (slip - z) / sigma; off the road there is no slip, and z is forgotten as it went on. */
+static se3di_dual find_rate(const se3di_force *force, const patch *c, int direction)
+{
+    const int at = SE3DI_PATCH_LAGGED + direction;
+    const se3di_dual z = se3di_dual_seed(c->input[at], at, 1.0);
+    se3di_tyre_slip slip;
+    take_slip(force, c, &slip);
+    const se3di_dual speed = force->tyre->law == SE3D_TYRE_BRUSH
+                                 ? slip.roll
+                                 : se3di_tyre_regular(slip.speed, force->tyre->low_speed);
+    const se3di_dual goal = c->touches ? *find_slip(force, &slip, direction) : se3di_dual_of(0.0);
+    const se3di_dual rate = se3di_dual_div(speed, find_length(force, &slip, direction));
+    return se3di_dual_mul(rate, se3di_dual_sub(goal, z));
+}
+
+static void find_gain(const se3di_force *force, const se3di_frame *const frames[2], const patch *c,
+                      int direction, double gain[12])
+{
+    se3di_tyre_slip slip;
+    se3di_tyre_forces forces;
+    double of[6];
+    memset(gain, 0, 12 * sizeof *gain);
+    if (c->touches) {
+        find_forces(force, c, &slip, &forces);
+        for (int k = 0; k < 6; ++k) {
+            of[k] = forces.of[k].d[SE3DI_PATCH_LAGGED + direction];
+        }
+        to_wrench(frames, c, of, gain);
+    }
+}
+
+void se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, int direction,
+                         int wants, se3di_tyre_lag *lag)
+{
+    const se3di_frame *const frames[2] = {&model->frames[tyre->body_i],
+                                          &model->frames[tyre->body_j]};
+    patch c, out;
+    take_patch(model, tyre, &c);
+    const se3di_dual rate = find_rate(tyre, &c, direction);
+    lag->rate = rate.v;
+    if (!wants) {
+        return;
+    }
+    lag->own = rate.d[SE3DI_PATCH_LAGGED + direction];
+    find_gain(tyre, frames, &c, direction, lag->gain);
+    memset(lag->K, 0, sizeof lag->K);
+    memset(lag->D, 0, sizeof lag->D);
+    for (int k = 0; k < 24 && !(c.cosine < UPRIGHT); ++k) {
+        const turn t = turn_of(frames, k);
+        vary_pose(&c, &t, &out);
+        vary_velocity(&c, &t, &out);
+        for (int m = 0; m < SE3DI_PATCH_INPUTS; ++m) {
+            (k < 12 ? lag->K : lag->D)[k % 12] += rate.d[m] * out.input[m];
+        }
+    }
+}
+
+/* The slips that the forces follow; those of a brush are relative to the speed of rolling. */
+static void tell_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                     double values[SE3D_TYRE_VALUES])
+{
+    const double side = force->tyre->mirrored ? -1.0 : 1.0;
+    take_lag(force, c, slip);
+    const double forward = find_slip(force, slip, 0)->v;
+    values[SE3D_TYRE_LAGGED_RATIO] = force->tyre->law == SE3D_TYRE_BRUSH ? 0.0 - forward : forward;
+    values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(find_slip(force, slip, 1)->v);
+}
+
 void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
                      double values[SE3D_TYRE_VALUES])
 {
@@ -358,6 +491,7 @@ void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     take_patch(model, force, &c);
     if (c.touches) {
         find_forces(force, &c, &slip, &forces);
+        take_slip(force, &c, &slip);
     }
     for (int k = 0; k < 6; ++k) {
         values[SE3D_TYRE_FX + k] = forces.of[k].v;
@@ -370,6 +504,7 @@ void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
     values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
     se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
+    tell_lag(force, &c, &slip, values);
 }
 
 const se3di_force_class se3di_force_class_tyre = {

@@ -14,6 +14,7 @@ enum {
     SE3DI_PATCH_SIDE_SPEED = 3, /* of the wheel there, to the left [m/s] */
     SE3DI_PATCH_SINE = 4,       /* of the inclination */
     SE3DI_PATCH_SPIN = 5,       /* about the axis [rad/s] */
+    SE3DI_PATCH_LAGGED = 6,     /* slip that lags, forward; to the side is the next one */
     SE3DI_PATCH_INPUTS = SE3DI_DUALS
 };
 
@@ -24,6 +25,7 @@ typedef struct se3di_tyre_slip {
     se3di_dual ratio;          /* kappa = -V_sx / V */
     se3di_dual tangent;        /* tan alpha = V_sy / V */
     se3di_dual slide[2];       /* V_sx, V_sy */
+    se3di_dual shear[2];       /* brush: V_sx, V_sy over the speed of rolling */
     se3di_dual roll;           /* |spin| times the rolling radius, regularised */
     se3di_dual speed;          /* V_x */
     se3di_dual way;            /* V_x / V: 1 ahead, -1 back */
@@ -49,6 +51,23 @@ void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
 /* The effective rolling radius of a Magic Formula. */
 se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflection,
                                    se3di_dual spin);
+
+/* Relaxation lengths of a Magic Formula, of kappa and of tan alpha. */
+void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip *slip,
+                                 se3di_dual length[2]);
+
+/* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
+typedef struct se3di_tyre_lag {
+    double rate;     /* z' [1/s] */
+    double own;      /* dz'/dz */
+    double K[12];    /* dz' / d (dr, dtheta) of road and wheel */
+    double D[12];    /* dz' / d (v, w) */
+    double gain[12]; /* d wrench / dz */
+} se3di_tyre_lag;
+
+/* `wants` 0: the rate only. */
+void se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, int direction,
+                         int wants, se3di_tyre_lag *lag);
 
 /* What it tells at the present state, see se3d_tyre_value. */
 void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,

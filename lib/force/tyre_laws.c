@@ -47,10 +47,8 @@ void se3di_tyre_brush(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces)
 {
     const se3di_tyre *tyre = force->tyre;
-    const se3di_dual x =
-        se3di_dual_scale(-tyre->slip_stiffness, se3di_dual_div(slip->slide[0], slip->roll));
-    const se3di_dual y =
-        se3di_dual_scale(-tyre->cornering_stiffness, se3di_dual_div(slip->slide[1], slip->roll));
+    const se3di_dual x = se3di_dual_scale(-tyre->slip_stiffness, slip->shear[0]);
+    const se3di_dual y = se3di_dual_scale(-tyre->cornering_stiffness, slip->shear[1]);
     const se3di_dual psi =
         se3di_dual_div(length_of(x, y), se3di_dual_scale(3.0 * force->mu, slip->load));
     se3di_dual G, cube;

@@ -9,6 +9,8 @@
  *     My       5.2: Fz (...)        6.1: F0 (...) (Fz / F0)^Q_SY7 (p / p0)^Q_SY8
  *     lambda of mu in S_V           6.1: 10 lambda / (1 + 9 lambda)
  *
+ * Relaxation lengths: by PTX1 ... PTY2 (5.2), else stiffness in the road over that of the carcass.
+ *
  * docs/theory/tyre.md */
 #include "force/tyre.h"
 
@@ -80,6 +82,13 @@ static dual clamp(dual x, double low, double high)
 
 /* ---- Pure slip -----------------------------------------------------------------------------*/
 
+/* dFx/dkappa */
+static dual find_slip_stiffness(const magic *m)
+{
+    return se3di_dual_mul(with_load(m, C(LKX) * pressure(m, C(PPX1), C(PPX2)), C(PKX1), C(PKX2)),
+                          se3di_dual_exp(se3di_dual_scale(C(PKX3), m->dfz)));
+}
+
 static dual find_fx0(magic *m)
 {
     const dual k = se3di_dual_add(
@@ -90,8 +99,7 @@ static dual find_fx0(magic *m)
     const dual bend = se3di_dual_square(C(PEX1), C(PEX2), C(PEX3), m->dfz);
     const dual E = limit_curvature(se3di_dual_scale((1.0 - C(PEX4) * sign_of(k.v)) * C(LEX), bend));
     const double shape = C(PCX1) * C(LCX);
-    m->K_x = se3di_dual_mul(with_load(m, C(LKX) * pressure(m, C(PPX1), C(PPX2)), C(PKX1), C(PKX2)),
-                            se3di_dual_exp(se3di_dual_scale(C(PKX3), m->dfz)));
+    m->K_x = find_slip_stiffness(m);
     const dual B = se3di_dual_div(m->K_x, se3di_dual_scale(shape, D));
     const dual wave = se3di_dual_sin(find_angle(B, shape, E, k));
     const dual shift = se3di_dual_mul(m->fade, with_load(m, C(LVX) * m->shift_x, C(PVX1), C(PVX2)));
@@ -370,6 +378,49 @@ void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
             of[k] = k == 2 ? of[k] : se3di_dual_mul(part, of[k]);
         }
     }
+}
+
+/* ---- Relaxation lengths --------------------------------------------------------------------*/
+
+/* A stiffness of the carcass [N/m]. */
+static dual find_carcass(const magic *m, double stiffness, const double by[3])
+{
+    return se3di_dual_square(stiffness * (1.0 + by[2] * m->dpi),
+                             stiffness * by[0] * (1.0 + by[2] * m->dpi),
+                             stiffness * by[1] * (1.0 + by[2] * m->dpi), m->dfz);
+}
+
+static dual find_relaxation_x(const magic *m)
+{
+    if (fabs(C(PTX1)) > 0.0) {
+        const dual fall = se3di_dual_exp(se3di_dual_scale(-C(PTX3), m->dfz));
+        return se3di_dual_mul(with_load(m, m->R0 / C(FNOMIN) * C(LSGKP), C(PTX1), C(PTX2)), fall);
+    }
+    return se3di_dual_div(find_slip_stiffness(m),
+                          find_carcass(m, C(LONGITUDINAL_STIFFNESS), &C(PCFX1)));
+}
+
+static dual find_relaxation_y(const magic *m)
+{
+    const dual g = se3di_dual_scale(C(LGAY), m->gamma);
+    if (fabs(C(PTY1)) > 0.0) {
+        const dual reach = se3di_dual_atan(se3di_dual_scale(1.0 / (C(PTY2) * m->F0), m->load));
+        const dual bent = se3di_dual_sin(se3di_dual_scale(2.0, reach));
+        const double size = C(PTY1) * m->R0 * C(LFZO) * C(LSGAL);
+        return se3di_dual_mul(se3di_dual_scale(size, bent),
+                              se3di_dual_line(1.0, -C(PKY3), se3di_dual_abs(g)));
+    }
+    return se3di_dual_div(se3di_dual_abs(find_stiffness(m, g)),
+                          find_carcass(m, C(LATERAL_STIFFNESS), &C(PCFY1)));
+}
+
+void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip *slip,
+                                 dual length[2])
+{
+    magic m;
+    prepare(force, slip, &m);
+    length[0] = find_relaxation_x(&m);
+    length[1] = find_relaxation_y(&m);
 }
 
 dual se3di_tyre_magic_radius(const se3di_force *force, dual deflection, dual spin)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbers with their derivatives by six others: a formula that is written with them has exact
+/* Numbers with their derivatives by eight others: a formula that is written with them has exact
  * derivatives. */
 #ifndef SE3DI_DUAL_H
 #define SE3DI_DUAL_H
@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#define SE3DI_DUALS 6
+#define SE3DI_DUALS 8
 
 typedef struct se3di_dual {
     double v;

@@ -220,6 +220,9 @@ void se3di_model_remove_body(se3di_model *model, uint32_t body)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         lower(&model->forces[k].body_i, body);
         lower(&model->forces[k].body_j, body);
+        for (int c = 0; c < 2 && model->forces[k].tyre; ++c) {
+            lower(&model->forces[k].tyre->carrier[c], body);
+        }
     }
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
         lower(&model->shapes[k].body, body);
@@ -500,6 +503,9 @@ void se3di_model_remove_force(se3di_model *model, uint32_t force)
         model->bodies[k].state -= model->bodies[k].state > (int32_t)force + 1;
     }
     lower_signals(model, offsetof(se3di_signal, force), force);
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        lower_signed(&model->forces[k].tyre_index, force);
+    }
     for (size_t k = 0; k < model->wheel_slots.count; ++k) {
         lower_signed(&model->wheels[k].spring, force);
     }
@@ -538,6 +544,44 @@ void se3di_model_remove_state(se3di_model *model, uint32_t force)
     --model->state_count;
     se3di_model_remove_force(model, force);
     se3di_model_remove_body(model, body);
+}
+
+/* The states of the slips of a tyre that lag, from the last one on. */
+static void remove_lags(se3di_model *model, uint32_t tyre)
+{
+    for (uint32_t k = (uint32_t)model->force_slots.count; k-- > 0;) {
+        if (model->forces[k].tyre_index == (int32_t)tyre) {
+            se3di_model_remove_state(model, k);
+        }
+    }
+}
+
+se3d_status se3di_model_add_tyre(se3di_model *model, const se3di_force *force,
+                                 const se3di_force *lag, se3di_handle *handle)
+{
+    SE3DI_TRY(se3di_model_add_force(model, force, handle));
+    const uint32_t tyre = (uint32_t)model->force_slots.count - 1;
+    for (int k = 0; k < 2; ++k) {
+        se3di_force state = *lag;
+        se3di_handle unused;
+        if (!force->tyre->lags[k]) {
+            continue;
+        }
+        state.tyre_index = (int32_t)tyre;
+        state.coordinate = k;
+        if (se3di_model_add_state(model, &state, 0.0, &unused) < 0) {
+            se3di_model_remove_tyre(model, tyre);
+            return SE3D_ERR_NO_MEMORY;
+        }
+        model->forces[tyre].tyre->carrier[k] = (uint32_t)model->body_slots.count - 1;
+    }
+    return SE3D_OK;
+}
+
+void se3di_model_remove_tyre(se3di_model *model, uint32_t force)
+{
+    remove_lags(model, force);
+    se3di_model_remove_force(model, force);
 }
 
 void se3di_model_set_state_function(se3di_model *model, uint32_t force, int place, int32_t function)

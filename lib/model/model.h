@@ -179,7 +179,9 @@ typedef struct se3di_force {
     int32_t joint;      /* rsda, friction, stop, effort, armature: whose coordinate; -1: none */
     int32_t angle;      /* its turn counter; -1: none */
     int32_t owns_angle; /* the turn counter is the element's own */
-    int32_t coordinate; /* of the joint: se3d_joint_coordinate, or SE3DI_FORCE_LENGTH */
+    int32_t coordinate; /* of the joint: se3d_joint_coordinate, or SE3DI_FORCE_LENGTH;
+                           a state of a tyre: 0 of the slip ratio, 1 of the slip angle */
+    int32_t tyre_index; /* a state: the tyre whose slip it is; -1: it is the user's */
     uint32_t users;
     double value[3];    /* loads; effort, armature: [0] */
     double low, high;   /* stop: free between; infinite: none */

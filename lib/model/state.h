@@ -23,6 +23,12 @@ se3d_status se3di_model_add_state(se3di_model *model, const se3di_force *state, 
                                   se3di_handle *handle);
 /* Remove one that has no users. */
 void se3di_model_remove_state(se3di_model *model, uint32_t force);
+/* Add a tyre, with a state made of `lag` for each slip that lags. NO_MEMORY is the only failure,
+ * after which nothing is added. */
+se3d_status se3di_model_add_tyre(se3di_model *model, const se3di_force *force,
+                                 const se3di_force *lag, se3di_handle *handle);
+/* Remove it, or any force element, with its states. */
+void se3di_model_remove_tyre(se3di_model *model, uint32_t force);
 
 /* Give it another function (SE3DI_FORCE_FUNCTIONS), -1: none. */
 void se3di_model_set_state_function(se3di_model *model, uint32_t force, int place,

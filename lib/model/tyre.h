@@ -18,6 +18,9 @@ typedef struct se3di_tyre {
     double patch_length;
     double rolling_resistance;
     double low_speed;
+    int32_t lags[2];      /* 1: the slip, forward or to the side, lags: it is a state, */
+    uint32_t carrier[2];  /* the velocity of this body (model/state.h) */
+    double relaxation[2]; /* lengths [m]; 0: follow from the coefficients */
     double coefficients[SE3D_TYRE_COEFFICIENTS]; /* of the Magic Formula */
 } se3di_tyre;
 

@@ -4,6 +4,7 @@
 
 #include "joint/joint.h"
 #include "math/vec3.h"
+#include "model/state.h"
 #include "system/force_internal.h"
 
 #include <string.h>
@@ -38,7 +39,8 @@ se3d_status se3di_force_begin(se3d_system *system, se3d_force *force)
 
 se3di_force se3di_force_blank(int32_t type, const char *name)
 {
-    se3di_force data = {.type = type, .function = {-1, -1, -1, -1, -1}, .joint = -1, .angle = -1};
+    se3di_force data = {
+        .type = type, .function = {-1, -1, -1, -1, -1}, .joint = -1, .angle = -1, .tyre_index = -1};
     memcpy(&data.name, &name, sizeof data.name); /* copied by the model */
     return data;
 }
@@ -200,7 +202,7 @@ se3d_status se3d_force_destroy(se3d_system *system, se3d_force force)
                           "'%.64s' is used by %u wheels or signals of functions",
                           found->name ? found->name : "", found->users);
     }
-    se3di_model_remove_force(&system->model, index);
+    se3di_model_remove_tyre(&system->model, index); /* with what only tyres have */
     return SE3D_OK;
 }
 

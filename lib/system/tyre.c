@@ -4,6 +4,7 @@
 
 #include "force/tyre.h"
 #include "math/vec3.h"
+#include "model/state.h"
 #include "system/force_internal.h"
 
 #include <math.h>
@@ -11,6 +12,7 @@
 
 #define LARGE    1e40
 #define POSITIVE 1e-40
+#define SLIP     1e-2 /* that errors of a slip that lags are measured by, at least */
 
 void se3d_tyre_def_init(se3d_tyre_def *def, size_t size)
 {
@@ -114,6 +116,46 @@ static se3d_status take_coefficients(se3d_system *system, const se3d_tyre_def *d
     return check_divisors(system, c);
 }
 
+/* The coefficients have to say the length of a direction for which none is given. */
+static se3d_status check_relaxation(se3d_system *system, const se3d_tyre_def *def, const double *c,
+                                    int direction)
+{
+    const int first = direction ? SE3D_TYRE_PTY1 : SE3D_TYRE_PTX1;
+    const int carcass = direction ? SE3D_TYRE_LATERAL_STIFFNESS : SE3D_TYRE_LONGITUDINAL_STIFFNESS;
+    const char *name = direction ? "relaxation_y" : "relaxation_x";
+    if (def->law != SE3D_TYRE_MF52 && def->law != SE3D_TYRE_MF61) {
+        return SE3DI_FAIL_OF(system, name, SE3D_ERR_INVALID_ARGUMENT,
+                             " = 0, must be > 0 [m]: is_transient, and only a Magic Formula knows "
+                             "its own");
+    }
+    if (direction && fabs(c[first]) > 0.0 && !(fabs(c[SE3D_TYRE_PTY2]) > 0.0)) {
+        return SE3DI_FAIL_OF(system, "PTY2", SE3D_ERR_INVALID_ARGUMENT, " = 0, must not be 0");
+    }
+    if (!(fabs(c[first]) > 0.0) && !(c[carcass] > 0.0)) {
+        return SE3DI_FAIL_OF(system, name, SE3D_ERR_INVALID_ARGUMENT,
+                             " = 0, must be > 0 [m]: is_transient, and the coefficients have "
+                             "neither %s nor %s",
+                             coefficient_names[first], coefficient_names[carcass]);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status take_relaxation(se3d_system *system, const se3d_tyre_def *def, se3di_tyre *tyre)
+{
+    const double given[2] = {def->relaxation_x, def->relaxation_y};
+    SE3DI_TRY(check_choice(system, "is_transient", def->is_transient, 1));
+    SE3DI_TRY(se3di_check_range(system, "relaxation_x", given[0], 0.0, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "relaxation_y", given[1], 0.0, LARGE));
+    for (int k = 0; k < 2; ++k) {
+        tyre->relaxation[k] = given[k];
+        tyre->lags[k] = def->is_transient || given[k] > 0.0;
+        if (tyre->lags[k] && !(given[k] > 0.0)) {
+            SE3DI_TRY(check_relaxation(system, def, tyre->coefficients, k));
+        }
+    }
+    return SE3D_OK;
+}
+
 static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, se3di_force *data)
 {
     se3di_tyre *tyre = data->tyre;
@@ -131,6 +173,7 @@ static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, s
     SE3DI_TRY(check_choice(system, "measured_side", def->measured_side, SE3D_TYRE_RIGHT));
     const int is_magic = def->law == SE3D_TYRE_MF52 || def->law == SE3D_TYRE_MF61;
     SE3DI_TRY(is_magic ? take_coefficients(system, def, tyre) : check_stiffness(system, def));
+    SE3DI_TRY(take_relaxation(system, def, tyre));
     se3di_copy(def->point, data->s_i);
     se3di_copy(def->center, data->s_j);
     se3di_scale(def->side == SE3D_TYRE_RIGHT ? -1.0 : 1.0, tyre->axis, tyre->axis);
@@ -165,7 +208,14 @@ se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def
     }
     data.tyre = &tyre; /* copied by the model */
     SE3DI_TRY(take_numbers(system, &full, &data));
-    return se3di_force_add(system, &data, force);
+    se3di_force lag = se3di_force_blank(SE3DI_FORCE_STATE, NULL);
+    se3di_handle handle;
+    lag.rest = SLIP;
+    if (se3di_model_add_tyre(&system->model, &data, &lag, &handle) < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a tyre");
+    }
+    *force = (se3d_force){handle.index1, handle.generation};
+    return SE3D_OK;
 }
 
 se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,

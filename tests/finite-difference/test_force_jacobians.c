@@ -6,6 +6,7 @@
 
 #include "force/force.h"
 #include "force/friction.h"
+#include "force/tyre.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "misuse/element_defs.h"
@@ -299,6 +300,28 @@ static void create_law_of_effort(world *w)
     create_effort(w, SE3D_JOINT_COORDINATE_DISPLACEMENT, "5*sin(q) - 2*qdot*(1 + q^2) + t");
 }
 
+/* How the slip of the tyres that follow lags: 0 not at all, 1 by given lengths, 2 by PTX1 ..., 3 by
+ * the carcass. */
+static int lag_kind;
+
+static void lag_tyre(const world *w, se3d_tyre_def *def, double *c)
+{
+    (void)w;
+    def->is_transient = lag_kind > 0;
+    def->relaxation_x = lag_kind == 1 ? 0.3 : 0.0;
+    def->relaxation_y = lag_kind == 1 ? 0.5 : 0.0;
+    c[SE3D_TYRE_PTX1] = lag_kind == 2 ? 1.8 : 0.0;
+    c[SE3D_TYRE_PTX2] = -0.1;
+    c[SE3D_TYRE_PTX3] = 0.3;
+    c[SE3D_TYRE_PTY1] = lag_kind == 2 ? 1.9 : 0.0;
+    c[SE3D_TYRE_PTY2] = 1.6;
+    c[SE3D_TYRE_LONGITUDINAL_STIFFNESS] = 300.0;
+    c[SE3D_TYRE_LATERAL_STIFFNESS] = 200.0;
+    c[SE3D_TYRE_PCFX1] = 0.2;
+    c[SE3D_TYRE_PCFX2] = -0.05;
+    c[SE3D_TYRE_PCFY1] = -0.1;
+}
+
 /* A wheel somewhere in the road, inclined; its slip is what the random motion gives, made smaller
  * or larger by the speed below which it is regularised. */
 static void create_tyre(world *w, int32_t law, double low_speed, double mu)
@@ -342,7 +365,11 @@ static void create_tyre(world *w, int32_t law, double low_speed, double mu)
     def.low_speed = low_speed;
     def.coefficients = c;
     def.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    lag_tyre(w, &def, c);
     finish(w, se3d_force_create_tyre(w->system, &def, &force));
+    for (size_t k = 3; k < w->model->body_slots.count; ++k) { /* slips that lag */
+        w->model->frames[k].v[0] = 0.3 * check_random(&seed);
+    }
 }
 
 static void create_sticking_brush(world *w)
@@ -483,6 +510,71 @@ static void jacobians_of_every_element(void)
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         jacobians_agree_with_differences(create[k], 1e-10);
     }
+}
+
+/* The largest errors of the derivatives of a slip that lags, [0], and of what the wrench has of it,
+ * [1], by central differences of step h. */
+static void lag_errors(world *w, int direction, const se3di_tyre_lag *exact, double h,
+                       double worst[2])
+{
+    se3di_frame kept[5];
+    double *z = &w->model->frames[w->force->tyre->carrier[direction]].v[0];
+    se3di_tyre_lag plus, minus;
+    se3di_effect far = {.wants_derivative = 0}, near = {.wants_derivative = 0};
+    worst[0] = worst[1] = 0.0;
+    memcpy(kept, w->model->frames, sizeof kept);
+    for (int k = 0; k < 24; ++k) {
+        displace(w, k, h);
+        se3di_tyre_lag_eval(w->model, w->force, direction, 0, &plus);
+        memcpy(w->model->frames, kept, sizeof kept);
+        displace(w, k, -h);
+        se3di_tyre_lag_eval(w->model, w->force, direction, 0, &minus);
+        memcpy(w->model->frames, kept, sizeof kept);
+        const double given = (k < 12 ? exact->K : exact->D)[k % 12];
+        worst[0] = fmax(worst[0], fabs((plus.rate - minus.rate) / (2.0 * h) - given));
+    }
+    *z += h;
+    se3di_tyre_lag_eval(w->model, w->force, direction, 0, &plus);
+    CHECK(!se3di_force_eval(w->model, w->force, 0.3, &far));
+    *z -= 2.0 * h;
+    se3di_tyre_lag_eval(w->model, w->force, direction, 0, &minus);
+    CHECK(!se3di_force_eval(w->model, w->force, 0.3, &near));
+    *z += h;
+    worst[0] = fmax(worst[0], fabs((plus.rate - minus.rate) / (2.0 * h) - exact->own));
+    for (int k = 0; k < 12; ++k) {
+        const double slope = (far.wrench[k] - near.wrench[k]) / (2.0 * h);
+        worst[1] = fmax(worst[1], fabs(slope - exact->gain[k]));
+    }
+}
+
+static void slips_that_lag_agree_with_differences(void)
+{
+    static void (*const create[])(world *) = {create_sticking_brush, create_rolling_fiala,
+                                              create_mf52, create_mf61};
+    for (int trial = 0; trial < 40; ++trial) {
+        lag_kind = trial % 4 < 2 ? 1 : 2 + trial / 4 % 2;
+        world w = {0};
+        build(&w);
+        create[trial % 4](&w);
+        CHECK(w.model->state_count == 2);
+        for (int direction = 0; direction < 2; ++direction) {
+            se3di_tyre_lag exact;
+            double coarse[2], fine[2];
+            se3di_tyre_lag_eval(w.model, w.force, direction, 1, &exact);
+            lag_errors(&w, direction, &exact, 1e-3, coarse);
+            lag_errors(&w, direction, &exact, 2.5e-4, fine);
+            for (int k = 0; k < 2; ++k) {
+                CHECK(fine[k] <= coarse[k] / 12.0 || fine[k] <= 1e-7);
+                CHECK(coarse[k] < 2.0);
+            }
+        }
+        se3d_system_destroy(w.system);
+    }
+    for (size_t k = 0; k < 4; ++k) { /* the wrench by everything else */
+        lag_kind = k < 2 ? 1 : 2;
+        jacobians_agree_with_differences(create[k], 1e-8);
+    }
+    lag_kind = 0;
 }
 
 /* The definitions that other tests try too: a new element needs no row here, but states of its own
@@ -659,6 +751,7 @@ int main(void)
 {
     RUN(the_load_of_friction_changes_with_the_reaction_as_told);
     RUN(jacobians_of_every_element);
+    RUN(slips_that_lag_agree_with_differences);
     RUN(jacobians_of_every_element_of_the_list);
     RUN(a_callback_without_jacobian_is_differenced);
     RUN(the_wrench_is_minus_the_gradient_of_the_potential);

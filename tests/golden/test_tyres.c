@@ -208,6 +208,53 @@ static void the_road_never_pulls_and_what_rests_stays(void)
     text_model_close(&m);
 }
 
+/* A rim that is carried along at u and held at a slip angle and a slip ratio, which begin at once;
+ * %s: the tyre's other keys. */
+#define TOWED                                                                                      \
+    "se3d: 1\n"                                                                                    \
+    "parameters: {u: 12, a: 3*deg, r: 0.29, kappa: 0.01}\n"                                        \
+    "bodies:\n"                                                                                    \
+    "  - {name: cart, mass: 10, inertia: [1, 1, 1], position: [0, 0, r], velocity: [u, 0, 0]}\n"   \
+    "  - {name: rim, mass: 5, inertia: [0.5, 0.9, 0.5], position: [0, 0, r],\n"                    \
+    "     orientation: {rpy: [0, 0, -a]}, velocity: [u, 0, 0]}\n"                                  \
+    "joints:\n"                                                                                    \
+    "  - {name: rail, type: prismatic, body_i: ground, body_j: cart, at: [0, 0, r], axis: [1, 0, " \
+    "0]}\n"                                                                                        \
+    "  - {name: hub, type: revolute, body_i: cart, body_j: rim, at: [0, 0, r],\n"                  \
+    "     axis: [sin(a), cos(a), 0]}\n"                                                            \
+    "drivers:\n"                                                                                   \
+    "  - {name: tow, joint: rail, value: u*t}\n"                                                   \
+    "  - {name: spin, joint: hub, value: (1 + kappa)*u*cos(a)/r*t}\n"                              \
+    "forces: [{name: tyre, type: tyre, body: rim, radius: 0.3, k: 2e5, rolling_radius: r, %s,\n"   \
+    "   axis: [sin(a), cos(a), 0]}]\n"                                                             \
+    "analysis: {type: dynamics, duration: 1, tolerance: 1e-8}\n"                                   \
+    "output: [{file: o.csv, every: 0.1, channels: [tyre.lagged_angle, tyre.lagged_ratio,\n"        \
+    "   tyre.slip_angle, tyre.fy, tyre.fx]}]\n"
+
+/* tan(alpha) (1 - exp(-x / sigma)) after the distance x; the same of the slip ratio. */
+static void slip_that_lags_rises_with_the_distance(void)
+{
+    char text[4000];
+    const double u = 12.0, a = 3.0 * 3.14159265358979323846 / 180.0, V = u * cos(a);
+    snprintf(text, sizeof text, TOWED,
+             "mu: 0.9, model: fiala, slip_stiffness: 5e4, cornering_stiffness: 4e4, "
+             "relaxation_x: 0.15, relaxation_y: 0.4");
+    text_model m = text_model_open(text, -1, -1, 0.0);
+    for (int k = 1; k <= 10; ++k) {
+        const double t = 0.02 * k, way = V * t;
+        CHECK(text_model_run(&m, t));
+        const double tangent = tan(a) * (1.0 - exp(-way / 0.4));
+        const double f = 0.9 * 2000.0, theta = 4e4 * tangent / (3.0 * f);
+        CHECK_NEAR(fabs(tan(text_model_get(&m, 0, 0))), tangent, 1e-8);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.01 * (1.0 - exp(-way / 0.15)), 1e-8);
+        CHECK_NEAR(fabs(text_model_get(&m, 2, 0)), a, 1e-9);
+        CHECK_NEAR(fabs(text_model_get(&m, 3, 0)),
+                   theta < 1.0 ? 4e4 * tangent * (1.0 - theta + theta * theta / 3.0) : f, 1e-3);
+        CHECK_NEAR(text_model_get(&m, 4, 0), 5e4 * 0.01 * (1.0 - exp(-way / 0.15)), 1e-3);
+    }
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(forces_agree_with_an_independent_program);
@@ -216,5 +263,6 @@ int main(void)
     RUN(a_wheel_slows_by_its_resistance_to_rolling);
     RUN(a_driven_wheel_pushes_with_its_torque);
     RUN(the_road_never_pulls_and_what_rests_stays);
+    RUN(slip_that_lags_rises_with_the_distance);
     return check_finish();
 }

@@ -79,7 +79,8 @@ typedef struct field {
     X(rsda_between, rsda)                                                                          \
     X(stop_between, stop)                                                                          \
     X(tyre_fiala, tyre)                                                                            \
-    X(tyre_magic, tyre)
+    X(tyre_magic, tyre)                                                                            \
+    X(tyre_lagging, tyre)
 
 FILL(se3d_tsda_def, tsda)
 {
@@ -302,6 +303,15 @@ FILL(se3d_tyre_def, tyre_magic)
 FIELDS(tyre_magic) = {INTEGER(se3d_tyre_def, law), SIZE(se3d_tyre_def, coefficient_count),
                       INTEGER(se3d_tyre_def, measured_side), NUMBERS(se3d_tyre_def, mu),
                       FIELDS_END};
+
+FILL(se3d_tyre_def, tyre_lagging)
+{
+    set_tyre(at, def);
+    def->relaxation_x = 0.2;
+    def->relaxation_y = 0.4;
+}
+FIELDS(tyre_lagging) = {INTEGER(se3d_tyre_def, is_transient), NUMBERS(se3d_tyre_def, relaxation_x),
+                        NUMBERS(se3d_tyre_def, relaxation_y), FIELDS_END};
 
 static inline se3d_status no_force(void *ctx, double t, const se3d_body_motion motion[2],
                                    double wrench[12], double *K, double *D)

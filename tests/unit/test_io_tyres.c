@@ -105,19 +105,6 @@ static void the_model_file_goes_before_the_tyre_file(void)
     CHECK(fabs(given[SE3D_TYRE_FX]) < fabs(file[SE3D_TYRE_FX]));
 }
 
-static void what_is_unknown_or_missing_is_told(void)
-{
-    heard h;
-    se3d_model_error error = {0, 0, ""};
-    se3d_model *model =
-        open(SI "QUARK = 3\n[SHAPE]\n{radial width}\n1.0 0.0\n", MODEL(""), &h, &error);
-    CHECK(model != NULL);
-    CHECK(strstr(h.text, "QUARK") && strstr(h.text, "has no effect here"));
-    CHECK(strstr(h.text, "PDX2") && strstr(h.text, "missing"));
-    CHECK(!strstr(h.text, "PHY3") && !strstr(h.text, "PCX1"));
-    se3d_model_destroy(model);
-}
-
 static void refuse(const char *tir, const char *text, const char *part)
 {
     heard h;
@@ -129,6 +116,48 @@ static void refuse(const char *tir, const char *text, const char *part)
         fprintf(stderr, "%s\n  lacks: %s\n", error.message, part);
         CHECK(0);
     }
+    se3d_model_destroy(model);
+}
+
+/* How many slips lag. */
+static size_t count_lags(const char *tir, const char *text)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model *model = open(tir, text, &h, &error);
+    CHECK(model != NULL);
+    const size_t count = model ? se3d_system_count_states(se3d_model_get_system(model)) : 99;
+    se3d_model_destroy(model);
+    return count;
+}
+
+static void slip_lags_where_file_or_model_say_so(void)
+{
+#define LENGTHS "PTX1 = 1.8\nPTY1=2\nPTY2 = 2\n"
+    CHECK(count_lags(SI LENGTHS, MODEL("")) == 0);
+    CHECK(count_lags(SI LENGTHS, MODEL(", transient: true")) == 2);
+    CHECK(count_lags(SI "USE_MODE = 4\n" LENGTHS, MODEL("")) == 0);
+    CHECK(count_lags(SI "USE_MODE = -14\n" LENGTHS, MODEL("")) == 2);
+    CHECK(count_lags(SI "USE_MODE = 14\n" LENGTHS, MODEL(", transient: false")) == 0);
+    CHECK(count_lags(SI "USE_MODE = 14\n", MODEL("")) == 0);
+    CHECK(count_lags(SI, MODEL(", relaxation_y: 0.4")) == 1);
+    CHECK(count_lags(SI "LONGITUDINAL_STIFFNESS=3e5\nLATERAL_STIFFNESS = 1e5\n",
+                     MODEL(", transient: true")) == 2);
+    refuse(SI, MODEL(", transient: true"), "neither PTX1 nor LONGITUDINAL_STIFFNESS");
+    refuse(SI "PTX1=1\nPTY1 = 1\n", MODEL(", transient: true"), "PTY2");
+#undef LENGTHS
+}
+
+static void what_is_unknown_or_missing_is_told(void)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model *model =
+        open(SI "QUARK = 3\n[SHAPE]\n{radial width}\n1.0 0.0\n", MODEL(""), &h, &error);
+    CHECK(model != NULL);
+    CHECK(strstr(h.text, "QUARK") && strstr(h.text, "has no effect here"));
+    CHECK(strstr(h.text, "PDX2") && strstr(h.text, "missing"));
+    CHECK(!strstr(h.text, "PHY3") && !strstr(h.text, "PCX1"));
     se3d_model_destroy(model);
 }
 
@@ -159,6 +188,7 @@ int main(void)
     RUN(marks_and_ends_of_lines_make_no_difference);
     RUN(the_model_file_goes_before_the_tyre_file);
     RUN(what_is_unknown_or_missing_is_told);
+    RUN(slip_lags_where_file_or_model_say_so);
     RUN(files_of_other_kinds_are_refused);
     return check_finish();
 }

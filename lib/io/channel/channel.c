@@ -78,6 +78,8 @@ static const quantity_name tyre_names[] = {{"fx", SE3DI_TYRE_FX},
                                            {"rolling_radius", SE3DI_TYRE_ROLLING_RADIUS},
                                            {"speed", SE3DI_TYRE_SPEED},
                                            {"contact", SE3DI_TYRE_CONTACT},
+                                           {"lagged_ratio", SE3DI_TYRE_LAGGED_RATIO},
+                                           {"lagged_angle", SE3DI_TYRE_LAGGED_ANGLE},
                                            {NULL, SE3DI_STEPS}};
 static const quantity_name wheel_names[] = {
     {"camber", SE3DI_WHEEL_CAMBER},

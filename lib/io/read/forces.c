@@ -179,6 +179,15 @@ static const se3di_key force_keys[] = {
      .standard = "radius - deflection/3", .text = "effective [m]"},
     {"low_speed", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, low_speed),
      .types = " tyre ", .standard = "1", .text = "below it slip is regularised [m/s]"},
+    {"transient", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_tyre_def, is_transient), .types = " tyre ",
+     .standard = "false, or `USE_MODE` of the file",
+     .text = "slip lags, by the lengths below or those of the file"},
+    {"relaxation_x", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, relaxation_x),
+     .types = " tyre ", .standard = "that of the file, or none",
+     .text = "relaxation length of the slip ratio, which then lags [m]"},
+    {"relaxation_y", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, relaxation_y),
+     .types = " tyre ", .standard = "that of the file, or none",
+     .text = "and of the slip angle [m]"},
     {.key = NULL}};
 const se3di_object se3di_object_force = {
     "force",

@@ -23,7 +23,7 @@ typedef struct tir {
     se3d_tyre_def *def;
     double length, force, angle, time, pressure; /* units [SI]; 0: not given */
     bool has[SE3D_TYRE_COEFFICIENTS];
-    bool has_law, in_table;
+    bool has_law, in_table, is_transient;
     char unknown[LIST_SIZE]; /* keys */
     size_t unknown_count;
 } tir;
@@ -209,13 +209,24 @@ static bool take_side(tir *t, const char *text)
 static bool is_idle(const char *key)
 {
     static const char idle[] =
-        " FILE_TYPE FILE_VERSION FILE_FORMAT FUNCTION_NAME USE_MODE N_TIRE_STATES WIDTH "
+        " FILE_TYPE FILE_VERSION FILE_FORMAT FUNCTION_NAME N_TIRE_STATES WIDTH "
         "ASPECT_RATIO RIM_RADIUS RIM_WIDTH TYRE_MASS TIRE_MASS MASS IXX IYY IZZ GRAVITY "
         "USER_SUB_ID "
         "SWITCH_INTEG BELT_MASS BELT_IXX BELT_IYY FREQ_LONG FREQ_LAT FREQ_YAW FREQ_WINDUP "
         "DAMP_LONG DAMP_LAT DAMP_YAW DAMP_WINDUP DAMP_RESIDUAL DAMP_VLOW HMAX PRESMIN PRESMAX "
         "BOTTOM_STIFF BOTTOM_OFFST MC_CONTOUR_A MC_CONTOUR_B ";
     return se3di_keys_contain(idle, key);
+}
+
+/* USE_MODE: from 11 to 25 in size slip lags, where the file has lengths. */
+static bool take_mode(tir *t, const char *text)
+{
+    double mode = 0.0;
+    if (!take_number(t, "USE_MODE", text, &mode)) {
+        return false;
+    }
+    t->is_transient = fabs(mode) > 10.0;
+    return true;
 }
 
 static bool take_pair(tir *t, char *key, char *text)
@@ -238,6 +249,9 @@ static bool take_pair(tir *t, char *key, char *text)
     }
     if (strcmp(key, "TYRESIDE") == 0) {
         return take_side(t, text);
+    }
+    if (strcmp(key, "USE_MODE") == 0) {
+        return take_mode(t, text);
     }
     if (key[0] == 'Q' && key[1] == '_') { /* Q_RE0 is QRE0 */
         memmove(key + 1, key + 2, strlen(key + 2) + 1);
@@ -337,6 +351,8 @@ static void convert(tir *t)
     t->c[SE3D_TYRE_LONGVL] *= t->has[SE3D_TYRE_LONGVL] ? length / time : 1.0;
     t->c[SE3D_TYRE_NOMPRES] *= pressure;
     t->c[SE3D_TYRE_INFLPRES] *= pressure;
+    t->c[SE3D_TYRE_LONGITUDINAL_STIFFNESS] *= force / length;
+    t->c[SE3D_TYRE_LATERAL_STIFFNESS] *= force / length;
     t->def->radius *= length;
     t->def->k *= force / length;
     t->def->c *= force * time / length;
@@ -384,6 +400,14 @@ static bool check_needed(const tir *t)
                                  "`%.200s` lacks what a Magic Formula needs: %s", t->file, list);
 }
 
+/* Whether the file has what relaxation lengths of both directions follow from. */
+static bool has_lengths(const tir *t)
+{
+    const bool x = t->has[SE3D_TYRE_PTX1] || t->has[SE3D_TYRE_LONGITUDINAL_STIFFNESS];
+    const bool y = t->has[SE3D_TYRE_PTY1] || t->has[SE3D_TYRE_LATERAL_STIFFNESS];
+    return x && y;
+}
+
 bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *file,
                     double *coefficients, se3d_tyre_def *def)
 {
@@ -401,6 +425,7 @@ bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *fi
         return false;
     }
     convert(&t);
+    def->is_transient = t.is_transient && has_lengths(&t);
     list_missing(&t, missing);
     warn(&t, "has no effect here", t.unknown);
     warn(&t, "is missing and counts as without it", missing);
