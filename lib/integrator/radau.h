@@ -4,15 +4,10 @@
 #ifndef SE3DI_RADAU_H
 #define SE3DI_RADAU_H
 
+#include "integrator/radau_rule.h"
 #include "integrator/relax.h"
 
 #define SE3DI_RADAU_STAGES 3
-
-/* Nodes, coefficients and their inverse. */
-extern const double se3di_radau_c[3];
-extern const double se3di_radau_a[3][3];
-extern const double se3di_radau_inverse[3][3];
-extern const double se3di_radau_gamma; /* the Newton matrix is that of a step gamma h */
 
 /* Of the rows of stages that are projected, which are consistent. */
 #define SE3DI_RADAU_REGULARISATION 1e-9
@@ -73,10 +68,6 @@ se3d_status se3di_radau_filter(se3di_radau *m, double *d, double *error);
 /* Put the end of the solved step onto the constraints of positions along the Newton matrix: the
  * projection, which knows masses only, would stretch stiff springs by what is open. */
 se3d_status se3di_radau_close(se3di_radau *m);
-
-/* A^-1 S (I - N)^-1 u / h: of transformed impulses the forces of the stages. */
-void se3di_radau_untransform(const double u[SE3DI_RADAU_STAGES], double h,
-                             double change[SE3DI_RADAU_STAGES]);
 
 /* Accelerations of a stage [unknowns]. */
 void se3di_radau_get_acceleration(const se3di_radau *m, int stage, double *vdot);

@@ -28,24 +28,6 @@
 #define STIFF      2.0  /* the defect at the start over what the filter leaves of it */
 #define STAYS      0.5  /* of the correction three iterations ago: it is rounding that remains */
 
-const double se3di_radau_c[3] = {0.15505102572168219, 0.64494897427831781, 1.0};
-const double se3di_radau_a[3][3] = {
-    {0.19681547722366042586, -0.0655354258501983881, 0.02377097434822015242},
-    {0.39442431473908727699, 0.29207341166522846302, -0.0415487521259979301},
-    {0.37640306270046727505, 0.51248582618842161383, 0.11111111111111111111},
-};
-const double se3di_radau_inverse[3][3] = {
-    {3.22474487139158904909, 1.16784008469040549492, -0.2531972647421808261},
-    {-3.5678400846904054949, 0.77525512860841095090, 1.05319726474218082618},
-    {5.53197264742180826185, -7.5319726474218082618, 5.0},
-};
-const double se3di_radau_gamma = 0.235991;
-
-/* P: found by a search for the least |M(z)^3|^(1/3) on the negative real axis, the imaginary axis
- * and between, M(z) = z (I - z P)^-1 (A - P). */
-static const double N[3][3] = {{0.0}, {1.33667, 0.0}, {-1.631173, 2.208706, 0.0}};
-static const double S[3][3] = {{1.0, -0.098781, -0.081871}, {0.0, 1.0, 0.092697}, {0.0, 0.0, 1.0}};
-
 /* A vector of stage i. */
 static double *at(double *values, int i, size_t size)
 {
@@ -283,8 +265,11 @@ static void set_balance(se3di_radau *m, int i)
     }
     for (size_t k = 0; k < rows; ++k) { /* -S^-1 g */
         const double g0 = m->g[k], g1 = m->g[rows + k], g2 = m->g[2 * rows + k];
-        const double h1 = g1 - S[1][2] * g2;
-        equations->c[k] = i == 2 ? -g2 : i == 1 ? -h1 : -(g0 - S[0][1] * h1 - S[0][2] * g2);
+        const double h1 = g1 - se3di_radau_upper[1][2] * g2;
+        equations->c[k] = i == 2 ? -g2
+                          : i == 1
+                              ? -h1
+                              : -(g0 - se3di_radau_upper[0][1] * h1 - se3di_radau_upper[0][2] * g2);
     }
 }
 
@@ -331,8 +316,8 @@ static se3d_status solve_stage(se3di_radau *m, int i, double W[STAGES][STAGES])
             m->h * (W[i][0] * m->b[k] + W[i][1] * m->b[n + k] + W[i][2] * m->b[2 * n + k]);
         m->sum[k] = m->sum_q[k] = 0.0;
         for (int j = 0; j < i; ++j) { /* minus, as what is to be subtracted */
-            m->sum[k] -= N[i][j] * at(m->u, j, n)[k];
-            m->sum_q[k] += N[i][j] * at(m->uq, j, n)[k];
+            m->sum[k] -= se3di_radau_lower[i][j] * at(m->u, j, n)[k];
+            m->sum_q[k] += se3di_radau_lower[i][j] * at(m->uq, j, n)[k];
         }
     }
     if (m->projects) {
@@ -373,8 +358,8 @@ static void apply_corrections(se3di_radau *m)
             double v[6] = {0.0}, q[6] = {0.0};
             for (int j = i; j < STAGES; ++j) {
                 for (size_t c = 0; c < 6; ++c) {
-                    v[c] += S[i][j] * at(m->u, j, n)[6 * k + c];
-                    q[c] += S[i][j] * at(m->uq, j, n)[6 * k + c];
+                    v[c] += se3di_radau_upper[i][j] * at(m->u, j, n)[6 * k + c];
+                    q[c] += se3di_radau_upper[i][j] * at(m->uq, j, n)[6 * k + c];
                 }
             }
             double *y = at(m->Y, i, m->count) + k * SE3DI_STATE_SIZE;
@@ -382,20 +367,6 @@ static void apply_corrections(se3di_radau *m)
             se3di_add(y + 10, v + 3, y + 10);
             const double part = measure(m, k, q, v) / m->tolerance;
             m->size = part <= m->size ? m->size : part;
-        }
-    }
-}
-
-void se3di_radau_untransform(const double u[STAGES], double h, double change[STAGES])
-{
-    const double x0 = u[0];
-    const double x1 = u[1] + N[1][0] * x0;
-    const double x2 = u[2] + N[2][0] * x0 + N[2][1] * x1;
-    const double x[STAGES] = {x0 + S[0][1] * x1 + S[0][2] * x2, x1 + S[1][2] * x2, x2};
-    for (int i = 0; i < STAGES; ++i) {
-        change[i] = 0.0;
-        for (int j = 0; j < STAGES; ++j) {
-            change[i] += se3di_radau_inverse[i][j] / h * x[j];
         }
     }
 }
@@ -459,11 +430,12 @@ static void set_weights(double W[STAGES][STAGES])
 {
     for (int j = 0; j < STAGES; ++j) {
         const double a2 = se3di_radau_a[2][j];
-        const double a1 = se3di_radau_a[1][j] - S[1][2] * a2;
-        const double a0 = se3di_radau_a[0][j] - S[0][1] * a1 - S[0][2] * a2;
+        const double a1 = se3di_radau_a[1][j] - se3di_radau_upper[1][2] * a2;
+        const double a0 =
+            se3di_radau_a[0][j] - se3di_radau_upper[0][1] * a1 - se3di_radau_upper[0][2] * a2;
         W[0][j] = a0;
-        W[1][j] = a1 - N[1][0] * a0;
-        W[2][j] = a2 - N[2][0] * a0 - N[2][1] * a1;
+        W[1][j] = a1 - se3di_radau_lower[1][0] * a0;
+        W[2][j] = a2 - se3di_radau_lower[2][0] * a0 - se3di_radau_lower[2][1] * a1;
     }
 }
 
