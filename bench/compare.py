@@ -4,8 +4,8 @@
 
 FOLDER holds the drivers: bench_serve and bench_evaluation (this library), and what there is of
 mujoco, bullet, simbody, ode.
-SECTION: cost work fourbar pendulum implicit lanes batch query; all by default. Times are CPU times that the drivers
-measure inside; engines take turns, and the least of several runs counts.
+SECTION: cost work fourbar pendulum implicit lanes batch query touch; all by default. Times are CPU times that the
+drivers measure inside; engines take turns, and the least of several runs counts.
 """
 import math
 import os
@@ -393,6 +393,16 @@ class Bench:
         self.show_program("bench_batch", "4096", "1")
         self.show_program("mujoco_batch", "64")
 
+    def touch(self):
+        print("\n## Boxes that touch, 3 s at steps of 2 ms (1000 boxes: .5 s), about the same overlap at rest",
+              flush=True)
+        for scene, n, duration in (("heap", 27, 3), ("heap", 100, 3), ("heap", 1000, .5),
+                                   ("stack", 30, 3), ("dominoes", 20, 3)):
+            for _ in range(2 if n < 1000 else 1):
+                self.show_program("bench_touch", scene, str(n), ".002", str(duration), "3e5")
+                if n < 1000:  # its data for 1000 do not fit into its memory
+                    self.show_program("mujoco_touch", scene, str(n), ".002", str(duration), "2", "Newton")
+
     def query(self):
         print("\n## Queries of one robot: set the state, forward or inverse dynamics", flush=True)
         for _ in range(2):
@@ -429,7 +439,7 @@ def main():
     bench = Bench(sys.argv[1])
     try:
         for section in sys.argv[2:] or ("cost", "work", "fourbar", "pendulum", "implicit",
-                                        "lanes", "batch", "query"):
+                                        "lanes", "batch", "query", "touch"):
             getattr(bench, section)()
     finally:
         bench.close()

@@ -3,8 +3,8 @@
 # The bench beside other engines, about three minutes: installs them where it can (Debian), builds
 # this library (release) and the drivers, and prints the tables that bench/README.md explains.
 #
-#     sh bench/run.sh [SECTION...]      cost work fourbar pendulum implicit lanes batch query; all
-# without arguments
+#     sh bench/run.sh [SECTION...]      cost work fourbar pendulum implicit lanes batch query touch;
+# all without arguments
 #
 # Without the other engines it still measures this library alone. SE3D_BENCH_DIR: the build folder
 # (build/bench); SE3D_BENCH_INSTALL=0 installs nothing.
@@ -29,7 +29,7 @@ mkdir -p "$build" || exit 1
     cd "$root" && cmake --preset release -B "$build" -DSE3D_BUILD_BENCH=ON \
         -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF &&
         cmake --build "$build" --target bench_bench_serve bench_bench_evaluation bench_bench_tree \
-            bench_bench_batch bench_bench_query -j "$(se3d_jobs)"
+            bench_bench_batch bench_bench_query bench_bench_touch -j "$(se3d_jobs)"
 } >"$build/build.log" 2>&1 || {
     cat "$build/build.log" >&2
     exit 1
@@ -56,6 +56,7 @@ flags() {
     build_peer mujoco gcc -std=c11 -O2 "$peers/mujoco.c" -lmujoco -lm
     build_peer mujoco_batch gcc -std=c11 -O2 "$peers/mujoco_batch.c" -lmujoco -lm
     build_peer mujoco_query gcc -std=c11 -O2 "$peers/mujoco_query.c" -lmujoco -lm
+    build_peer mujoco_touch gcc -std=c11 -O2 "$peers/mujoco_touch.c" -lmujoco -lm
     build_peer ode gcc -std=c11 -O2 "$peers/ode.c" $(flags ode) -lm
     build_peer bullet g++ -std=c++14 -O2 "$peers/bullet.cpp" $(flags bullet-float64) -lm
     build_peer simbody g++ "$peers/simbody.cpp" $(flags simbody) -std=c++14 -O2 -lm
