@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define MODES_ARRAYS 10
+#define OPEN         1e-3 /* of the size of the mechanism: such poses fit no longer */
 
 static void list_arrays(se3di_modes *m, se3di_array list[MODES_ARRAYS])
 {
@@ -170,6 +171,20 @@ static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *port
     return SE3D_OK;
 }
 
+/* Those of a mechanism that is open are nobody's. */
+static se3d_status check_poses(se3di_equations *equations, double t)
+{
+    char gap[400];
+    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    if (se3di_position_measure(equations, gap, sizeof gap) <= OPEN) {
+        return SE3D_OK;
+    }
+    return se3di_error_set(equations->error, SE3D_ERR_INCONSISTENT,
+                           "t = %g s: the poses do not fit the constraints: %s; run an assembly or "
+                           "an equilibrium before modes",
+                           t, gap);
+}
+
 /* Linearise and keep what the queries need. */
 static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_modes_port *ports,
                         const int32_t *quantity)
@@ -177,6 +192,7 @@ static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_
     const double time = equations->assembly.model->time;
     se3di_linear linear;
     SE3DI_TRY(se3di_ranks_decide(equations, time));
+    SE3DI_TRY(check_poses(equations, time));
     SE3DI_TRY(se3di_acceleration_solve(equations, time));
     SE3DI_TRY(se3di_linear_init(&linear, equations));
     se3d_status status = se3di_steady_linearise(&linear, time);

@@ -2,6 +2,8 @@
 /* What is said of a four-bar that is given open, or whose links do not reach. */
 #include "support/text_model.h"
 
+#include "se3d/modes.h"
+
 #define FOURBAR(ground)                                                                            \
     "se3d: 1\nbodies:\n"                                                                           \
     "  - {name: c1, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0, 0, 0.25]}\n"                 \
@@ -64,6 +66,19 @@ static void check_tells_open_poses_from_links_that_do_not_reach(void)
     text_model_close(&m);
 }
 
+static void modes_of_open_poses_are_refused(void)
+{
+    text_model m = text_model_open(FOURBAR("2.5"), -1, 0, 0.0);
+    se3d_modes *modes = NULL;
+    CHECK(se3d_modes_create(m.system, NULL, &modes) == SE3D_ERR_INCONSISTENT && !modes);
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "c is open by 1.7 m");
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "before modes");
+    CHECK(text_model_run(&m, 0.0));
+    CHECK(se3d_modes_create(m.system, NULL, &modes) >= 0);
+    se3d_modes_destroy(modes);
+    text_model_close(&m);
+}
+
 /* Given exactly stretched, the poses of least violation are so along their line: two links of 1 m
  * with 1.8 m between their ends, and three over 2.2 m in space. */
 static const char *const stretched[] = {
@@ -119,6 +134,7 @@ static void a_chain_that_is_given_stretched_folds(void)
 
 int main(void)
 {
+    RUN(modes_of_open_poses_are_refused);
     RUN(a_chain_that_is_given_stretched_folds);
     RUN(links_that_do_not_reach_are_named_with_what_is_missing);
     RUN(check_tells_open_poses_from_links_that_do_not_reach);
