@@ -10,6 +10,7 @@
 #include "tree/loops.h"
 #include "tree/recursion.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 
 enum { MECHANISMS = 120, NUMBERS = 7 * TREE_BODIES_MAX };
@@ -216,6 +217,62 @@ static void accelerations_are_those_of_the_maximal_equations(void)
         end(&c);
     }
     printf("largest difference of accelerations: %.2g\n", worst);
+}
+
+/* What a tree finds of accelerations: of coordinates, of bodies, and what the joints exert. */
+typedef struct findings {
+    double qddot[NUMBERS], acceleration[6 * (TREE_BODIES_MAX + 1)], joint[6 * TREE_BODIES_MAX];
+} findings;
+
+static void find(case_of *c, const double *effort, findings *f)
+{
+    se3di_tree *tree = &c->tree;
+    CHECK(!se3di_tree_factor(tree, effort));
+    se3di_tree_accelerate(tree, tree->e, f->qddot);
+    se3di_tree_get_accelerations(tree, c->model->frames, f->acceleration);
+    tree->core->transmit(tree, tree->acts ? tree->wrench : NULL, f->joint);
+}
+
+static double compare_findings(const se3di_tree *tree, const findings *a, const findings *b)
+{
+    const size_t v = tree->v_count, bodies = 6 * tree->body_count, joints = 6 * (size_t)tree->count;
+    double off = difference(a->qddot, b->qddot, v) / (1.0 + largest(a->qddot, v));
+    off = fmax(off, difference(a->acceleration, b->acceleration, bodies) /
+                        (1.0 + largest(a->acceleration, bodies)));
+    return fmax(off, difference(a->joint, b->joint, joints) / (1.0 + largest(a->joint, joints)));
+}
+
+/* Weights as wrenches with frames, and gravity that pulls without. */
+static void gravity_needs_neither_wrenches_nor_frames(void)
+{
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        se3di_tree_link links[TREE_BODIES_MAX];
+        double wrench[6 * (TREE_BODIES_MAX + 1)] = {0.0}, effort[NUMBERS], back[NUMBERS];
+        findings a, b;
+        begin(&c, seed);
+        tree_vector(&c.world, effort, (int)c.tree.v_count, 5.0);
+        for (uint32_t k = 0; k < c.tree.count; ++k) {
+            const se3di_tree_node *n = &c.tree.nodes[k];
+            se3di_scale(n->mass, c.model->gravity, wrench + 6 * n->body);
+        }
+        se3di_tree_take_wrenches(&c.tree, c.model->frames, wrench);
+        find(&c, effort, &a);
+        memcpy(links, c.tree.links, c.tree.count * sizeof *links);
+        memset(c.tree.links, -1, c.tree.count * sizeof *links); /* not a number */
+        se3di_tree_place(&c.tree, c.q, c.qdot, NULL);
+        for (uint32_t k = 0; k < c.tree.count; ++k) {
+            CHECK(memcmp(&links[k], &c.tree.links[k], offsetof(se3di_tree_link, a)) == 0);
+        }
+        se3di_tree_pull(&c.tree, c.model->gravity);
+        find(&c, effort, &b);
+        CHECK_NEAR(compare_findings(&c.tree, &a, &b), 0.0, 1e-11);
+        se3di_tree_propagate(&c.tree, b.qddot);
+        se3di_tree_efforts(&c.tree, b.qddot, b.joint, back);
+        const double scale = 1.0 + largest(b.joint, 6 * (size_t)c.tree.count);
+        CHECK_NEAR(difference(effort, back, c.tree.v_count) / scale, 0.0, 1e-11);
+        end(&c);
+    }
 }
 
 /* The same state, both ways: the largest difference of accelerations, and that of multipliers, both
@@ -429,6 +486,7 @@ int main(void)
     RUN(reading_gives_the_coordinates_back);
     RUN(coordinates_are_those_of_the_joints);
     RUN(accelerations_are_those_of_the_maximal_equations);
+    RUN(gravity_needs_neither_wrenches_nor_frames);
     RUN(loops_and_reactions_are_those_of_the_maximal_equations);
     RUN(prescribed_coordinates_move_as_their_drivers_say);
     RUN(redundant_loops_and_singular_positions_give_the_same_accelerations);
