@@ -18,6 +18,25 @@ sed 's/^analysis:.*/events: [{name: low, channel: pin.angle, value: 0, direction
     "$models/pendulum_free.yaml" >"$dir/ends.yaml"
 unit '2 3' ends "$dir/ends.yaml" --duration 3
 
+# An event that ends the analysis before the one of the unit.
+cat >"$dir/before.yaml" <<'END_OF_YAML'
+se3d: 1
+bodies:
+  - {name: block, mass: 2, inertia: [1, 1, 1], position: [0.3, 0, 0]}
+joints:
+  - {name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, 0]}
+forces:
+  - {name: spring, type: tsda, body_i: ground, body_j: block, point_i: [-1, 0, 0], point_j: [0, 0, 0], k: 50, l0: 1}
+events: [{name: stop, channel: block.position.x, value: 0.1, action: stop}]
+analysis: [{type: dynamics, duration: 1}, {type: dynamics, start: 1, duration: 0.3}]
+output: [{file: a.csv, every: 0.1, channels: [block.position.x, block.velocity.x]}]
+END_OF_YAML
+expect 'an event before' 0 "$program" run -q "$dir/before.yaml" -o "$dir/before.run"
+awk -F, 'NR == 1 || $1 >= 1' "$dir/before.run/a.csv" >"$dir/before.csv"
+expect 'an event before' 0 "$program" fmu "$dir/before.yaml" -o "$dir/before.fmu"
+unpack "$dir/before.fmu" "$dir/before"
+expect 'an event before, as a unit' 0 "$SE3D_CHECK_FMU" "$dir/before" "$dir/before.csv"
+
 holds 'python finds the archive damaged' python3 -m zipfile -t "$dir/pendulum.3.fmu" >/dev/null
 
 has "$dir/pendulum.3/documentation/licenses/license.txt" 'Kirill Simonov'

@@ -23,6 +23,7 @@
 #include "io/channel/output.h"
 #include "io/channel/sample.h"
 #include "io/document/document.h"
+#include "io/fmi/before.h"
 #include "io/fmi/recipe.h"
 
 enum { TEXT_SIZE = 1600, PATH_SIZE = 4096 };
@@ -309,24 +310,10 @@ static bool fail_run(se3di_fmi_unit *u, se3d_status status, const char *type)
 /* The analyses before the one of the unit. */
 static bool run_before(se3di_fmi_unit *u)
 {
-    for (size_t k = 0; k < u->analysis; ++k) {
-        const se3di_analysis_entry *entry = &u->model->analyses[k];
-        const double start = se3di_fmi_get_start(u->model, k);
-        se3d_solver_def def = entry->solver;
-        se3d_solver *solver = NULL;
-        if (entry->modes.file) {
-            continue;
-        }
-        def.horizon = start + entry->analysis.duration;
-        se3d_status status = se3d_system_set_time(u->model->system, start);
-        status = status < 0 ? status : se3d_solver_create(u->model->system, &def, &solver);
-        status = status < 0 ? status : se3d_solver_run(solver, start + entry->analysis.duration);
-        se3d_solver_destroy(solver);
-        if (status < 0) {
-            return fail_run(u, status, entry->analysis.type);
-        }
-    }
-    return true;
+    size_t at = 0;
+    double end = 0.0; /* the caller says when the unit begins */
+    const se3d_status status = se3di_fmi_run_before(u->model, u->analysis, NULL, NULL, &end, &at);
+    return status >= 0 || fail_run(u, status, u->model->analyses[at].analysis.type);
 }
 
 static double start_of(const se3di_fmi_unit *u)

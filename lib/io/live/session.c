@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "io/channel/event.h"
+#include "io/fmi/before.h"
 
 enum { COLUMNS_MAX = 1000 };
 
@@ -191,39 +192,21 @@ static bool measure(se3di_session *s)
 
 /* ---- starting -------------------------------------------------------------------------------*/
 
-/* Run analysis `index` from its start; with time in it only if it comes before the one shown. */
-static se3d_status run_analysis(const se3di_session_source *from, se3di_session *s, size_t index)
-{
-    const se3di_analysis_entry *entry = &s->model->analyses[index];
-    const double start = se3di_fmi_get_start(s->model, index);
-    se3d_solver_def def = entry->solver;
-    se3d_solver *solver = NULL;
-    if (entry->modes.file) {
-        return SE3D_OK;
-    }
-    def.interrupt = from->interrupt;
-    def.interrupt_ctx = from->ctx;
-    def.horizon = start + entry->analysis.duration;
-    se3d_status status = se3d_system_set_time(s->model->system, start);
-    status = status < 0 ? status : se3d_solver_create(s->model->system, &def, &solver);
-    status = status < 0 ? status : se3d_solver_run(solver, start + entry->analysis.duration);
-    se3d_solver_destroy(solver);
-    return status;
-}
-
-/* To the state that the analysis `index` begins with. */
+/* To the state that the analysis `index` begins with, and the time. */
 static bool run_before(const se3di_session_source *from, se3di_session *s, size_t index,
                        char *message)
 {
-    for (size_t k = 0; k < index; ++k) {
-        const se3d_status status = run_analysis(from, s, k);
-        if (status < 0) {
-            char what[100];
-            snprintf(what, sizeof what, "the %.40s analysis failed",
-                     s->model->analyses[k].analysis.type);
-            return se3di_session_say(message, s, what, status);
-        }
+    size_t failed = 0;
+    double start = 0.0;
+    const se3d_status status =
+        se3di_fmi_run_before(s->model, index, from->interrupt, from->ctx, &start, &failed);
+    if (status < 0) {
+        char what[100];
+        snprintf(what, sizeof what, "the %.40s analysis failed",
+                 s->model->analyses[failed].analysis.type);
+        return se3di_session_say(message, s, what, status);
     }
+    (void)se3d_system_set_time(s->model->system, start);
     return true;
 }
 
@@ -359,11 +342,8 @@ static bool start(const se3di_session_source *from, const se3di_session *before,
     if (!run_before(from, s, count, message)) {
         return false;
     }
-    if (moves) {
-        (void)se3d_system_set_time(s->model->system, se3di_fmi_get_start(s->model, index));
-        if (!make_solver(from, s, index, message)) {
-            return false;
-        }
+    if (moves && !make_solver(from, s, index, message)) {
+        return false;
     }
     se3di_session_renew(s);
     if (!measure(s)) {
