@@ -122,6 +122,22 @@ class Live:
         return int(words[11]) + int(words[12])
 
 
+class Other(Live):
+    """Another model for a while, paused at its start."""
+    def __init__(self, name, *words, start="reset"):
+        super().__init__(os.path.join(folder, name), "-q", *words)
+        for word in ("pause", start):
+            self.say(word)
+        self.next(lambda s: not s["running"] and (s["t"] == 0 or start != "reset"))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        check(self.process.wait(10) == 0, "SIGTERM ends it")
+
+
 def check_guards(live):
     path, own = live.path, f"127.0.0.1:{live.port}"
     status, page, headers = live.ask("GET", path)
@@ -255,6 +271,37 @@ def check_saving(live):
     live.next(lambda s: not s["trouble"])
 
 
+SCREW = """se3d: 1
+parameters: {weight: 2 kg, other: 3}
+bodies:
+  - {name: nut, mass: weight, inertia: [1, 1, 1], position: [0, 0, 0]}
+joints:
+  - {name: thread, type: screw, body_i: ground, body_j: nut, at: [0, 0, 0], axis: [1, 0, 0], pitch: 0.1}
+forces:
+  - {name: spin, type: effort, joint: thread, coordinate: angle, value: 30}
+analysis: {type: dynamics, duration: 10}
+output:
+  - {file: a.csv, channels: [nut.position.x, thread.angle]}
+"""
+
+
+def check_turns():
+    """Joints keep the turns that they have counted."""
+    save("screw.yaml", SCREW)
+    with Other("screw.yaml") as live:
+        for _ in range(60):
+            live.say("step")
+            state = live.next()
+        x, angle = state["values"]
+        check(angle > 4 * math.pi, f"it has turned by {angle}")
+        state = live.set("weight", 3)
+        check(max(abs(state["values"][0] - x), abs(state["values"][1] - angle)) < 1e-9 and state["trouble"] == "",
+              f"the nut goes on: {state['values']} after {x}, {angle}; {state['trouble']}")
+        live.say("step")
+        state = live.next()
+        check(0 < state["values"][1] - angle < 1 and abs(state["values"][0] / state["values"][1] - x / angle) < 1e-7, f"along the thread: {state['values']}")
+
+
 def check_random(live):
     """Requests of which parts are replaced: the server goes on."""
     dice = random.Random(7)
@@ -298,6 +345,7 @@ def main():
         time.sleep(0.3)
         check(live.cpu() - before <= 1, f"{live.cpu() - before} ticks of CPU while nothing happens")
         check_random(live)
+        check_turns()
         live.process.send_signal(signal.SIGINT)
         check(live.process.wait(10) == 0, f"Ctrl-C ends it: {live.process.returncode}")
     finally:

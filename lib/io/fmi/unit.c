@@ -253,31 +253,11 @@ static se3d_status note_place(se3di_fmi_unit *u, size_t k)
     return status;
 }
 
-/* Set a rate at a time. */
-static se3d_status set_rate(const se3di_fmi_unit *u, se3d_function rate, double time, double value)
-{
-    const se3d_status status = se3d_system_set_time(u->model->system, time);
-    return status < 0 ? status : se3d_function_set_constant(u->model->system, rate, value);
-}
-
-/* Bring the integral of a rate to where it was: a second of what is missing, until the bits are
- * those. The state of the system is put back afterwards. */
+/* Bring the integral of a rate to where it was. The state of the system is put back afterwards. */
 static se3d_status put_place(const se3di_fmi_unit *u, size_t k)
 {
-    const double one = 1.0;
-    const double wanted = u->places[2 * k + 1];
-    const se3d_function rate = rate_of(u, k);
-    double jet[3] = {0.0, 0.0, 0.0};
-    se3d_status status = set_rate(u, rate, one, 0.0);
-    for (int tries = 0; tries < 4 && status >= 0; ++tries) {
-        status = se3d_function_eval(u->model->system, rate, &one, jet);
-        if (status < 0 || !(jet[0] != wanted)) {
-            break;
-        }
-        status = set_rate(u, rate, 0.0, wanted - jet[0]);
-        status = status < 0 ? status : set_rate(u, rate, one, 0.0);
-    }
-    return status < 0 ? status : set_rate(u, rate, u->places[2 * k], value_of(u, k));
+    return se3di_fmi_put_place(u->model, rate_of(u, k), u->places[2 * k], u->places[2 * k + 1],
+                               value_of(u, k));
 }
 
 /* All inputs that were ever set. */

@@ -199,14 +199,33 @@ static se3d_status add_outputs(collector *c)
     return SE3D_OK;
 }
 
-se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *variables,
-                                       char *problem, size_t problem_size)
+se3d_status se3di_fmi_variables_list(se3d_model *model, se3di_fmi_variables *variables,
+                                     char *problem, size_t problem_size)
 {
     collector c = {model, variables, problem, problem_size};
     size_t index = 0;
     memset(variables, 0, sizeof *variables);
     se3di_iopool_init(&variables->pool, &model->pool.allocator);
     snprintf(problem, problem_size, "out of memory");
+    const bool moves = se3di_fmi_find_analysis(model, &index);
+    const se3di_fmi_variable time = {.name = "time",
+                                     .role = SE3DI_FMI_TIME,
+                                     .start = moves ? se3di_fmi_get_start(model, index) : 0.0,
+                                     .dimension = {0, 0, 1, 0},
+                                     .has_unit = true};
+    se3d_status status = add(&c, &time);
+    status = status < 0 ? status : add_inputs(&c);
+    status = status < 0 ? status : add_parameters(&c);
+    return status < 0 ? status : add_outputs(&c);
+}
+
+se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *variables,
+                                       char *problem, size_t problem_size)
+{
+    const collector c = {model, variables, problem, problem_size};
+    size_t index = 0;
+    memset(variables, 0, sizeof *variables);
+    se3di_iopool_init(&variables->pool, &model->pool.allocator);
     if (!se3di_fmi_find_analysis(model, &index)) {
         return refuse(&c, model->file,
                       ": the model has no analysis in which time passes; a unit needs dynamics, "
@@ -215,15 +234,7 @@ se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *v
     if (model->particles) {
         return refuse(&c, model->file, ": the model has particles, which a unit cannot have");
     }
-    const se3di_fmi_variable time = {.name = "time",
-                                     .role = SE3DI_FMI_TIME,
-                                     .start = se3di_fmi_get_start(model, index),
-                                     .dimension = {0, 0, 1, 0},
-                                     .has_unit = true};
-    se3d_status status = add(&c, &time);
-    status = status < 0 ? status : add_inputs(&c);
-    status = status < 0 ? status : add_parameters(&c);
-    return status < 0 ? status : add_outputs(&c);
+    return se3di_fmi_variables_list(model, variables, problem, problem_size);
 }
 
 static se3d_status apply_load(const se3d_model *model, const se3di_fmi_variable *input, double to)
@@ -245,6 +256,31 @@ se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_varia
     }
     return e->body.index1 == 0 ? se3d_effort_set(model->system, e->force, value)
                                : apply_load(model, input, value);
+}
+
+/* Set a rate at a time. */
+static se3d_status set_rate(const se3d_model *model, se3d_function rate, double time, double value)
+{
+    const se3d_status status = se3d_system_set_time(model->system, time);
+    return status < 0 ? status : se3d_function_set_constant(model->system, rate, value);
+}
+
+/* A second of what is missing, until the bits are those. */
+se3d_status se3di_fmi_put_place(const se3d_model *model, se3d_function rate, double time,
+                                double place, double value)
+{
+    const double one = 1.0;
+    double jet[3] = {0.0, 0.0, 0.0};
+    se3d_status status = set_rate(model, rate, one, 0.0);
+    for (int tries = 0; tries < 4 && status >= 0; ++tries) {
+        status = se3d_function_eval(model->system, rate, &one, jet);
+        if (status < 0 || !(jet[0] != place)) {
+            break;
+        }
+        status = set_rate(model, rate, 0.0, place - jet[0]);
+        status = status < 0 ? status : set_rate(model, rate, one, 0.0);
+    }
+    return status < 0 ? status : set_rate(model, rate, time, value);
 }
 
 /* Units of model files have no negative exponents: "kg/s^2", and "s/s^2" where nothing is above. */

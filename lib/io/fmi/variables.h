@@ -43,10 +43,18 @@ typedef struct se3di_fmi_variables {
  * NO_MEMORY; se3di_fmi_variables_destroy is fine in any case. */
 se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *variables,
                                        char *problem, size_t problem_size);
+/* The same of any model, also of one that cannot be a unit. @return UNSUPPORTED: two would have the
+ * same name; the list has those before. */
+se3d_status se3di_fmi_variables_list(se3d_model *model, se3di_fmi_variables *variables,
+                                     char *problem, size_t problem_size);
 void se3di_fmi_variables_destroy(se3di_fmi_variables *variables);
 /* Set an input of the model that the list is of. */
 se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_variable *input,
                                   double value);
+/* Set a rate (se3di_element_entry) to `value` from `time` on, when its integral is `place`. The time
+ * of the system is changed by it. */
+se3d_status se3di_fmi_put_place(const se3d_model *model, se3d_function rate, double time,
+                                double place, double value);
 /* Write a value of a parameter as an expression, with its unit in SI. @return its length. */
 size_t se3di_fmi_format_value(const se3di_fmi_variable *parameter, double value,
                               char text[SE3DI_FMI_VALUE_SIZE]);

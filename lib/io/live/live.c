@@ -21,23 +21,51 @@ static bool say(char *message, const char *text)
     return false;
 }
 
+static bool is_ended(const se3di_live *live)
+{
+    return live->from.interrupt(live->from.ctx) != 0;
+}
+
+/* A model that cannot go on where it is begins anew, and `message` says so. */
+static se3di_session *begin_anew(se3di_live *live, char *message)
+{
+    char why[SE3DI_LIVE_MESSAGE_SIZE];
+    se3di_session *s = se3di_session_make(&live->from, live->now, SE3DI_LIVE_RESET, why);
+    if (s) {
+        memcpy(why, message, sizeof why);
+        snprintf(message, SE3DI_LIVE_MESSAGE_SIZE, "back at the start: %.1900s", why);
+    }
+    return s;
+}
+
 bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
                      char message[SE3DI_LIVE_MESSAGE_SIZE])
 {
-    char why[SE3DI_LIVE_MESSAGE_SIZE];
+    if (beginning == SE3DI_LIVE_GOING_ON) {
+        se3di_live_release(live);
+    }
+    message[0] = '\0';
     se3di_session *s = se3di_session_make(&live->from, live->now, beginning, message);
-    if (!s && beginning == SE3DI_LIVE_GOING_ON) { /* where it is it does not fit: from the start */
-        s = se3di_session_make(&live->from, live->now, SE3DI_LIVE_RESET, why);
+    if (s) {
+        message[0] = '\0';
+    } else if (beginning == SE3DI_LIVE_GOING_ON && !is_ended(live)) {
+        s = begin_anew(live, message);
     }
     if (s && s != live->now) {
         se3di_pull_forget(&live->pull);
         se3di_session_destroy(live->now);
         live->now = s;
     }
-    if (s) {
-        message[0] = '\0';
-    }
     return s != NULL;
+}
+
+void se3di_live_take_back(se3di_live *live)
+{
+    se3di_session *s = live->now;
+    for (size_t k = 0; k < s->slider_count; ++k) {
+        s->sliders[k].value = s->held[k];
+        s->is_set[k] = s->held_is_set[k];
+    }
 }
 
 se3di_live *se3di_live_create(const char *path, const se3d_model_options *options,
@@ -155,9 +183,13 @@ bool se3di_live_set(se3di_live *live, size_t k, double value)
     if (k >= s->slider_count || !isfinite(value)) {
         return false;
     }
-    if (!s->sliders[k].is_parameter &&
-        se3di_fmi_apply_input(s->model, &s->variables.list[s->slider_variables[k]], value) < 0) {
-        return false;
+    if (!s->sliders[k].is_parameter && s->solver) {
+        if (se3di_fmi_apply_input(s->model, &s->variables.list[s->slider_variables[k]], value) <
+            0) {
+            return false;
+        }
+        s->held[k] = value;
+        s->held_is_set[k] = true;
     }
     s->sliders[k].value = value;
     s->is_set[k] = true;

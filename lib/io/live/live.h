@@ -31,16 +31,20 @@ typedef enum se3di_live_beginning {
 } se3di_live_beginning;
 
 /* Read a model and stand at its start. `options` must stay; its `report` and `log` are not used.
- * `interrupt` is asked within runs whether to end them, `message` gets why there is none.
+ * `interrupt` (not NULL) is asked within runs and readings whether to end them, `message` gets why there is none.
  * @return NULL: `message` says why. */
 se3di_live *se3di_live_create(const char *path, const se3d_model_options *options,
                               se3d_interrupt interrupt, void *ctx,
                               char message[SE3DI_LIVE_MESSAGE_SIZE]);
 void se3di_live_destroy(se3di_live *live);
 
-/* Read the file again. @return false: nothing has changed, `message` says why. */
+/* Read the file again; the interrupt is asked whether to leave it. Going on ends a pull. @return
+ * false: nothing has changed, `message` says why. If it is true, `message` is not empty if the model
+ * could not go on where it was and is at its start. */
 bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
                      char message[SE3DI_LIVE_MESSAGE_SIZE]);
+/* Numbers that were set since the model was read are forgotten, unless they act already. */
+void se3di_live_take_back(se3di_live *live);
 /* Paths of the files that the model was read from, NULL behind the last; one may be there twice. */
 const char *se3di_live_get_file(const se3di_live *live, size_t k);
 const char *se3di_live_get_title(const se3di_live *live);
@@ -54,8 +58,8 @@ bool se3di_live_run(se3di_live *live, double time, char message[SE3DI_LIVE_MESSA
 
 size_t se3di_live_count_sliders(const se3di_live *live);
 const se3di_live_slider *se3di_live_get_slider(const se3di_live *live, size_t k);
-/* Set a number: of an input at once, of a parameter with the next se3di_live_read. @return false:
- * it is not finite, or there is none. */
+/* Set a number: of an input at once, if time passes; of a parameter with the next se3di_live_read.
+ * @return false: it is not finite, or there is none. */
 bool se3di_live_set(se3di_live *live, size_t k, double value);
 
 /* Pull body `body`, as scenes count them, at a point of it by a spring to a place in the ground

@@ -118,7 +118,9 @@ static bool list_sliders(se3di_session *s)
     s->sliders = se3di_iopool_array(&s->pool, most, sizeof *s->sliders);
     s->slider_variables = se3di_iopool_array(&s->pool, most, sizeof *s->slider_variables);
     s->is_set = se3di_iopool_array(&s->pool, most, sizeof *s->is_set);
-    if (!s->sliders || !s->slider_variables || !s->is_set) {
+    s->held = se3di_iopool_array(&s->pool, most, sizeof *s->held);
+    s->held_is_set = se3di_iopool_array(&s->pool, most, sizeof *s->held_is_set);
+    if (!s->sliders || !s->slider_variables || !s->is_set || !s->held || !s->held_is_set) {
         return false;
     }
     for (size_t k = 0; k < s->variables.count; ++k) {
@@ -132,6 +134,7 @@ static bool list_sliders(se3di_session *s)
         slider->start = v->start;
         slider->value = v->start;
         slider->is_parameter = is_parameter;
+        s->held[s->slider_count] = v->start;
         if (v->has_unit) {
             se3di_fmi_format_unit(v->dimension, slider->unit, sizeof slider->unit);
         }
@@ -171,16 +174,22 @@ static bool list_columns(se3di_session *s)
     return true;
 }
 
-/* Poses and sizes as the scene has them, which is drawn where the bodies are now. */
-static bool measure(se3di_session *s)
+/* Poses and sizes as the scene has them, which is drawn where the bodies are now, or were in `like`
+ * (NULL: none). */
+static bool measure(const se3di_session *like, se3di_session *s)
 {
     const se3d_model *model = s->model;
     s->start.bodies = model->body_count;
     s->start.count = 1;
     s->start.values = se3di_iopool_array(&s->pool, model->body_count, SE3DI_POSE * sizeof(double));
     s->poses = se3di_iopool_array(&s->pool, model->body_count, SE3DI_POSE * sizeof(double));
-    if (!s->start.values || !s->poses ||
-        se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
+    if (!s->start.values || !s->poses) {
+        return false;
+    }
+    if (like) {
+        memcpy(s->start.values, like->start.values,
+               model->body_count * SE3DI_POSE * sizeof(double));
+    } else if (se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
         return false;
     }
     se3di_drawing_measure(model, &s->start, &s->sizes);
@@ -242,12 +251,33 @@ static void move_body(const se3di_session *from, const se3di_body_entry *entry, 
     (void)se3d_body_set_angular_velocity(to, entry->body, w);
 }
 
+/* A driver with a rate goes on from where it has come to. */
+static void move_rates(const se3di_session *from, se3di_session *to)
+{
+    double time = 0.0;
+    se3d_system_get_time(from->model->system, &time);
+    for (size_t k = 0; k < to->slider_count; ++k) {
+        const se3di_fmi_variable *v = &to->variables.list[to->slider_variables[k]];
+        if (v->role != SE3DI_FMI_INPUT || !to->model->elements[v->element].rate.index1) {
+            continue;
+        }
+        const se3di_element_entry *e = &to->model->elements[v->element];
+        const se3di_element_entry *old = find_element(from->model, e->name);
+        double jet[3] = {0.0, 0.0, 0.0};
+        if (old && old->rate.index1 &&
+            se3d_function_eval(from->model->system, old->rate, &time, jet) >= 0) {
+            (void)se3di_fmi_put_place(to->model, e->rate, time, jet[0], to->sliders[k].value);
+        }
+    }
+}
+
 /* Bodies and states of `to` take what those of the same names in `from` have. */
 static void move_state(const se3di_session *from, se3di_session *to)
 {
     const se3d_model *model = to->model;
     double time = 0.0;
     double value = 0.0;
+    move_rates(from, to);
     for (size_t k = 1; k < model->body_count; ++k) {
         move_body(from, &model->bodies[k], model->system);
     }
@@ -266,6 +296,84 @@ static void move_state(const se3di_session *from, se3di_session *to)
     (void)se3d_system_set_time(model->system, time);
 }
 
+/* ---- going on -------------------------------------------------------------------------------*/
+
+/* Whether all has the same names in the same order. */
+static bool is_alike(const se3d_model *a, const se3d_model *b)
+{
+    if (a->body_count != b->body_count || a->element_count != b->element_count) {
+        return false;
+    }
+    for (size_t k = 1; k < a->body_count; ++k) {
+        if (strcmp(a->bodies[k].name, b->bodies[k].name) != 0) {
+            return false;
+        }
+    }
+    for (size_t k = 0; k < a->element_count; ++k) {
+        const se3di_element_entry *e = &a->elements[k];
+        if (e->kind != b->elements[k].kind || strcmp(e->name, b->elements[k].name) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Bodies that are fixed stand where the model has them now. */
+static void keep_fixed(const se3d_model *model, const double *poses, const double *now)
+{
+    for (size_t k = 1; k < model->body_count; ++k) {
+        const se3d_body body = model->bodies[k].body;
+        int32_t fixed = 0;
+        if (se3d_body_get_fixed(model->system, body, &fixed) >= 0 && fixed &&
+            memcmp(poses + SE3DI_POSE * k, now + SE3DI_POSE * k, SE3DI_POSE * sizeof *poses) != 0) {
+            (void)se3d_body_set_position(model->system, body, poses + SE3DI_POSE * k);
+            (void)se3d_body_set_orientation(model->system, body, poses + SE3DI_POSE * k + 3);
+        }
+    }
+}
+
+static se3d_snapshot *copy_snapshot(const se3d_system *from, se3d_system *to, se3di_iopool *pool)
+{
+    se3d_snapshot *old = NULL;
+    se3d_snapshot *copy = NULL;
+    size_t size = 0;
+    if (se3d_snapshot_create(from, &old) >= 0 && se3d_snapshot_write(old, NULL, 0, &size) >= 0) {
+        unsigned char *bytes = se3di_iopool_array(pool, size, 1);
+        if (bytes && se3d_snapshot_write(old, bytes, size, &size) >= 0) {
+            (void)se3d_snapshot_read(to, bytes, size, &copy);
+        }
+    }
+    se3d_snapshot_destroy(old);
+    return copy;
+}
+
+/* All that the state of `from` has, turns of joints and what forces remember, too. @return false:
+ * the models are not of the same structure, nothing is moved. */
+static bool copy_state(const se3di_session *from, se3di_session *to)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, NULL);
+    double *poses =
+        se3di_iopool_array(&pool, to->model->body_count, 2 * SE3DI_POSE * sizeof *poses);
+    se3d_snapshot *snapshot = poses && is_alike(from->model, to->model) &&
+                                      se3di_drawing_get_poses(to->model, poses) == SE3D_OK
+                                  ? copy_snapshot(from->model->system, to->model->system, &pool)
+                                  : NULL;
+    if (snapshot) {
+        move_rates(from, to);
+    }
+    const bool good = snapshot && se3d_snapshot_restore(snapshot, to->model->system) >= 0;
+    if (good) {
+        double *now = poses + SE3DI_POSE * to->model->body_count;
+        (void)se3di_drawing_get_poses(to->model, now);
+        keep_fixed(to->model, poses, now);
+        (void)se3d_system_touch(to->model->system); /* other numbers act from now on */
+    }
+    se3d_snapshot_destroy(snapshot);
+    se3di_iopool_destroy(&pool);
+    return good;
+}
+
 /* Numbers that were set in `before` are set in `s`, if it has them. */
 static void take_values(const se3di_session *before, se3di_session *s)
 {
@@ -275,6 +383,8 @@ static void take_values(const se3di_session *before, se3di_session *s)
                 s->is_set[k] = true;
                 s->sliders[k].value = before->sliders[i].value;
                 s->sliders[k].start = before->sliders[i].start;
+                s->held[k] = s->sliders[k].value;
+                s->held_is_set[k] = true;
                 if (!s->sliders[k].is_parameter) {
                     (void)se3di_fmi_apply_input(
                         s->model, &s->variables.list[s->slider_variables[k]], s->sliders[k].value);
@@ -293,29 +403,33 @@ void se3di_session_renew(se3di_session *s)
     se3di_sample_renew(&s->sample, &s->stats);
 }
 
+/* Run to where it is: to a state that fits. */
+static bool settle(se3di_session *s, const char *what, char *message)
+{
+    double time = 0.0;
+    se3d_system_get_time(s->model->system, &time);
+    const se3d_status status = se3d_solver_run(s->solver, time);
+    se3di_session_renew(s);
+    return status >= 0 || se3di_session_say(message, s, what, status);
+}
+
 /* The solver, at a state that fits. */
 static bool make_solver(const se3di_session_source *from, se3di_session *s, size_t index,
-                        char *message)
+                        const char *what, char *message)
 {
     se3d_solver_def def = s->model->analyses[index].solver;
-    double time = 0.0;
     def.interrupt = from->interrupt;
     def.interrupt_ctx = from->ctx;
-    se3d_system_get_time(s->model->system, &time);
     se3d_status status = se3d_solver_create(s->model->system, &def, &s->solver);
     status = status < 0 ? status : se3di_events_create(s->model, s->solver, NULL, NULL);
-    status = status < 0 ? status : se3d_solver_run(s->solver, time);
-    se3di_session_renew(s);
-    return status >= 0 || status == SE3D_ERR_INTERRUPTED ||
-           se3di_session_say(message, s, "the model cannot start", status);
+    return status < 0 ? se3di_session_say(message, s, what, status) : settle(s, what, message);
 }
 
 /* What a model is shown with: everything that is made of it once. */
 static bool prepare(const se3di_session *before, se3di_session *s, char *message)
 {
     char problem[500];
-    se3d_status status =
-        se3di_fmi_variables_create(s->model, &s->variables, problem, sizeof problem);
+    se3d_status status = se3di_fmi_variables_list(s->model, &s->variables, problem, sizeof problem);
     se3di_sample_init(&s->sample, s->model->system, &s->model->pool.allocator);
     s->is_prepared = true;
     if (s->model->particles) {
@@ -333,31 +447,27 @@ static bool prepare(const se3di_session *before, se3di_session *s, char *message
 static bool start(const se3di_session_source *from, const se3di_session *before, bool goes_on,
                   se3di_session *s, char *message)
 {
+    static const char goes_not[] = "the model cannot go on";
     size_t index = 0;
     if (!prepare(before, s, message)) {
         return false;
     }
     const bool moves = se3di_fmi_find_analysis(s->model, &index);
     const size_t count = moves ? index : s->model->analysis_count;
-    if (!run_before(from, s, count, message)) {
-        return false;
-    }
-    if (moves && !make_solver(from, s, index, message)) {
+    goes_on = goes_on && moves && before->solver;
+    const bool is_copied = goes_on && copy_state(before, s);
+    if ((!is_copied && !run_before(from, s, count, message)) ||
+        (moves &&
+         !make_solver(from, s, index, is_copied ? goes_not : "the model cannot start", message))) {
         return false;
     }
     se3di_session_renew(s);
-    if (!measure(s)) {
+    if (!measure(is_copied ? before : NULL, s)) {
         return say_memory(message);
     }
-    if (goes_on && moves) {
-        double time = 0.0;
+    if (goes_on && !is_copied) {
         move_state(before, s);
-        se3d_system_get_time(s->model->system, &time);
-        const se3d_status status = se3d_solver_run(s->solver, time);
-        se3di_session_renew(s);
-        if (status < 0 && status != SE3D_ERR_INTERRUPTED) {
-            return se3di_session_say(message, s, "the model cannot go on", status);
-        }
+        return settle(s, goes_not, message);
     }
     return true;
 }

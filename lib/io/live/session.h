@@ -20,6 +20,8 @@ typedef struct se3di_session {
     se3di_live_slider *sliders;
     size_t *slider_variables; /* [slider_count] places in the list of variables */
     bool *is_set;             /* [slider_count] by the user */
+    double *held;             /* [slider_count] what the model was made with, or has been set to, */
+    bool *held_is_set;        /* [slider_count] and whether the user had set it */
     size_t slider_count;
     const se3di_output_entry *output; /* whose channels are shown; NULL: none */
     const char **columns;
