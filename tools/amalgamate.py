@@ -104,9 +104,19 @@ def declared(statement, statics):
     words = [w for w in words if not w.startswith("SE3DI_")]
     for k, word in enumerate(words):
         after = words[k + 1] if k + 1 < len(words) else ""
-        if WORD.match(word) and after in ("(", "[", "=", ";", "{") and word not in NO_NAMES:
-            return {word}
+        if WORD.match(word) and after in ("(", "[", "=", ";", "{", ",") and word not in NO_NAMES:
+            return {word} if after in ("(", "{") else {word} | further(words[k + 1:])
     return set()
+
+
+def further(words):
+    """The other names of a declaration of several: those behind a comma outside parentheses."""
+    names, depth = set(), 0
+    for before, word in zip(words, words[1:]):
+        depth += (before == "(") - (before == ")")
+        if before == "," and depth == 0 and WORD.match(word):
+            names.add(word)
+    return names
 
 
 def rename(text, number):
