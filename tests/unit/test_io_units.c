@@ -5,7 +5,8 @@
 #include "support/read_text.h"
 #include "support/scratch.h"
 
-#define HEAD "se3d: 1\nparameters: {L: 2, up: [0, 0, 1], d: 30 mm, n: 600 rpm}\n"
+#define HEAD                                                                                       \
+    "se3d: 1\nparameters: {L: 2, up: [0, 0, 1], d: 30 mm, m: 5 m, N: 2*s*1 N, s: 3, n: 600 rpm}\n"
 
 /* The value of an expression as the parameter `v`. */
 static double value_of(const char *expression)
@@ -32,6 +33,8 @@ static void expressions_have_these_values(void)
     } table[] = {{"30 mm", 0.03},
                  {"2 kN/m", 2000.0},
                  {"1.2 kg*m^2", 1.2},
+                 {"m + 1 m", 6.0}, /* a parameter and a unit */
+                 {"N/(2 N)", 3.0},
                  {"4 kN s/m", 4000.0},
                  {"3 N m/rad + 1 mN m/rad", 3.001},
                  {"2 N m s - 1 N m s", 1.0},

@@ -75,6 +75,26 @@ static size_t blanks_length(const char *text)
     return length;
 }
 
+const char *se3di_amount_next_name(const char *text, size_t *length)
+{
+    se3di_measure unit;
+    for (const char *at = text; *at;) {
+        const size_t number = number_length(at);
+        const size_t name = name_length(at);
+        if (number > 0) {
+            at += number;
+            at += blanks_length(at);
+            at += is_letter(*at) ? se3di_unit_parse(at, true, &unit) : 0;
+        } else if (name > 0) {
+            *length = name;
+            return at;
+        } else {
+            at += *at == '.' ? 1 + name_length(at + 1) : 1; /* .x of a point */
+        }
+    }
+    return NULL;
+}
+
 /* Whether a name in a text makes it one for this file. */
 static bool is_new_name(const se3di_reader *reader, const char *text, size_t length)
 {

@@ -7,6 +7,9 @@
 #include "io/document/reader.h"
 #include "io/document/scope.h"
 
+/* The next name at or behind `text` that may be a parameter's or point's: no unit of a number and
+ * no component. @return NULL: none */
+const char *se3di_amount_next_name(const char *text, size_t *length);
 /* Whether a text has vectors, points or units, or its file is not in SI units. */
 bool se3di_amount_is_needed(const se3di_reader *reader, const char *text);
 /* Evaluate the text of `node`; `variables` (NULL at the end; NULL: none) remain in the texts of the

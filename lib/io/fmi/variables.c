@@ -9,6 +9,7 @@
 #include "io/base/number.h"
 #include "io/channel/channel.h"
 #include "io/channel/output.h"
+#include "io/document/amount.h"
 
 /* A model and the list that grows. */
 typedef struct collector {
@@ -121,20 +122,17 @@ static se3d_status add_inputs(collector *c)
 /* Whether a text mentions parameters or points. */
 static bool depends(const se3di_scope *scope, const char *text)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    static const char more[] = ".0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
     char word[64];
-    while (*text) {
-        const bool is_word = strspn(text, letters) > 0;
-        const size_t length = strspn(text, is_word ? more + 1 : more);
-        if (is_word && length < sizeof word) {
-            memcpy(word, text, length);
+    size_t length = 0;
+    const char *at = se3di_amount_next_name(text, &length);
+    for (; at; at = se3di_amount_next_name(at + length, &length)) {
+        if (length < sizeof word) {
+            memcpy(word, at, length);
             word[length] = '\0';
             if (se3di_scope_find(scope, word)) {
                 return true;
             }
         }
-        text += length > 0 ? length : 1;
     }
     return false;
 }

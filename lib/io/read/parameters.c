@@ -69,32 +69,23 @@ static bool check_name(se3di_reader *reader, const se3di_node *node)
     return true;
 }
 
-/* The next name of a parameter or point in the text, from *text on; numbers such as 1e5 are passed
- * over, and the component behind a point. */
+/* The next name of a parameter or point in the text, from *text on. */
 static bool next_name(const resolver *r, const char **text, size_t *index)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    static const char more[] = ".abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
     char word[64];
-    const char *at = *text;
-    while (*at) {
-        const bool is_word = strspn(at, letters) > 0;
-        const size_t length = strspn(at, is_word ? more + 1 : more);
-        if (length == 0) {
-            ++at;
-            continue;
-        }
-        if (is_word && length < sizeof word) {
+    size_t length = 0;
+    const char *at = se3di_amount_next_name(*text, &length);
+    for (; at; at = se3di_amount_next_name(at + length, &length)) {
+        *text = at + length;
+        if (length < sizeof word) {
             memcpy(word, at, length);
             word[length] = '\0';
             if (se3di_ionames_find(&r->names, word, index)) {
-                *text = at + length;
                 return true;
             }
         }
-        at += length;
     }
-    *text = at;
+    *text = "";
     return false;
 }
 

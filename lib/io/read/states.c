@@ -310,7 +310,7 @@ static bool read_transfer(se3di_reader *reader, const se3di_node *node,
     add_term(rate, sizeof rate, 1.0, "u");
     add_term(output, sizeof output, b[n] / a[n], "u");
     for (size_t k = 0; k < n; ++k) {
-        char name[8];
+        char name[24];
         snprintf(name, sizeof name, "x%zu", k + 1);
         add_term(rate, sizeof rate, -a[k] / a[n], name);
         add_term(output, sizeof output, (b[k] - b[n] * (a[k] / a[n])) / a[n], name);
