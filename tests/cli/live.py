@@ -113,7 +113,7 @@ class Live:
         return [s["name"] for s in self.scene()["sliders"]].index(name)
 
     def set(self, name, value):
-        self.say(f"set {self.state['version']} {self.slider(name)} {value}")
+        self.say(f"set {self.state['list']} {self.slider(name)} {value}")
         return self.next()
 
     def cpu(self):
@@ -197,7 +197,7 @@ def check_motion(live):
     check(abs(after["t"] - state["t"] - 1 / 60) < 1e-9 and not after["running"], "a step is a 60th of a second")
     live.say("reset")
     check(abs(live.next(lambda s: s["t"] == 0)["places"][7] - 0.3) < 1e-9, "reset goes to the start")
-    for words in ["", "step 1", "set", f"set {state['version']} 1 nan", f"set {state['version']} 99 1", "jump",
+    for words in ["", "step 1", "set", f"set {state['list']} 1 nan", f"set {state['list']} 99 1", f"set {state['list'] + 1} 1 3", "jump",
                   "pull 1 0 0 0 0 1 1 1", f"pull {state['version']} 0 0 0 0 1 1 1", "speed -1", "set 1e999 1 1", "run\n"]:
         live.say(words)
     live.say("pause")

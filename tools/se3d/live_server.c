@@ -68,7 +68,7 @@ struct live_server {
     size_t page_size;
     int wake;
     char token[TOKEN_LENGTH + 1];
-    char hosts[2][40]; /* "127.0.0.1:1234" and with localhost */
+    char hosts[4][40]; /* "127.0.0.1:1234", with localhost; without a port if it is 80, or empty */
 };
 
 static time_t now(void)
@@ -122,7 +122,12 @@ typedef struct question {
 
 static int is_own_host(const live_server *s, const char *name)
 {
-    return strcmp(name, s->hosts[0]) == 0 || strcmp(name, s->hosts[1]) == 0;
+    for (size_t k = 0; k < sizeof s->hosts / sizeof *s->hosts; ++k) {
+        if (s->hosts[k][0] && strcmp(name, s->hosts[k]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 static enum MHD_Result look_at_header(void *cls, enum MHD_ValueKind kind, const char *key,
@@ -220,10 +225,59 @@ static enum MHD_Result answer_state(live_server *s, request *r)
     return result;
 }
 
+/* How much of the words says what they are about: of two that pull, or set the same number, the
+ * later one counts. 0: all count. */
+static size_t measure_kind(const char *words)
+{
+    if (strncmp(words, "pull ", 5) == 0) {
+        return 5;
+    }
+    if (strncmp(words, "set ", 4) != 0) {
+        return 0;
+    }
+    const size_t list = 4 + strcspn(words + 4, " ");
+    return words[list] ? list + 1 + strcspn(words + list + 1, " ") + 1 : 0;
+}
+
+/* Words of the same kind that wait, with nothing but such words behind them. */
+static char *find_same(live_server *s, const char *words)
+{
+    const size_t kind = measure_kind(words);
+    for (size_t k = s->count; kind > 0 && k-- > 0;) {
+        char *other = s->words[(s->first + k) % WORDS_MAX];
+        if (measure_kind(other) == 0) {
+            break;
+        }
+        if (strncmp(words, other, kind) == 0) {
+            return other;
+        }
+    }
+    return NULL;
+}
+
+/* @return false: too many wait. */
+static int let_words_wait(live_server *s, const char *words)
+{
+    pthread_mutex_lock(&s->lock);
+    char *to = find_same(s, words);
+    if (!to && s->count < WORDS_MAX) {
+        to = s->words[(s->first + s->count++) % WORDS_MAX];
+    }
+    if (to) {
+        snprintf(to, LIVE_WORDS_SIZE, "%s", words);
+    }
+    pthread_mutex_unlock(&s->lock);
+    if (to) {
+        wake(s);
+    }
+    return to != NULL;
+}
+
 static enum MHD_Result answer_get(live_server *s, request *r, const char *what)
 {
     enum MHD_Result result = MHD_NO;
-    if (what[0] == '\0') {
+    if (what[0] == '\0') { /* a page that is read again pulls at nothing */
+        (void)let_words_wait(s, "release");
         return answer(r->connection, MHD_HTTP_OK, "text/html; charset=utf-8", s->page,
                       s->page_size);
     }
@@ -241,7 +295,7 @@ static enum MHD_Result answer_get(live_server *s, request *r, const char *what)
     return result;
 }
 
-static enum MHD_Result take_words(live_server *s, const request *r)
+static enum MHD_Result take_words(live_server *s, request *r)
 {
     if (r->is_too_long) {
         return refuse(r->connection, MHD_HTTP_CONTENT_TOO_LARGE, "too many words\n");
@@ -249,18 +303,10 @@ static enum MHD_Result take_words(live_server *s, const request *r)
     if (memchr(r->body, '\0', r->used)) {
         return refuse(r->connection, MHD_HTTP_BAD_REQUEST, "these are no words\n");
     }
-    pthread_mutex_lock(&s->lock);
-    const int has_room = s->count < WORDS_MAX;
-    if (has_room) {
-        char *to = s->words[(s->first + s->count++) % WORDS_MAX];
-        memcpy(to, r->body, r->used);
-        to[r->used] = '\0';
-    }
-    pthread_mutex_unlock(&s->lock);
-    if (!has_room) {
+    r->body[r->used] = '\0';
+    if (!let_words_wait(s, r->body)) {
         return refuse(r->connection, MHD_HTTP_SERVICE_UNAVAILABLE, "too many words wait\n");
     }
-    wake(s);
     return answer(r->connection, MHD_HTTP_OK, "text/plain; charset=utf-8", "", 0);
 }
 
@@ -399,6 +445,10 @@ live_server *live_server_create(int port, const char *page, size_t size, int wak
     const unsigned bound = info ? info->port : (unsigned)port;
     snprintf(s->hosts[0], sizeof s->hosts[0], "127.0.0.1:%u", bound);
     snprintf(s->hosts[1], sizeof s->hosts[1], "localhost:%u", bound);
+    if (bound == 80) { /* clients leave it out */
+        snprintf(s->hosts[2], sizeof s->hosts[2], "127.0.0.1");
+        snprintf(s->hosts[3], sizeof s->hosts[3], "localhost");
+    }
     snprintf(address, LIVE_ADDRESS_SIZE, "http://%s/%s/", s->hosts[0], s->token);
     return s;
 }
@@ -458,10 +508,24 @@ int live_server_take(live_server *s, char words[LIVE_WORDS_SIZE])
     return some;
 }
 
-int live_server_has_words(live_server *s)
+static int is_one_of(const char *words, const char *const *verbs)
+{
+    const size_t length = strcspn(words, " ");
+    for (; *verbs; ++verbs) {
+        if (strlen(*verbs) == length && strncmp(words, *verbs, length) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int live_server_has_words(live_server *s, const char *const *verbs)
 {
     pthread_mutex_lock(&s->lock);
-    const int some = s->count > 0;
+    int some = !verbs && s->count > 0;
+    for (size_t k = 0; verbs && k < s->count && !some; ++k) {
+        some = is_one_of(s->words[(s->first + k) % WORDS_MAX], verbs);
+    }
     pthread_mutex_unlock(&s->lock);
     return some;
 }

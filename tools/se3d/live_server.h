@@ -24,7 +24,8 @@ void live_server_set_scene(live_server *server, char *text, size_t size);
 void live_server_set_state(live_server *server, char *text, size_t size, uint64_t sequence);
 /* Take the next words that a user sent. @return false: there are none. */
 int live_server_take(live_server *server, char words[LIVE_WORDS_SIZE]);
-int live_server_has_words(live_server *server);
+/* Whether words wait: any (NULL), or some of these verbs, the last of which is NULL. */
+int live_server_has_words(live_server *server, const char *const *verbs);
 /* Whether someone waits for the next state, or was given one in the last two seconds. */
 int live_server_is_watched(live_server *server);
 

@@ -33,14 +33,18 @@ char *live_text_take(FILE *file, char **data)
 
 static void put_state(FILE *file, se3di_live *model, const live_status *s, double *numbers)
 {
+    char trouble[2 * SE3DI_LIVE_MESSAGE_SIZE + 2];
     const size_t places = se3di_live_count_places(model);
     const size_t columns = se3di_live_count_columns(model);
     const size_t sliders = se3di_live_count_sliders(model);
-    fprintf(file, "{\"sequence\":%llu,\"version\":%llu,\"t\":%.12g,\"running\":%s,\"speed\":%.9g",
+    fprintf(file, "{\"sequence\":%llu,\"version\":%llu,\"list\":%llu,\"t\":%.12g",
             (unsigned long long)s->sequence, (unsigned long long)s->version,
-            se3di_live_get_time(model), s->running ? "true" : "false", s->speed);
-    fputs(",\"trouble\":", file);
-    text_put_json(file, s->trouble);
+            (unsigned long long)s->list, se3di_live_get_time(model));
+    fprintf(file, ",\"running\":%s,\"speed\":%.9g,\"trouble\":", s->running ? "true" : "false",
+            s->speed);
+    snprintf(trouble, sizeof trouble, "%s%s%s", s->file_trouble,
+             s->file_trouble[0] && s->run_trouble[0] ? "\n" : "", s->run_trouble);
+    text_put_json(file, trouble);
     se3di_live_get_places(model, numbers);
     put_numbers(file, "places", numbers, places);
     se3di_live_get_values(model, numbers);
@@ -108,6 +112,17 @@ static void put_results(FILE *file, const se3di_live *model, char *json)
         fprintf(file, ",\"start\":%.12g}", slider->start);
     }
     fputs("]}", file);
+}
+
+char *live_text_of_sliders(const se3di_live *model)
+{
+    char *data = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&data, &size);
+    for (size_t k = 0; file && k < se3di_live_count_sliders(model); ++k) {
+        fprintf(file, "%s\n", se3di_live_get_slider(model, k)->name);
+    }
+    return file ? live_text_take(file, &data) : NULL;
 }
 
 char *live_text_of_scene(se3di_live *model)

@@ -18,40 +18,47 @@ int live_watch_create(void)
     return inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
 }
 
-static void add_folder(int watch, const char *path)
+static int add_folder(int watch, const char *path)
 {
     char folder[PAGE_PATH];
-    if (path_get_folder(path, folder, sizeof folder)) {
-        (void)inotify_add_watch(watch, folder, IN_CLOSE_WRITE | IN_MOVED_TO);
-    }
+    return path_get_folder(path, folder, sizeof folder) &&
+           inotify_add_watch(watch, folder,
+                             IN_CLOSE_WRITE | IN_MOVED_TO | IN_DELETE_SELF | IN_MOVE_SELF) >= 0;
 }
 
-void live_watch_add(int watch, const char *path)
+int live_watch_add(int watch, const char *path)
 {
     char real[PAGE_PATH];
-    if (watch < 0) {
-        return;
-    }
-    add_folder(watch, path);
-    if (path_get_absolute(path, real, sizeof real)) {
-        add_folder(watch, real);
-    }
+    return watch >= 0 && add_folder(watch, path) &&
+           (!path_get_absolute(path, real, sizeof real) || add_folder(watch, real));
 }
 
-int live_watch_take(int watch, int (*is_meant)(void *ctx, const char *name), void *ctx)
+/* A folder that has another name now is not watched any more. */
+static unsigned look_at(int watch, const struct inotify_event *event,
+                        int (*is_meant)(void *ctx, const char *name), void *ctx)
+{
+    if (event->mask & IN_MOVE_SELF) {
+        (void)inotify_rm_watch(watch, event->wd);
+    }
+    return ((event->mask & IN_Q_OVERFLOW) || (event->len > 0 && is_meant(ctx, event->name))
+                ? LIVE_WATCH_SAVED
+                : 0) |
+           (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_UNMOUNT) ? LIVE_WATCH_LOST : 0);
+}
+
+unsigned live_watch_take(int watch, int (*is_meant)(void *ctx, const char *name), void *ctx)
 {
     union {
         char bytes[8192];
         struct inotify_event aligned;
     } block;
-    int found = 0;
+    unsigned found = 0;
     ssize_t size = 0;
     while (watch >= 0 && (size = read(watch, block.bytes, sizeof block.bytes)) > 0) {
         for (ssize_t at = 0; at < size;) {
             const struct inotify_event *event =
                 (const struct inotify_event *)(const void *)(block.bytes + at);
-            found = found || (event->mask & IN_Q_OVERFLOW) != 0 ||
-                    (event->len > 0 && is_meant(ctx, event->name));
+            found |= look_at(watch, event, is_meant, ctx);
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
@@ -60,18 +67,22 @@ int live_watch_take(int watch, int (*is_meant)(void *ctx, const char *name), voi
 
 #else
 
+#include <errno.h>
+
 int live_watch_create(void)
 {
+    errno = ENOSYS;
     return -1;
 }
 
-void live_watch_add(int watch, const char *path)
+int live_watch_add(int watch, const char *path)
 {
     (void)watch;
     (void)path;
+    return 0;
 }
 
-int live_watch_take(int watch, int (*is_meant)(void *ctx, const char *name), void *ctx)
+unsigned live_watch_take(int watch, int (*is_meant)(void *ctx, const char *name), void *ctx)
 {
     (void)watch;
     (void)is_meant;

@@ -6,6 +6,7 @@
   document.body.classList.add("living");
   $("speed").add(new Option("as fast as it goes", "0"));
 
+  const pause = (ms) => new Promise((done) => setTimeout(done, ms));
   // Words to the program, one after the other; of the same kind the last one counts.
   const waiting = new Map();
   let busy = false;
@@ -17,12 +18,18 @@
     while (waiting.size) {
       const [first, body] = waiting.entries().next().value;
       waiting.delete(first);
-      try { await fetch("do", { method: "POST", headers: { "Content-Type": "text/plain" }, body }); } catch (e) { /* `follow` says it */ }
+      try {
+        const answer = await fetch("do", { method: "POST", headers: { "Content-Type": "text/plain" }, body });
+        if (answer.status === 503) { // too many words wait: once more, unless there are later ones of the kind
+          if (!waiting.has(first)) waiting.set(first, body);
+          await pause(100);
+        }
+      } catch (e) { /* `follow` says it */ }
     }
     busy = false;
   };
-  let version = -1, viewer = null, sliders = [];
-  // What names a body or a number is said of a version of the model.
+  let version = -1, list = -1, viewer = null, sliders = [];
+  // What names a body is said of a version of the scene, what names a number of one of the list of them.
   const live = { post: (kind, words) => post(kind, kind === "pull" ? `${version} ${words}` : words), pulls: () => $("pull").getAttribute("aria-pressed") === "true" };
 
   const show = (text) => { $("trouble").textContent = text; $("trouble").style.display = text ? "block" : "none"; };
@@ -35,7 +42,7 @@
       range.type = "range"; number.type = "number"; number.step = "any";
       Object.assign(range, { min: start - width, max: start + width, step: "any" });
       range.setAttribute("aria-label", name); number.setAttribute("aria-label", name);
-      const tell = (text) => { if (text !== "" && Number.isFinite(Number(text))) post(`set ${k}`, `${version} ${k} ${text}`); };
+      const tell = (text) => { if (text !== "" && Number.isFinite(Number(text))) post(`set ${k}`, `${list} ${k} ${text}`); };
       range.oninput = () => { number.value = digits(Number(range.value)); tell(range.value); };
       number.onchange = () => tell(number.value);
       label.append(name + (unit && unit !== "1" ? ` [${units[unit] || unit}]` : ""), document.createElement("br"), range, " ", number);
@@ -53,17 +60,14 @@
     if (document.activeElement !== number && document.activeElement !== range) number.value = digits(value);
   });
 
-  let named = ""; // the sliders that are there
   const open = async () => {
     const scene = await (await fetch("scene")).json();
     if (viewer) { viewer.share(); viewer.close(); }
     viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
-    const names = JSON.stringify(scene.sliders);
-    if (names !== named) makeSliders(scene.sliders);
-    named = names;
+    if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
+    list = scene.list;
     version = scene.version;
   };
-  const pause = (ms) => new Promise((done) => setTimeout(done, ms));
   const follow = async () => {
     let sequence = 0;
     for (;;) {
@@ -75,7 +79,7 @@
         if (state.version !== version) await open();
         if (state.version === version) {
           viewer.feed(state);
-          showNumbers(state.numbers);
+          if (state.list === list) showNumbers(state.numbers);
           show(state.trouble);
           Object.assign(window.se3dLive, { state, version });
         }

@@ -13,6 +13,7 @@ struct se3di_live {
     se3di_iopool pool;
     se3di_session *now;
     se3di_pull pull;
+    uint64_t readings;
 };
 
 static bool say(char *message, const char *text)
@@ -42,7 +43,7 @@ bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
                      char message[SE3DI_LIVE_MESSAGE_SIZE])
 {
     if (beginning == SE3DI_LIVE_GOING_ON) {
-        se3di_live_release(live);
+        (void)se3di_live_release(live);
     }
     message[0] = '\0';
     se3di_session *s = se3di_session_make(&live->from, live->now, beginning, message);
@@ -55,8 +56,14 @@ bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
         se3di_pull_forget(&live->pull);
         se3di_session_destroy(live->now);
         live->now = s;
+        ++live->readings;
     }
     return s != NULL;
+}
+
+uint64_t se3di_live_count_readings(const se3di_live *live)
+{
+    return live->readings;
 }
 
 void se3di_live_take_back(se3di_live *live)
@@ -203,9 +210,11 @@ bool se3di_live_pull(se3di_live *live, size_t body, const double point[3], const
            se3di_pull_set(&live->pull, model->system, model->bodies[body].body, point, place);
 }
 
-void se3di_live_release(se3di_live *live)
+bool se3di_live_release(se3di_live *live)
 {
+    const bool pulled = live->pull.force.index1 != 0;
     se3di_pull_release(&live->pull, live->now->model->system);
+    return pulled;
 }
 
 /* ---- what is shown --------------------------------------------------------------------------*/

@@ -43,6 +43,8 @@ void se3di_live_destroy(se3di_live *live);
  * could not go on where it was and is at its start. */
 bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
                      char message[SE3DI_LIVE_MESSAGE_SIZE]);
+/* How often a model has taken the place of another one. */
+uint64_t se3di_live_count_readings(const se3di_live *live);
 /* Numbers that were set since the model was read are forgotten, unless they act already. */
 void se3di_live_take_back(se3di_live *live);
 /* Paths of the files that the model was read from, NULL behind the last; one may be there twice. */
@@ -65,7 +67,8 @@ bool se3di_live_set(se3di_live *live, size_t k, double value);
 /* Pull body `body`, as scenes count them, at a point of it by a spring to a place in the ground
  * frame. @return false: this cannot be pulled. */
 bool se3di_live_pull(se3di_live *live, size_t body, const double point[3], const double place[3]);
-void se3di_live_release(se3di_live *live);
+/* @return whether something was pulled. */
+bool se3di_live_release(se3di_live *live);
 
 /* Write its scene, glTF, as it is before anything moves. @return false: out of memory, or the file
  * says why. */
