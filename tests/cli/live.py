@@ -64,7 +64,7 @@ class Live:
         check(self.address.startswith("http://127.0.0.1:"), f"the address is {self.address}")
         self.port = int(self.address.split(":")[2].split("/")[0])
         self.path = "/" + self.address.split("/", 3)[3]
-        self.connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        self.connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
         self.state = None
 
     def ask(self, method, path, body=None, **headers):
@@ -97,7 +97,11 @@ class Live:
         end = time.monotonic() + 20
         while time.monotonic() < end:
             after = self.state["sequence"] if self.state else 0
-            status, text, _ = self.ask("GET", f"{self.path}state?after={after}")
+            try:
+                status, text, _ = self.ask("GET", f"{self.path}state?after={after}")
+            except OSError: # nothing happens any more
+                self.connection.close()
+                break
             if status != 200:
                 break
             self.state = json.loads(text)
@@ -124,11 +128,13 @@ class Live:
 
 class Other(Live):
     """Another model for a while, paused at its start."""
-    def __init__(self, name, *words, start="reset"):
+    def __init__(self, name, *words):
         super().__init__(os.path.join(folder, name), "-q", *words)
-        for word in ("pause", start):
+        for word in ("pause", "reset", "speed 0.5"):
             self.say(word)
-        self.next(lambda s: not s["running"] and (s["t"] == 0 or start != "reset"))
+        self.next(lambda s: s["speed"] == 0.5)
+        self.say("speed 1")
+        self.next(lambda s: s["speed"] == 1)
 
     def __enter__(self):
         return self
@@ -302,6 +308,123 @@ def check_turns():
         check(0 < state["values"][1] - angle < 1 and abs(state["values"][0] / state["values"][1] - x / angle) < 1e-7, f"along the thread: {state['values']}")
 
 
+SLOW = "{type: dynamics, method: rk4, step: 1e-6, duration: 100}"  # minutes
+
+
+def with_analyses(*analyses, title="one"):
+    listed = "".join(f"\n  - {a}" for a in analyses)
+    return MODEL.format(title=title, x=0.3).replace(" {type: dynamics, duration: 10}", listed)
+
+
+def check_endings():
+    """What takes long ends when something else is wanted."""
+    quick = with_analyses("{type: dynamics, duration: 0.1}", "{type: dynamics, duration: 10}")
+    slow = with_analyses(SLOW, "{type: dynamics, duration: 10}", title="two")
+    save("long.yaml", quick)
+    with Other("long.yaml") as live:
+        save("long.yaml", slow)
+        time.sleep(0.1)
+        version = live.state["version"]
+        save("long.yaml", quick.replace("title: one", "title: three").replace("0.3, 0, 0", "0.2, 0, 0"))
+        begin = time.monotonic()
+        state = live.next(lambda s: s["version"] > version)
+        check(time.monotonic() - begin < 5 and state["trouble"] == "", "a saved file ends the reading of the one before")
+        save("long.yaml", slow)
+        time.sleep(0.1)
+    save("long.yaml", with_analyses(SLOW))
+    with Other("long.yaml") as live:
+        live.say("speed 1000")
+        for _ in range(20):
+            live.say("step")
+        live.say("pause")
+        begin = time.monotonic()
+        live.say("speed 0.5")
+        state = live.next(lambda s: s["speed"] == 0.5)
+        check(time.monotonic() - begin < 2 and state["t"] < 10, f"words end a step: {state['t']}")
+
+
+def check_lists(live):
+    """Sliders are known while their numbers change, and one that does not fit takes no other with it."""
+    live.say("pause")
+    live.say("anew")
+    state = live.next(lambda s: s["t"] == 0 and not s["running"])
+    number, k = state["list"], live.slider("weight")
+    for value in (2.5, 3, 3.5):
+        live.say(f"set {number} {k} {value}")
+        state = live.next(lambda s, value=value: s["numbers"][k] == value)
+    check(state["list"] == number and state["trouble"] == "", "the list stays")
+    state = live.set("weight", -1)
+    check("weight" in state["trouble"] or "mass" in state["trouble"], f"{state['trouble']}")
+    check(state["numbers"][k] == 3.5, f"a mass that cannot be is not kept: {state['numbers']}")
+    state = live.set("k", 60)
+    check(state["numbers"] == [0, 3.5, 60] and state["trouble"] == "", f"others can be set: {state['numbers']} {state['trouble']}")
+    save("model.yaml", MODEL.format(title="wrong", x=0.1).replace("prismatic", "prismatik"))
+    live.next(lambda s: "prismatik" in s["trouble"])
+    for word in ("step", "run", "pause"):
+        live.say(word)
+        check("prismatik" in live.next()["trouble"], f"the message stays after {word}")
+    save("model.yaml", MODEL.format(title="good", x=0.1))
+    live.next(lambda s: s["trouble"] == "")
+    live.say("speed 0")
+    live.say("run")
+    times = [live.next()["t"] for _ in range(10)]
+    check(max(b - a for a, b in zip(times, times[1:])) > 1.5, f"as fast as it goes: {times}")
+    live.say("speed 1")
+    live.say("pause")
+    live.say("reset")
+    state = live.next(lambda s: s["t"] == 0)
+    live.say(f"pull {state['version']} 1 0 0 0 3 0 0")
+    live.ask("GET", live.path)  # a page that is opened again
+    for _ in range(30):
+        live.say("step")
+    state = live.next(lambda s: abs(s["t"] - 0.5) < 1e-9)
+    check(abs(state["places"][7] - 0.1 * math.cos(2.5)) < 1e-5, f"all steps are made, nothing pulls: {state['places'][7]}")
+
+
+def check_others():
+    """Events, equilibria, what acts while the model stands."""
+    stop = "events:\n  - {name: stop, channel: block.position.x, value: 0.2, action: stop}\n"
+    save("event.yaml", with_analyses("{type: dynamics, duration: 1}", "{type: dynamics, duration: 10}") + stop)
+    with Other("event.yaml") as live:
+        check(abs(live.state["values"][0] - 0.2) < 1e-9, f"an event ends the analysis before: {live.state['values']}")
+        live.say("speed 8")
+        live.say("run")
+        live.next(lambda s: "event" in s["trouble"])
+        save("other.json", "{}")
+        live.say("speed 1")
+        check("event" in live.next(lambda s: s["speed"] == 1)["trouble"], "its message stays when another file is saved")
+    save("static.yaml", with_analyses("{type: equilibrium}"))
+    with Other("static.yaml") as live:
+        check([s["name"] for s in live.scene()["sliders"]] == ["push.input", "weight", "k"], "a model that stands has numbers")
+        state = live.set("push.input", 5)
+        check(abs(state["places"][7] - 0.1) < 1e-6, f"and is where they put it: {state['places'][7]}")
+    save("acts.yaml", MODEL.format(title="acts", x=0.3).replace("rail.rate", "block.acceleration.x"))
+    with Other("acts.yaml") as live:
+        state = live.set("push.input", 100)
+        check(abs(state["values"][3] - (100 - 50 * 0.3) / 2) < 1e-4 and state["t"] == 0, f"an effort acts at once: {state['values']}")
+
+
+def check_folders():
+    """Files in folders that were not watched, or that are replaced."""
+    part = SPRING.format(k="k")
+    inside, aside = os.path.join(folder, "inside"), os.path.join(folder, "aside")
+    save("folders.yaml", MODEL.format(title="one", x=0.3))
+    with Other("folders.yaml") as live:
+        os.mkdir(inside)
+        save("inside/one.part", part.replace("tsda", "tsdx"))
+        save("folders.yaml", MODEL.format(title="two", x=0.3).replace("spring.part", "inside/one.part"))
+        live.next(lambda s: "tsdx" in s["trouble"])
+        save("inside/one.part", part)
+        live.next(lambda s: not s["trouble"])
+        os.rename(inside, aside)
+        time.sleep(0.02)
+        os.mkdir(inside)
+        save("inside/one.part", part.replace("tsda", "tsdy"))
+        live.next(lambda s: "tsdy" in s["trouble"])
+        save("inside/one.part", part)
+        live.next(lambda s: not s["trouble"])
+
+
 def check_random(live):
     """Requests of which parts are replaced: the server goes on."""
     dice = random.Random(7)
@@ -339,6 +462,7 @@ def main():
         check_motion(live)
         check_numbers(live)
         check_saving(live)
+        check_lists(live)
         live.say("pause")
         live.next(lambda s: not s["running"])
         before = live.cpu()
@@ -346,6 +470,9 @@ def main():
         check(live.cpu() - before <= 1, f"{live.cpu() - before} ticks of CPU while nothing happens")
         check_random(live)
         check_turns()
+        check_endings()
+        check_others()
+        check_folders()
         live.process.send_signal(signal.SIGINT)
         check(live.process.wait(10) == 0, f"Ctrl-C ends it: {live.process.returncode}")
     finally:

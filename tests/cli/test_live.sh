@@ -28,6 +28,12 @@ expect 'a wrong model' 2 "$program" live "$dir/wrong.yaml"
 says 'wrong.yaml:2:'
 expect 'a model with particles' 2 "$program" live "$models/pushed_grains.yaml"
 says 'the model has particles'
+expect 'standard output is closed' 1 sh -c "\"$program\" live \"$models/pendulum.yaml\" >&-"
+says 'the address cannot be written'
+if [ -w /dev/full ]; then
+    expect 'standard output is full' 1 sh -c "\"$program\" live \"$models/pendulum.yaml\" >/dev/full"
+    says 'the address cannot be written'
+fi
 requests=300
 [ -z "${SE3D_LONG:-}" ] || requests=10000
 expect 'the server' 0 python3 "$source/tests/cli/live.py" "$program" "$dir/live" $requests

@@ -31,7 +31,8 @@ typedef enum se3di_live_beginning {
 } se3di_live_beginning;
 
 /* Read a model and stand at its start. `options` must stay; its `report` and `log` are not used.
- * `interrupt` (not NULL) is asked within runs and readings whether to end them, `message` gets why there is none.
+ * `interrupt` (not NULL) is asked within runs and readings whether to end them, `message` gets why
+ * there is none.
  * @return NULL: `message` says why. */
 se3di_live *se3di_live_create(const char *path, const se3d_model_options *options,
                               se3d_interrupt interrupt, void *ctx,
@@ -39,8 +40,8 @@ se3di_live *se3di_live_create(const char *path, const se3d_model_options *option
 void se3di_live_destroy(se3di_live *live);
 
 /* Read the file again; the interrupt is asked whether to leave it. Going on ends a pull. @return
- * false: nothing has changed, `message` says why. If it is true, `message` is not empty if the model
- * could not go on where it was and is at its start. */
+ * false: nothing has changed, `message` says why. True with a message: the model could not go on
+ * where it was and is at its start. */
 bool se3di_live_read(se3di_live *live, se3di_live_beginning beginning,
                      char message[SE3DI_LIVE_MESSAGE_SIZE]);
 /* How often a model has taken the place of another one. */
