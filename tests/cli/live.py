@@ -308,6 +308,35 @@ def check_turns():
         check(0 < state["values"][1] - angle < 1 and abs(state["values"][0] / state["values"][1] - x / angle) < 1e-7, f"along the thread: {state['values']}")
 
 
+RATE = """se3d: 1
+parameters: {weight: 2 kg}
+bodies:
+  - {name: wheel, mass: weight, inertia: [1, 1, 1], position: [0, 0, 0]}
+joints:
+  - {name: pin, type: revolute, body_i: ground, body_j: wheel, at: [0, 0, 0], axis: [0, 0, 1]}
+drivers:
+  - {name: turn, joint: pin, rate: 3}
+analysis: {type: dynamics, duration: 10}
+output:
+  - {file: a.csv, channels: [pin.angle, pin.rate]}
+"""
+
+
+def check_rates():
+    """A rate that was set on the way has brought its joint to where it stays."""
+    save("rate.yaml", RATE)
+    with Other("rate.yaml") as live:
+        for _ in range(30):
+            live.say("step")
+        live.next(lambda s: abs(s["t"] - 0.5) < 1e-9)
+        live.set("turn.input", 5)
+        for _ in range(30):
+            live.say("step")
+        live.next(lambda s: abs(s["t"] - 1) < 1e-9)
+        state = live.set("weight", 4)
+        check(max(abs(a - b) for a, b in zip(state["values"], [4, 5])) < 1e-6 and state["trouble"] == "", f"{state['values']}")
+
+
 SLOW = "{type: dynamics, method: rk4, step: 1e-6, duration: 100}"  # minutes
 
 
@@ -470,6 +499,7 @@ def main():
         check(live.cpu() - before <= 1, f"{live.cpu() - before} ticks of CPU while nothing happens")
         check_random(live)
         check_turns()
+        check_rates()
         check_endings()
         check_others()
         check_folders()
