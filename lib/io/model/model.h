@@ -147,10 +147,10 @@ struct se3d_model {
                                              model is a sample of */
     se3d_model_channel *listed;           /* [listed_count]; NULL: not asked for yet */
     size_t listed_count;
-    const se3di_attached_file *attached;  /* files that were read beside its own, the last first */
-    uint64_t content;                     /* hash of the bytes of all its files, */
-    uint64_t asked;                       /* of the options that it was read with */
-    se3d_log_callback log;                /* the user's; NULL: none */
+    const se3di_attached_file *attached; /* files that were read beside its own, the last first */
+    uint64_t content;                    /* hash of the bytes of all its files, */
+    uint64_t asked;                      /* of the options that it was read with */
+    se3d_log_callback log;               /* the user's; NULL: none */
     void *log_ctx;
 };
 
