@@ -92,6 +92,16 @@ void se3di_friction_hold(const se3di_model *model, se3di_force *force, double n)
     force->state[STIFFNESS] = 0.0;
 }
 
+void se3di_friction_shift(const se3di_model *model, se3di_force *force)
+{
+    double rate;
+    const double x = coordinate(model, force, &rate);
+    if (force->state[SET] > 0.0 && !se3di_friction_sticks(force)) {
+        force->state[ANCHOR] = x;
+        force->state[RATE] = rate;
+    }
+}
+
 void se3di_friction_silence(se3di_force *force)
 {
     force->state[FORCE] = force->state[STIFFNESS] = force->state[MODE] = 0.0;

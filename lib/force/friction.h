@@ -43,6 +43,8 @@ static inline int se3di_friction_sticks(const se3di_force *force)
 
 /* The loads of all elements follow from these multipliers [rows]. */
 void se3di_frictions_take_loads(se3di_model *model, const double *lambda);
+/* The state has moved a little since it was accepted: what slips goes with it. */
+void se3di_friction_shift(const se3di_model *model, se3di_force *force);
 /* It holds with n where it is, rigidly. */
 void se3di_friction_hold(const se3di_model *model, se3di_force *force, double n);
 /* It sticks without any force, whatever moves. */

@@ -8,12 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-#define SLOW_MAX  0.01 /* most of a step times the rate of the motion, */
-#define DECAY_MIN 0.5  /* and least of it times a decay, if decays limit the step */
-#define HELD_EACH 8.0  /* steps between looks if there is no sign */
-#define SAFETY    0.8  /* a rejected step costs more than several that are this much shorter */
-#define CAUTION   0.01 /* of a first step that has one estimate of two */
-#define LOOP_PACE 0.35 /* where radau is worth its steps, */
+#define SLOW_MAX  0.01  /* most of a step times the rate of the motion, */
+#define DECAY_MIN 0.5   /* and least of it times a decay, if decays limit the step */
+#define HELD_EACH 8.0   /* steps between looks if there is no sign */
+#define SAFETY    0.8   /* a rejected step costs more than several that are this much shorter */
+#define CAUTION   0.01  /* of a first step that has one estimate of two */
+#define LOOP_PACE 0.35  /* where radau is worth its steps, */
+#define LOOP_REST 100.0 /* tolerances: a smaller change of velocities is that of a rest */
 #define LOOP_AT   (SE3DI_EXPLICIT_PART * 1e-6) /* at this tolerance */
 #define TIMES     1e-8 /* of the time: shorter steps are not known to the digits that this takes */
 #define SHORTEST  0.05 /* of steps in this one, before which the second estimate is rounding */
@@ -211,7 +212,8 @@ static double square_of(const se3di_explicit *m, const double *change)
  * which the motion itself changes is |h (y'(end) - y'(begin))| / |y(end) - y(begin)| of the
  * velocities. If bodies and joints make loops radau takes about twice the time for a step, which is
  * accurate up to 0.7 of that at the tolerance 1e-6: it gains something only if stability limits
- * steps far below. */
+ * steps far below. If next to nothing moves, the change is what stiffness makes of errors and
+ * tells no pace: there nothing but stability limits the steps. */
 static int gains_by_leaving(se3di_explicit *m, double h)
 {
     const double *end = se3di_explicit_end(m);
@@ -223,7 +225,8 @@ static int gains_by_leaving(se3di_explicit *m, double h)
         m->sum3[k] = h * (end[k] - m->K[k]);
     }
     const double accurate = LOOP_PACE * se3di_pow(m->tolerance / LOOP_AT, 0.2);
-    return square_of(m, m->sum3) < accurate * accurate * square_of(m, m->sum);
+    const double change = square_of(m, m->sum), rest = LOOP_REST * m->tolerance;
+    return change < rest * rest || square_of(m, m->sum3) < accurate * accurate * change;
 }
 
 /* The step is far below what the motion asks for, and of the size of a decay. Disturbances of each

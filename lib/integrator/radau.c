@@ -16,6 +16,7 @@
 #include "assembly/energy.h"
 #include "contact/bodies/pace.h"
 #include "force/force.h"
+#include "force/friction.h"
 #include "math/elementary.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -292,6 +293,16 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
     return SE3D_OK;
 }
 
+/* The end has moved by what it violated the rows by. */
+static void follow_end(se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_FRICTION) {
+            se3di_friction_shift(model, &model->forces[k]);
+        }
+    }
+}
+
 static se3d_status project_end(se3di_radau *m)
 {
     const double accuracy = m->projects ? 1e-15 : 1e-13; /* accelerations magnify it */
@@ -313,6 +324,7 @@ static se3d_status accept(se3di_radau *m, const history *past, double t)
         forget(m);
         return status;
     }
+    follow_end(model);
     memcpy(past->start, m->y0, m->count * sizeof *m->y0);
     set_defect(m, past->d);
     if (m->is_stiff) { /* but for the works */
