@@ -12,6 +12,7 @@ static void leave_behind(world *w, se3d_particles **copy)
     CHECK(se3d_solver_count_event_records(w->solver) > 0);
     se3d_snapshot_destroy(w->snapshot);
     se3d_system_destroy(w->system);
+    se3d_coordinates_destroy(w->coordinates);
 }
 
 static void a_solver_may_outlive_its_system(void)
