@@ -22,7 +22,7 @@ ROOMS = {"contact": "shape narrow bodies".split(),
 SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h",
           "io/fmi/package.h", "io/live/live.h", "io/write/sketch.h")
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.
-INLINE = ("base/hash.h", "base/coder.h", "base/floats.h")
+INLINE = ("base/hash.h", "base/coder.h", "base/floats.h", "math/vec3.h")
 # Files that call each other, and why they are not one after the other.
 CIRCLES = {
     "primitive/scale primitive/turn_counter":

@@ -8,6 +8,7 @@
 #include "io/channel/channel_flow.h"
 #include "io/channel/relative.h"
 #include "io/channel/sample.h"
+#include "math/vec3.h"
 
 /* Of a marker, in its own frame. */
 static se3d_status eval_turning(const se3di_channel *c, const se3d_system *system, double value[4])
@@ -30,9 +31,7 @@ static se3d_status eval_turning(const se3di_channel *c, const se3d_system *syste
         return status;
     }
     se3di_rotation_to_matrix(p, A);
-    for (size_t k = 0; k < 3; ++k) {
-        ground[k] = A[3 * k] * w[0] + A[3 * k + 1] * w[1] + A[3 * k + 2] * w[2];
-    }
+    se3di_mul(A, w, ground);
     se3di_rotation_apply_inverse(q, ground, value);
     return SE3D_OK;
 }

@@ -15,6 +15,7 @@
 
 #include "io/base/rotation.h"
 #include "io/model/model.h"
+#include "math/vec3.h"
 
 /* Of a point with axes; all vectors in the ground frame. */
 typedef struct motion {
@@ -71,29 +72,6 @@ bool se3di_reference_find(const se3d_model *model, const char *name, se3di_refer
     return true;
 }
 
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (size_t k = 0; k < 3; ++k) {
-        const size_t i = (k + 1) % 3;
-        const size_t j = (k + 2) % 3;
-        c[k] = a[i] * b[j] - a[j] * b[i];
-    }
-}
-
-static void turn(const double A[9], const double v[3], double out[3])
-{
-    for (size_t k = 0; k < 3; ++k) {
-        out[k] = A[3 * k] * v[0] + A[3 * k + 1] * v[1] + A[3 * k + 2] * v[2];
-    }
-}
-
-static void turn_back(const double A[9], const double v[3], double out[3])
-{
-    for (size_t k = 0; k < 3; ++k) {
-        out[k] = A[k] * v[0] + A[3 + k] * v[1] + A[6 + k] * v[2];
-    }
-}
-
 /* Angular velocity and, if asked for, acceleration of a body, turned to the ground frame. */
 static se3d_status get_turning(const se3d_system *system, se3d_body body, bool accelerates,
                                motion *m)
@@ -109,8 +87,8 @@ static se3d_status get_turning(const se3d_system *system, se3d_body body, bool a
     }
     if (status >= 0) {
         se3di_rotation_to_matrix(p, A);
-        turn(A, w, m->w);
-        turn(A, alpha, m->alpha);
+        se3di_mul(A, w, m->w);
+        se3di_mul(A, alpha, m->alpha);
     }
     return status;
 }
@@ -162,7 +140,7 @@ static void get_orientation(const motion *m, const motion *of, double p[4])
 static void get_angular_acceleration(const motion *m, const motion *of, double out[3])
 {
     double turned[3];
-    cross(of->w, m->w, turned);
+    se3di_cross(of->w, m->w, turned);
     for (size_t k = 0; k < 3; ++k) {
         out[k] = m->alpha[k] - of->alpha[k] - turned[k];
     }
@@ -179,13 +157,13 @@ static void get_translation(const motion *m, const motion *of, double d[3], doub
     for (size_t k = 0; k < 3; ++k) {
         d[k] = m->r[k] - of->r[k];
     }
-    cross(of->w, d, swept);
-    cross(of->alpha, d, euler);
-    cross(of->w, swept, inner);
+    se3di_cross(of->w, d, swept);
+    se3di_cross(of->alpha, d, euler);
+    se3di_cross(of->w, swept, inner);
     for (size_t k = 0; k < 3; ++k) {
         u[k] = m->v[k] - of->v[k] - swept[k];
     }
-    cross(of->w, u, coriolis);
+    se3di_cross(of->w, u, coriolis);
     for (size_t k = 0; k < 3; ++k) {
         a[k] = m->a[k] - of->a[k] - euler[k] - inner[k] - 2.0 * coriolis[k];
     }
@@ -214,15 +192,15 @@ se3d_status se3di_relative_eval(const se3di_channel *channel, const se3d_system 
     switch (q) {
     case SE3DI_BODY_POSITION:
     case SE3DI_MARKER_POSITION:
-        turn_back(of.A, d, value);
+        se3di_mul_transposed(of.A, d, value);
         break;
     case SE3DI_BODY_VELOCITY:
     case SE3DI_MARKER_VELOCITY:
-        turn_back(of.A, u, value);
+        se3di_mul_transposed(of.A, u, value);
         break;
     case SE3DI_BODY_ACCELERATION:
     case SE3DI_MARKER_ACCELERATION:
-        turn_back(of.A, a, value);
+        se3di_mul_transposed(of.A, a, value);
         break;
     case SE3DI_BODY_ORIENTATION:
     case SE3DI_MARKER_ORIENTATION:
@@ -233,11 +211,11 @@ se3d_status se3di_relative_eval(const se3di_channel *channel, const se3d_system 
         for (size_t k = 0; k < 3; ++k) {
             u[k] = m.w[k] - of.w[k];
         }
-        turn_back(of.A, u, value);
+        se3di_mul_transposed(of.A, u, value);
         break;
     default:
         get_angular_acceleration(&m, &of, a);
-        turn_back(of.A, a, value);
+        se3di_mul_transposed(of.A, a, value);
         break;
     }
     return SE3D_OK;

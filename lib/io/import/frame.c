@@ -122,21 +122,9 @@ bool se3di_turn_from_parameters(const double p[4], double A[9])
     return true;
 }
 
-double se3di_dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 double se3di_length(const double v[3])
 {
     return io_hypot(io_hypot(v[0], v[1]), v[2]);
-}
-
-void se3di_cross(const double a[3], const double b[3], double out[3])
-{
-    const double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                         a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, c, sizeof c);
 }
 
 double se3di_distance(const double a[3], const double b[3])

@@ -4,6 +4,7 @@
 #ifndef SE3D_IO_IMPORT_FRAME_H
 #define SE3D_IO_IMPORT_FRAME_H
 
+#include "math/vec3.h"
 #include <stdbool.h>
 
 typedef struct se3di_frame {
@@ -38,8 +39,6 @@ bool se3di_turn_along_both(const double z[3], const double x[3], double A[9]);
 double se3di_turn_angle(const double A[9], const double B[9]);
 
 double se3di_length(const double v[3]);
-double se3di_dot(const double a[3], const double b[3]);
-void se3di_cross(const double a[3], const double b[3], double out[3]);
 double se3di_distance(const double a[3], const double b[3]);
 
 /* A mass with its centre and its inertia about the centre, in one frame. */

@@ -10,25 +10,17 @@
 #include <string.h>
 
 #include "io/base/rotation.h"
+#include "math/vec3.h"
 
 #define FREQUENCY 9.42477796076938 /* 3 pi [rad/s] */
 #define DAMPING   0.5              /* of the critical one */
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* From the body's frame to the ground's. */
 static void turn(const double p[4], const double v[3], double out[3])
 {
     double A[9];
     se3di_rotation_to_matrix(p, A);
-    for (int i = 0; i < 3; ++i) {
-        out[i] = A[3 * i] * v[0] + A[3 * i + 1] * v[1] + A[3 * i + 2] * v[2];
-    }
+    se3di_mul(A, v, out);
 }
 
 static se3d_status pull_body(void *ctx, double t, const se3d_body_motion motion[2],
@@ -44,7 +36,7 @@ static se3d_status pull_body(void *ctx, double t, const se3d_body_motion motion[
     (void)K;
     (void)D;
     turn(m->p, pull->point, arm);
-    cross(m->w, pull->point, turned);
+    se3di_cross(m->w, pull->point, turned);
     turn(m->p, turned, rate);
     for (int i = 0; i < 3; ++i) {
         force[i] = pull->k * (pull->place[i] - m->r[i] - arm[i]) - pull->c * (m->v[i] + rate[i]);
@@ -53,7 +45,7 @@ static se3d_status pull_body(void *ctx, double t, const se3d_body_motion motion[
         wrench[6 + i] = force[i];
     }
     se3di_rotation_apply_inverse(m->p, force, turned);
-    cross(pull->point, turned, wrench + 9);
+    se3di_cross(pull->point, turned, wrench + 9);
     return SE3D_OK;
 }
 

@@ -13,6 +13,7 @@
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
 #include "io/read/objects.h"
+#include "math/vec3.h"
 
 typedef struct end_joint {
     const char *key;    /* of the body that it joins the bar to */
@@ -101,13 +102,6 @@ static bool create_end(se3di_reader *reader, const se3di_node *body, const end_j
     return status < 0 ? se3di_reader_fail_system(reader, body, status) : true;
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* The axes of a cross at the end of a bar along z: horizontal, and perpendicular to both, so that
  * nothing turns about z. */
 static void cross_axes(const double z[3], end_joint *end)
@@ -117,7 +111,7 @@ static void cross_axes(const double z[3], end_joint *end)
     end->axis[0] = upright ? 1.0 : 0.0 - z[1] / across;
     end->axis[1] = upright ? 0.0 : z[0] / across;
     end->axis[2] = 0.0;
-    cross(z, end->axis, end->axis_2);
+    se3di_cross(z, end->axis, end->axis_2);
 }
 
 static bool read_first(se3di_reader *reader, const se3di_node *body, const se3di_bar *bar,

@@ -23,6 +23,7 @@
 #include "io/model/model.h"
 #include "io/read/objects.h"
 #include "io/read/shapes.h"
+#include "math/vec3.h"
 
 #define PI   3.14159265358979323846
 #define FLAT 1e-6 /* of its size: how far a corner of a plate may be off its plane */
@@ -32,37 +33,18 @@ static double norm(const double v[3])
     return io_hypot(io_hypot(v[0], v[1]), v[2]);
 }
 
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void subtract(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        out[k] = a[k] - b[k];
-    }
-}
-
 /* Unit columns x, y, z with z along `z` and x in the plane of z and `across`. @return the length of
  * z, 0: the two have no plane */
 static double make_axes(const double z[3], const double across[3], double A[9])
 {
     const double length = norm(z);
     double x[3], y[3];
-    cross(z, across, y);
+    se3di_cross(z, across, y);
     const double size = norm(y);
     if (!(length > 0.0) || !(size > 1e-9 * length * norm(across))) {
         return 0.0;
     }
-    cross(y, z, x);
+    se3di_cross(y, z, x);
     for (int k = 0; k < 3; ++k) {
         A[3 * k] = x[k] / (size * length);
         A[3 * k + 1] = y[k] / size;
@@ -75,7 +57,7 @@ static double make_axes(const double z[3], const double across[3], double A[9])
 static double leg_axes(const se3di_bar *bar, size_t leg, double A[9])
 {
     double z[3], across[3];
-    subtract(bar->to, bar->from[leg], z);
+    se3di_sub(bar->to, bar->from[leg], z);
     memcpy(across, bar->across, sizeof across);
     if (!(norm(across) > 0.0)) { /* horizontal; of an upright leg along x */
         const bool upright = io_hypot(z[0], z[1]) <= 1e-9 * norm(z);
@@ -117,7 +99,7 @@ static section plate_section(const se3di_bar *bar, const double A[9], double mid
     double corner[SE3DI_PLATE_CORNERS_MAX][2];
     for (size_t k = 0; k < bar->corner_count; ++k) {
         double d[3];
-        subtract(bar->corners[k], bar->corners[0], d);
+        se3di_sub(bar->corners[k], bar->corners[0], d);
         for (int i = 0; i < 2; ++i) {
             corner[k][i] = A[i] * d[0] + A[3 + i] * d[1] + A[6 + i] * d[2];
         }
@@ -181,9 +163,9 @@ static void plate_normal(const se3di_bar *bar, double n[3])
     memset(n, 0, 3 * sizeof *n);
     for (size_t k = 1; k + 1 < bar->corner_count; ++k) {
         double p[3], q[3], part[3];
-        subtract(bar->corners[k], bar->corners[0], p);
-        subtract(bar->corners[k + 1], bar->corners[0], q);
-        cross(p, q, part);
+        se3di_sub(bar->corners[k], bar->corners[0], p);
+        se3di_sub(bar->corners[k + 1], bar->corners[0], q);
+        se3di_cross(p, q, part);
         for (int i = 0; i < 3; ++i) {
             n[i] += part[i];
         }
@@ -194,7 +176,7 @@ static double plate_axes(const se3di_bar *bar, double A[9])
 {
     double n[3], side[3];
     plate_normal(bar, n);
-    subtract(bar->corners[1], bar->corners[0], side);
+    se3di_sub(bar->corners[1], bar->corners[0], side);
     return make_axes(n, side, A);
 }
 
@@ -234,9 +216,9 @@ double se3di_bar_weigh(const se3di_bar *bar, double centre[3], double inertia[6]
     }
     for (size_t k = 0; k < count; ++k) {
         double d[3];
-        subtract(parts[k].centre, centre, d);
+        se3di_sub(parts[k].centre, centre, d);
         for (int i = 0; i < 9; ++i) {
-            const double square = i % 4 == 0 ? dot(d, d) : 0.0;
+            const double square = i % 4 == 0 ? se3di_dot(d, d) : 0.0;
             J[i] += parts[k].J[i] + parts[k].volume * (square - d[i / 3] * d[i % 3]);
         }
     }
@@ -316,7 +298,7 @@ static bool read_legs(se3di_reader *reader, const se3di_node *node, se3di_bar *b
     for (size_t leg = 0; leg < bar->leg_count; ++leg) {
         const char *key = leg == 0 ? "from" : "from_2";
         double d[3];
-        subtract(bar->to, bar->from[leg], d);
+        se3di_sub(bar->to, bar->from[leg], d);
         if (!(norm(d) > 0.0)) {
             return se3di_reader_fail_key(reader, node, key,
                                          "is where `to` is, the bar has no "
@@ -339,7 +321,7 @@ static bool check_corners(se3di_reader *reader, const se3di_node *list, const se
     plate_normal(bar, normal);
     for (size_t k = 1; k < n; ++k) {
         double d[3];
-        subtract(bar->corners[k], bar->corners[0], d);
+        se3di_sub(bar->corners[k], bar->corners[0], d);
         size = fmax(size, norm(d));
     }
     if (!(norm(normal) > 1e-9 * size * size) || !(plate_axes(bar, A) > 0.0)) {
@@ -348,16 +330,16 @@ static bool check_corners(se3di_reader *reader, const se3di_node *list, const se
     const se3di_node *node = list->first;
     for (size_t k = 0; k < n; ++k, node = node->next) {
         double d[3], before[3], after[3], turn[3];
-        subtract(bar->corners[k], bar->corners[0], d);
-        subtract(bar->corners[k], bar->corners[(k + n - 1) % n], before);
-        subtract(bar->corners[(k + 1) % n], bar->corners[k], after);
-        cross(before, after, turn);
+        se3di_sub(bar->corners[k], bar->corners[0], d);
+        se3di_sub(bar->corners[k], bar->corners[(k + n - 1) % n], before);
+        se3di_sub(bar->corners[(k + 1) % n], bar->corners[k], after);
+        se3di_cross(before, after, turn);
         const double off = fabs(d[0] * A[2] + d[1] * A[5] + d[2] * A[8]);
         if (off > FLAT * size) {
             return se3di_reader_fail(reader, node,
                                      "is %.3g m off the plane of the others, a plate is flat", off);
         }
-        if (!(dot(turn, normal) > 0.0)) {
+        if (!(se3di_dot(turn, normal) > 0.0)) {
             return se3di_reader_fail(reader, node,
                                      "turns the other way than the others, or is on a straight "
                                      "line: list the corners of a convex plate one after the other "

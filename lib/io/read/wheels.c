@@ -13,6 +13,7 @@
 #include "io/read/elements.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
+#include "math/vec3.h"
 
 /* clang-format off */
 static const se3di_key wheel_keys[] = {
@@ -135,11 +136,6 @@ static bool read_steer_axis(se3di_reader *reader, const se3di_node *node,
                       read_point_on_body(reader, node, "upper", body, def->steer_upper));
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* What is needed to pair wheels, ground frame. */
 typedef struct wheel_seat {
     double at[3], axis[3], forward[3], up[3];
@@ -152,11 +148,12 @@ static bool is_across(const se3di_element_entry *entry, const wheel_seat *seat,
 {
     const double apart[3] = {entry->point_j[0] - seat->at[0], entry->point_j[1] - seat->at[1],
                              entry->point_j[2] - seat->at[2]};
-    const double near = 1e-6 * (sqrt(dot(apart, apart)) + def->radius);
+    const double near = 1e-6 * (sqrt(se3di_dot(apart, apart)) + def->radius);
     return entry->kind == SE3DI_ELEMENT_WHEEL && entry->body_i.index1 == def->chassis.index1 &&
-           dot(entry->axis_j, seat->axis) < 0.0 &&
-           fabs(dot(apart, seat->forward)) <= near * sqrt(dot(seat->forward, seat->forward)) &&
-           fabs(dot(apart, seat->up)) <= near * sqrt(dot(seat->up, seat->up));
+           se3di_dot(entry->axis_j, seat->axis) < 0.0 &&
+           fabs(se3di_dot(apart, seat->forward)) <=
+               near * sqrt(se3di_dot(seat->forward, seat->forward)) &&
+           fabs(se3di_dot(apart, seat->up)) <= near * sqrt(se3di_dot(seat->up, seat->up));
 }
 
 /* A wheel read before that is across and has no opposite one yet. */

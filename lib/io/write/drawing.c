@@ -165,9 +165,9 @@ static double to_light(double c)
 
 static void add_looks(se3di_lister *l, const se3d_model_shape *s, se3di_part part)
 {
-    static const se3di_unit units[] = {[SE3DI_LOOK_BOX] = SE3DI_UNIT_BOX,
-                                       [SE3DI_LOOK_SPHERE] = SE3DI_UNIT_SPHERE,
-                                       [SE3DI_LOOK_CYLINDER] = SE3DI_UNIT_CYLINDER};
+    static const se3di_unit_shape units[] = {[SE3DI_LOOK_BOX] = SE3DI_UNIT_BOX,
+                                             [SE3DI_LOOK_SPHERE] = SE3DI_UNIT_SPHERE,
+                                             [SE3DI_LOOK_CYLINDER] = SE3DI_UNIT_CYLINDER};
     se3di_look looks[SE3DI_LOOKS];
     double A[9];
     const double opacity = part.color[3];

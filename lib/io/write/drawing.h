@@ -10,7 +10,7 @@
 /* A mesh, stretched, turned and moved. */
 typedef struct se3di_part {
     const char *name;
-    se3di_unit unit;
+    se3di_unit_shape unit;
     const se3di_mesh *mesh; /* in place of the unit; NULL: none */
     double position[3];     /* body frame */
     double orientation[4];  /* Euler parameters, to the body frame */

@@ -84,7 +84,8 @@ static void add_part(const side *s, se3di_part *part)
 }
 
 /* A part at the joint with its z along the axis. */
-static void add_at(const side *s, se3di_unit unit, const double color[3], double wide, double high)
+static void add_at(const side *s, se3di_unit_shape unit, const double color[3], double wide,
+                   double high)
 {
     se3di_part part = se3di_part_make("", unit, color);
     memcpy(part.position, s->point, sizeof part.position);
@@ -94,7 +95,7 @@ static void add_at(const side *s, se3di_unit unit, const double color[3], double
 }
 
 /* Something round along the axis, from and to these distances from the joint. */
-static void add_along(const side *s, se3di_unit unit, const double color[3], double radius,
+static void add_along(const side *s, se3di_unit_shape unit, const double color[3], double radius,
                       double from, double to)
 {
     double a[3];

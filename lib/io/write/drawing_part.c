@@ -35,7 +35,7 @@ bool se3di_drawing_is_body(const se3d_model *model, size_t k, se3d_body body)
     return model->bodies[k].body.index1 == body.index1;
 }
 
-se3di_part se3di_part_make(const char *name, se3di_unit unit, const double color[3])
+se3di_part se3di_part_make(const char *name, se3di_unit_shape unit, const double color[3])
 {
     const se3di_part part = {.name = name,
                              .unit = unit,

@@ -36,7 +36,7 @@ typedef enum se3di_joint_look {
 size_t se3di_drawing_find_body(const se3d_model *model, se3d_body body);
 /* Whether `body` is that of entry `k`. */
 bool se3di_drawing_is_body(const se3d_model *model, size_t k, se3d_body body);
-se3di_part se3di_part_make(const char *name, se3di_unit unit, const double color[3]);
+se3di_part se3di_part_make(const char *name, se3di_unit_shape unit, const double color[3]);
 void se3di_part_stretch(se3di_part *part, double a, double b, double c);
 /* A turn from z to `v`. @return |v|. */
 double se3di_part_turn(const double v[3], double p[4]);

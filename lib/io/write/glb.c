@@ -169,7 +169,7 @@ long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
     return view;
 }
 
-static void add_unit(se3di_glb *glb, se3di_unit mesh)
+static void add_unit(se3di_glb *glb, se3di_unit_shape mesh)
 {
     se3di_unit_mesh *m = se3di_iopool_alloc(glb->pool, sizeof *m);
     if (!m) {

@@ -5,14 +5,10 @@
 #include <string.h>
 
 #include "io/base/elementary.h"
+#include "math/vec3.h"
 
 #define RADIAN   0.017453292519943295 /* of a degree */
 #define PARALLEL 1e-3                 /* rad between axes that count as parallel */
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void look_from(se3di_sketch_view *v, double azimuth, double elevation)
 {
@@ -59,7 +55,7 @@ static bool is_planar(const se3d_model *model, const double *poses, double norma
                 continue;
             }
             se3di_sketch_get_axis(model, poses, &model->elements[e], axis);
-            const double along = fabs(dot(axis, normal));
+            const double along = fabs(se3di_dot(axis, normal));
             if (look == SE3DI_JOINT_PIN && !found) {
                 memcpy(normal, axis, sizeof axis);
                 found = true;
@@ -119,9 +115,9 @@ static double measure_gap(const se3di_sketch_view *v, double places[][3], size_t
             for (int c = 0; c < 3; ++c) {
                 d[c] = places[a][c] - places[b][c];
             }
-            const double x = dot(v->right, d);
-            const double y = dot(v->up, d);
-            if (dot(d, d) > 1e-12) {
+            const double x = se3di_dot(v->right, d);
+            const double y = se3di_dot(v->up, d);
+            if (se3di_dot(d, d) > 1e-12) {
                 least = fmin(least, x * x + y * y);
             }
         }
@@ -160,7 +156,7 @@ void se3di_sketch_turn(se3di_sketch_view *view, const double angles[2], const se
 
 se3di_spot se3di_sketch_project(const se3di_sketch_view *v, const double r[3])
 {
-    const se3di_spot spot = {v->origin.x + v->scale * dot(v->right, r),
-                             v->origin.y - v->scale * dot(v->up, r)};
+    const se3di_spot spot = {v->origin.x + v->scale * se3di_dot(v->right, r),
+                             v->origin.y - v->scale * se3di_dot(v->up, r)};
     return spot;
 }

@@ -161,7 +161,7 @@ static void make_grid(se3di_unit_mesh *m)
     }
 }
 
-void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit unit)
+void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit_shape unit)
 {
     static void (*const make[])(se3di_unit_mesh *) = {make_box,    make_sphere, make_cylinder,
                                                       make_spring, make_grid,   make_cone};

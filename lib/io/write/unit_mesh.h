@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef enum se3di_unit {
+typedef enum se3di_unit_shape {
     SE3DI_UNIT_BOX = 0,      /* 1 x 1 x 1 */
     SE3DI_UNIT_SPHERE = 1,   /* of radius 1 */
     SE3DI_UNIT_CYLINDER = 2, /* of radius 1 and length 1 along z */
@@ -14,7 +14,7 @@ typedef enum se3di_unit {
     SE3DI_UNIT_GRID = 4,     /* 20 x 20 squares of 1: lines of two points each */
     SE3DI_UNIT_CONE = 5,     /* of radius 1 at z = -1/2, its tip at z = 1/2 */
     SE3DI_UNIT_COUNT = 6
-} se3di_unit;
+} se3di_unit_shape;
 
 enum { SE3DI_UNIT_VERTICES_MAX = 1024 };
 
@@ -27,6 +27,6 @@ typedef struct se3di_unit_mesh {
 } se3di_unit_mesh;
 
 /* `mesh` is zeroed memory. */
-void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit unit);
+void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit_shape unit);
 
 #endif

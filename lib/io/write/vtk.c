@@ -125,7 +125,7 @@ static bool prepare(se3di_vtk *vtk)
         return false;
     }
     for (int k = 0; k < SE3DI_UNIT_COUNT; ++k) {
-        se3di_unit_mesh_make(&units[k], (se3di_unit)k);
+        se3di_unit_mesh_make(&units[k], (se3di_unit_shape)k);
     }
     vtk->units = units;
     se3di_drawing_get_poses(vtk->model, vtk->poses);
