@@ -109,17 +109,18 @@ function(se3d_find_expat wanted)
     set(SE3D_HAS_EXPAT ${SE3D_HAS_EXPAT} PARENT_SCOPE)
 endfunction()
 
-# se3d_find_microhttpd(<wanted>): the server of `se3d live`. SE3D_HAS_MICROHTTPD says whether it is
-# there.
-function(se3d_find_microhttpd wanted)
-    set(SE3D_HAS_MICROHTTPD OFF)
-    if(wanted AND UNIX)
-        se3d_find_library(microhttpd microhttpd microhttpd.h libmicrohttpd-dev)
-        if(TARGET se3d_deps::microhttpd)
-            set(SE3D_HAS_MICROHTTPD ON)
+# se3d_find_optional(<wanted> <name> <header> <package> <without>): a library that the program can do
+# without. SE3D_HAS_<NAME> says whether it is there; if not, a message what is missing without it.
+function(se3d_find_optional wanted name header package without)
+    string(TOUPPER "SE3D_HAS_${name}" has)
+    set(${has} OFF)
+    if(wanted)
+        se3d_find_library(${name} ${name} ${header} ${package})
+        if(TARGET se3d_deps::${name})
+            set(${has} ON)
         else()
-            message(STATUS "No libmicrohttpd: `se3d live` has no page (Debian: libmicrohttpd-dev)")
+            message(STATUS "No ${name}: ${without} (Debian: ${package})")
         endif()
     endif()
-    set(SE3D_HAS_MICROHTTPD ${SE3D_HAS_MICROHTTPD} PARENT_SCOPE)
+    set(${has} ${${has}} PARENT_SCOPE)
 endfunction()

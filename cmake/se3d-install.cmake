@@ -24,6 +24,12 @@ foreach(kind shared static)
     install(EXPORT se3d-${kind}-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}" COMPONENT development)
 endforeach()
 
+if(TARGET se3d_record)
+    install(TARGETS se3d_record LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/se3d" COMPONENT program)
+    install(FILES "${PROJECT_SOURCE_DIR}/record/record.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/se3d"
+            COMPONENT development)
+endif()
+
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/se3d-config.cmake.in"
                               "${PROJECT_BINARY_DIR}/se3d-config.cmake"
                               INSTALL_DESTINATION "${se3d_cmake_dir}")

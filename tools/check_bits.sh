@@ -47,25 +47,11 @@ needs() {
     }
 }
 
-# Debian's source of AMD, without touching the machine's own list of packages.
+# Debian's source of AMD
 unpack_amd() {
     root=$PWD/build/amd
-    if [ ! -f "$root/AMD/Source/amd_2.c" ]; then
-        mkdir -p "$root/parts" "$root/state/lists/partial" "$root/cache/archives/partial"
-        touch "$root/state/status"
-        for list in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
-            [ ! -f "$list" ] || sed -E 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' \
-                "$list" >"$root/parts/$(basename "$list")"
-        done
-        options="-o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts=$root/parts \
--o Dir::State=$root/state -o Dir::Cache=$root/cache -o APT::Sandbox::User=root"
-        # shellcheck disable=SC2086
-        apt-get -q $options update
-        # shellcheck disable=SC2086
-        (cd "$root" && apt-get -q $options source --download-only suitesparse)
-        tar -xf "$root"/suitesparse_*.orig.tar.* -C "$root" --strip-components=1 --wildcards \
-            '*/AMD/Source/*' '*/AMD/Include/*' '*/SuiteSparse_config/*.h'
-    fi
+    sh tools/debian_source.sh suitesparse "$root" \
+        '*/AMD/Source/*' '*/AMD/Include/*' '*/SuiteSparse_config/*.h'
     flags="$flags -I$root/AMD/Include -I$root/SuiteSparse_config"
     libraries=-lm
     amd="$root/AMD/Source/amd_2.c $root/AMD/Source/amd_defaults.c

@@ -12,7 +12,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
-all="model expression mesh table import plot bytes calls"
+all="model expression mesh table import plot bytes calls record"
 seconds=${1:-}
 case $seconds in
 '' | *[!0-9]*)

@@ -175,7 +175,7 @@ def status_problems(name, comment, docs, code, known):
 def function_problems(match, comment, docs, code, known):
     kind, name, inside = match.groups()
     yield from sentence_problems(comment)
-    if name.endswith(("_def_init", "_options_init", "_settings_init", "_default", "_sized")):
+    if name.endswith(("_def_init", "_options_init", "_settings_init", "_grid_init", "_default", "_sized")):
         return
     yield from parameter_problems(comment, inside)
     if kind.strip() == "void":

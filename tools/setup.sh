@@ -8,7 +8,7 @@
 #     se3d_jobs                    prints the number of processors
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev \
-libmicrohttpd-dev"
+libmicrohttpd-dev libnlopt-dev"
 SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
 SE3D_PYTHON_PACKAGES="python3-cffi python3-numpy python3-dev"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make the documentation as a site: make.py FOLDER. Needs mkdocs and doxygen, no network. Pages are
-those of docs/; links to files that are no pages become their names. The C reference is made from the
-public headers, whose comments doxygen gets in its own form."""
+"""Make the documentation as a site: make.py FOLDER [PLAYGROUND]. Needs mkdocs and doxygen, no
+network. Pages are those of docs/; links to files that are no pages become their names. The C reference
+is made from the public headers, whose comments doxygen gets in its own form."""
 import pathlib
 import re
 import shutil
@@ -85,8 +85,10 @@ def run(words, folder):
 
 
 def main(words):
-    if len(words) != 2:
-        sys.exit("use: make.py FOLDER")
+    if len(words) not in (2, 3):
+        sys.exit("use: make.py FOLDER [PLAYGROUND]")
+    if len(words) == 3 and not pathlib.Path(words[2]).is_file():
+        sys.exit(f"make.py: {words[2]} is missing: python3 tools/playground/make.py {words[2]}")
     folder = pathlib.Path(words[1]).resolve()
     work = folder.with_name(folder.name + ".work")
     shutil.rmtree(work, ignore_errors=True)
@@ -99,6 +101,8 @@ def main(words):
     shutil.move(work / "c", work / "pages/c")
     run(["mkdocs", "build", "--strict", "--clean", "-q", "-d", str(folder)], work)
     shutil.rmtree(work)
+    if len(words) == 3:
+        shutil.copy(words[2], folder / "playground.html")
     print(f"wrote {folder}/index.html")
 
 

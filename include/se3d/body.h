@@ -229,6 +229,13 @@ static inline se3d_marker_def se3d_marker_def_default(void)
 SE3D_API se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def,
                                         se3d_marker *marker);
 
+/* Get the definition of a marker. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_marker_get_def(const se3d_system *system, se3d_marker marker,
+                                         se3d_marker_def *def);
+
 /* Destroy a marker. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_marker_destroy(se3d_system *system, se3d_marker marker);
 

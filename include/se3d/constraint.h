@@ -18,9 +18,8 @@ typedef enum se3d_formulation {
     SE3D_FORMULATION_RP = 1,     /* unknowns: position and Euler parameters with p.p - 1 = 0 */
     SE3D_FORMULATION_JOINT = 2,  /* the coordinates of a tree of joints are integrated (dop853,
                                     gauss, rk45, rk4); elsewhere as ROMEGA */
-    SE3D_FORMULATION_AUTO = 3    /* of solvers: JOINT where joint coordinates are the whole motion
-                                    (an open tree of joints, nothing prescribed, no friction that
-                                    needs the load of a joint) and a method above integrates them;
+    SE3D_FORMULATION_AUTO = 3    /* of solvers: JOINT where a method above integrates joints, no
+                                    friction needs the load of one and loops leave a freedom;
                                     else ROMEGA */
 } se3d_formulation;
 
@@ -65,6 +64,13 @@ static inline se3d_primitive_def se3d_primitive_def_default(void)
  * NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_primitive_create(se3d_system *system, const se3d_primitive_def *def,
                                            se3d_constraint *constraint);
+
+/* Get the definition of a primitive. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (another constraint, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_primitive_get_def(const se3d_system *system, se3d_constraint primitive,
+                                            se3d_primitive_def *def);
 
 /* ---- User-defined constraints. ---- */
 

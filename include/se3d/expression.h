@@ -100,6 +100,20 @@ SE3D_API int se3d_expression_is_constant(const se3d_expression *expression);
  * "" for NULL. @since 0.1 */
 SE3D_API const char *se3d_expression_get_text(const se3d_expression *expression);
 
+/* Write an expression in standard form, with other names of its variables: what is compiled from
+ * the text gives the same bits. Constants and parameters are numbers there, and what has been
+ * computed from them.
+ * @param[in] variables  [variable_count] names, or anything else that stands for a variable; may be
+ *                       NULL if there are no variables
+ * @param[out] text      [capacity] ends with a zero byte; NULL: only *length is told
+ * @param[in] capacity   of `text`
+ * @param[out] length    of the whole text, without the zero byte
+ * @return OK, NULL, INVALID_ARGUMENT (capacity; the text is cut), NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_expression_write(const se3d_expression *expression,
+                                           const char *const *variables, char *text,
+                                           size_t capacity, size_t *length);
+
 #ifdef __cplusplus
 }
 #endif

@@ -373,6 +373,54 @@ static inline se3d_armature_def se3d_armature_def_default(void)
 SE3D_API se3d_status se3d_force_create_armature(se3d_system *system, const se3d_armature_def *def,
                                                 se3d_force *force);
 
+/* ---- Definitions as they would be given again, with the values of now. Set def->struct_size
+ * before the call; the name (NULL: none) is valid until the system is edited. ---- */
+
+/* Get the definition of a tsda. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_tsda(const se3d_system *system, se3d_force force,
+                                         se3d_tsda_def *def);
+
+/* Get the definition of an rsda. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_rsda(const se3d_system *system, se3d_force force,
+                                         se3d_rsda_def *def);
+
+/* Get the definition of a force or torque. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_load(const se3d_system *system, se3d_force force,
+                                         se3d_load_def *def);
+
+/* Get the definition of a bushing. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_bushing_def(const se3d_system *system, se3d_force force,
+                                                se3d_bushing_def *def);
+
+/* Get the definition of a friction element. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_friction(const se3d_system *system, se3d_force force,
+                                             se3d_friction_def *def);
+
+/* Get the definition of a stop. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_stop(const se3d_system *system, se3d_force force,
+                                         se3d_stop_def *def);
+
+/* Get the definition of an effort. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_effort(const se3d_system *system, se3d_force force,
+                                           se3d_effort_def *def);
+
+/* Get the definition of an armature. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an
+ * element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_armature(const se3d_system *system, se3d_force force,
+                                             se3d_armature_def *def);
+
+/* Get the definition of an element with a callback. @return OK, NULL, STALE_HANDLE,
+ * INVALID_ARGUMENT (an element of another type, struct_size). @since 0.1 */
+SE3D_API se3d_status se3d_force_get_callback(const se3d_system *system, se3d_force force,
+                                             se3d_force_callback_def *def);
+
 /* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop, tyre */

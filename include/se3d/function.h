@@ -73,9 +73,9 @@ typedef enum se3d_table_kind {
 typedef struct se3d_function_def {
     size_t struct_size;
     const char *expression;                /* text, copied; NULL: not an expression */
-    const char *const *variables;          /* names of x[0..variable_count); NULL: {"t"} */
+    const char *const *variables;          /* [variable_count] names of x; NULL: {"t"} */
     size_t variable_count;                 /* default 1, at most SE3D_FUNCTION_VARIABLES_MAX */
-    const se3d_expression_symbol *symbols; /* named constants of the expression */
+    const se3d_expression_symbol *symbols; /* [symbol_count] of the expression */
     size_t symbol_count;                   /* default 0 */
     se3d_function_callback callback;       /* NULL: not a callback */
     void *ctx;                             /* of `callback` */
@@ -134,6 +134,23 @@ SE3D_API se3d_status se3d_function_create_expression(se3d_system *system, const 
  * @since 0.1 */
 SE3D_API se3d_status se3d_function_set_constant(se3d_system *system, se3d_function function,
                                                 double value);
+
+/* Get the definition of a function. An expression is given as `compiled`. Set def->struct_size
+ * before the call.
+ * @param[out] def  its arrays and its expression are valid until the system is edited; its
+ *                  `signals` are NULL: se3d_function_get_signal gives them one by one
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_function_get_def(const se3d_system *system, se3d_function function,
+                                           se3d_function_def *def);
+
+/* Get a number of the state that a function depends on.
+ * @param[in] k        from 0, below the signal_count of its definition
+ * @param[out] signal  what it is
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (k).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_function_get_signal(const se3d_system *system, se3d_function function,
+                                              size_t k, se3d_signal *signal);
 
 /* Destroy a function. @return OK, NULL, STALE_HANDLE, IN_USE. @since 0.1 */
 SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);

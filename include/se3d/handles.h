@@ -93,6 +93,12 @@ typedef struct se3d_wheel {
     uint32_t generation;
 } se3d_wheel;
 
+/* A road under tyres. @since 0.1 */
+typedef struct se3d_road {
+    uint32_t index1;
+    uint32_t generation;
+} se3d_road;
+
 /* A user-defined state. @since 0.1 */
 typedef struct se3d_state {
     uint32_t index1;

@@ -113,6 +113,73 @@ SE3D_API const char *se3d_model_get_title(const se3d_model *model);
 SE3D_API se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name,
                                               double *value);
 
+/* Count the parameters of the file itself, without those of its parts. @return the number; 0 for
+ * NULL. @since 0.1 */
+SE3D_API size_t se3d_model_count_parameters(const se3d_model *model);
+
+/* Get the name of a parameter of the file.
+ * @param[in] index  from 0, below se3d_model_count_parameters
+ * @return the text, owned by the model; "" for NULL or a wrong index. @since 0.1 */
+SE3D_API const char *se3d_model_get_parameter_name(const se3d_model *model, size_t index);
+
+/* Get what the file says that a parameter is: "30 mm", "2*a". Settings replace the value only.
+ * @param[in] index  from 0, below se3d_model_count_parameters
+ * @return the text, owned by the model; "" for a list, NULL or a wrong index. @since 0.1 */
+SE3D_API const char *se3d_model_get_parameter_text(const se3d_model *model, size_t index);
+
+/* How to write a model. @since 0.1 */
+typedef struct se3d_write_options {
+    size_t struct_size;
+    int32_t partial; /* not 0: what a file cannot hold (callbacks, and what refers to them; studies;
+                              of a file with units all but the elements) is left out, and a comment
+                              says so; 0, the default: it is an error */
+    int32_t elements_only; /* not 0: without analyses, results, events, particles */
+} se3d_write_options;
+
+/* Fill `options`, of `size` bytes, with the defaults: see se3d_write_options_default. @since 0.1 */
+SE3D_API void se3d_write_options_init(se3d_write_options *options, size_t size);
+
+/* Return the defaults. @since 0.1 */
+static inline se3d_write_options se3d_write_options_default(void)
+{
+    se3d_write_options options;
+    se3d_write_options_init(&options, sizeof options);
+    return options;
+}
+
+/* Write a model with its system as it is now: elements with the values that were set, poses and
+ * velocities. Parts, repeats and expressions are resolved, in SI units; analyses, results and
+ * particles are as the file said them. Read again, an element is the same to the bit, wherever the
+ * bodies are. Runs then have the same bits if the constraints were made in the order of a file
+ * (joints, couplers, primitives, drivers) and no angle has turned farther than half round; else
+ * they agree to rounding. Not written are what an analysis has left in the system and what wheels
+ * count as zero travel. Studies, and all but the elements of a file with units of its own, cannot
+ * be written: that is UNSUPPORTED unless `partial` or `elements_only` leaves them out.
+ * @param[in] path     of the file
+ * @param[in] options  NULL: the defaults
+ * @param[out] error   filled on failure, emptied on success; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (options), UNSUPPORTED (a file cannot hold it: the message
+ *         names the element or the sections), IO, NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_model_write(const se3d_model *model, const char *path,
+                                      const se3d_write_options *options, se3d_model_error *error);
+
+/* As se3d_model_write, to memory.
+ * @param[out] text     [capacity] UTF-8, ends with a zero byte; NULL: only *length is told
+ * @param[in] capacity  of `text`
+ * @param[out] length   of the text, without the zero byte
+ * @return OK, NULL, INVALID_ARGUMENT (options, capacity), UNSUPPORTED, NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_model_write_text(const se3d_model *model,
+                                           const se3d_write_options *options, char *text,
+                                           size_t capacity, size_t *length,
+                                           se3d_model_error *error);
+
+/* Write a system that was made by calls as a model file; elements without a name get one. @return
+ * as se3d_model_write. @since 0.1 */
+SE3D_API se3d_status se3d_system_write(const se3d_system *system, const char *path,
+                                       const se3d_write_options *options, se3d_model_error *error);
+
 /* One entry of `analysis`. @since 0.1 */
 typedef struct se3d_model_analysis {
     double start;     /* [s]; NaN: where the analysis before ended, 0 for the first */
@@ -238,12 +305,14 @@ typedef struct se3d_model_shape {
     se3d_body body;        /* that it is on */
     double size[3];        /* box: lengths of its edges [m] */
     double radius;         /* sphere, capsule, cylinder [m] */
-    double length;         /* capsule (between its centres), cylinder, along the shape's z [m] */
+    double length;         /* capsule (between its centres), cylinder, funnel, along its z [m] */
     double scale;          /* mesh: factor on its vertices [1] */
     double position[3];    /* of the shape's centre, body frame [m] */
     double orientation[4]; /* shape -> body, Euler parameters */
     double color[3];       /* 0..1; -1 if none is given */
     const char *file;      /* mesh; "" for the others; owned by the model */
+    double bottom_radius;  /* funnel, at its lower end along z [m], */
+    double top_radius;     /* and at its upper end [m] */
 } se3d_model_shape;
 
 /* Count the shapes of the bodies of a model. @return the number; 0 for NULL. @since 0.1 */

@@ -45,7 +45,7 @@ static inline se3d_joint_def se3d_joint_def_default(void)
  * bodies. The joint angle at the present pose is then def->angle0.
  * @param[in] at    the joint point, ground frame [m]
  * @param[in] axis  direction of the joint axis, ground frame, not zero
- * @param[in] ref   direction from which the angle counts, ground frame; NULL: chosen
+ * @param[in] ref   [3] direction from which the angle counts, ground frame; NULL: chosen
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (not finite, or no direction).
  * @since 0.1 */
 SE3D_API se3d_status se3d_joint_def_set_frame(const se3d_system *system, se3d_joint_def *def,
@@ -146,6 +146,16 @@ SE3D_API se3d_status se3d_joint_create_perpendicular2(se3d_system *system,
                                                       const se3d_joint_def *def,
                                                       se3d_constraint *joint);
 
+/* Get the definition of a joint, with which se3d_joint_create_<type> makes it again, to the bit, in
+ * whatever pose its bodies are: reference directions and a distance that were chosen are given. An
+ * exception is the advance of a screw, which counts from the pose at creation. Set
+ * def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no joint between two bodies, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
+                                        se3d_joint_def *def);
+
 /* Coordinates of a joint: of j relative to i, about or along its axis. @since 0.1 */
 typedef enum se3d_joint_coordinate {
     SE3D_JOINT_COORDINATE_ANGLE = 0,       /* [rad], counts turns */
@@ -215,6 +225,14 @@ SE3D_API se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const ch
                                                    se3d_constraint pinion, se3d_constraint rack,
                                                    double radius, se3d_constraint *joint);
 
+/* Get the definition of a coupler, gear or rack and pinion as that of a coupler, with the value
+ * that it keeps. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (another constraint, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_coupler_get_def(const se3d_system *system, se3d_constraint coupler,
+                                          se3d_coupler_def *def);
+
 /* The definition of a driver: coordinate of `joint` = f(t). @since 0.1 */
 typedef struct se3d_driver_def {
     size_t struct_size;
@@ -241,6 +259,13 @@ static inline se3d_driver_def se3d_driver_def_default(void)
  * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *def,
                                         se3d_constraint *driver);
+
+/* Get the definition of a driver. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (another constraint, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constraint driver,
+                                         se3d_driver_def *def);
 
 /* Get the prescribed value f of a driver, or of any constraint of one equation, at the present
  * time.

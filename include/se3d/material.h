@@ -54,6 +54,16 @@ SE3D_API se3d_status se3d_material_set(se3d_system *system, se3d_material materi
 SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                        se3d_material_def *def);
 
+/* Count the materials of a system. @return the number; 0 for NULL. @since 0.1 */
+SE3D_API size_t se3d_system_count_materials(const se3d_system *system);
+
+/* Get a material of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_materials
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_get_material(const se3d_system *system, size_t index,
+                                              se3d_material *material);
+
 /* Destroy a material. @return OK, NULL, STALE_HANDLE, IN_USE (a shape or a set of particles uses
  * it). @since 0.1 */
 SE3D_API se3d_status se3d_material_destroy(se3d_system *system, se3d_material material);
@@ -82,6 +92,13 @@ static inline se3d_material_pair_def se3d_material_pair_def_default(void)
  * INVALID_ARGUMENT. @since 0.1 */
 SE3D_API se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
                                             const se3d_material_pair_def *def);
+
+/* Get what was set of a pair of materials. Set def->struct_size before the call.
+ * @param[out] def  negative numbers: the mixing rules
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_material_get_pair(const se3d_system *system, se3d_material a,
+                                            se3d_material b, se3d_material_pair_def *def);
 
 #ifdef __cplusplus
 }

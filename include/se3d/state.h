@@ -80,6 +80,26 @@ SE3D_API se3d_status se3d_state_find(const se3d_system *system, const char *name
 /* Count the states. @return 0 if `system` is NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_states(const se3d_system *system);
 
+/* Get a state of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_states
+ * @return OK, NULL, INVALID_ARGUMENT (index). @since 0.1 */
+SE3D_API se3d_status se3d_system_get_state(const se3d_system *system, size_t index,
+                                           se3d_state *state);
+
+/* Get the name of a state.
+ * @param[out] name  "" if it has none; valid until the system is edited
+ * @return OK, NULL, STALE_HANDLE. @since 0.1 */
+SE3D_API se3d_status se3d_state_get_name(const se3d_system *system, se3d_state state,
+                                         const char **name);
+
+/* Get the definition of a state, whose initial value is the present one. Set def->struct_size
+ * before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size, or the slip of a tyre).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_state_get_def(const se3d_system *system, se3d_state state,
+                                        se3d_state_def *def);
+
 /* Set the value of a state: a jump between steps, or another start.
  * @param[in] value  [unit of z]
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. @since 0.1 */

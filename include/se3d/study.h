@@ -87,6 +87,117 @@ SE3D_API se3d_status se3d_study_run_sample(se3d_study *study, uint64_t sample, c
 SE3D_API se3d_status se3d_study_set_interrupt(se3d_study *study, se3d_interrupt interrupt,
                                               void *ctx);
 
+/* Count the parameters of which derivatives are taken: those under `sensitivities` of the study, or
+ * all that vary. @return the number; 0 for NULL. @since 0.1 */
+SE3D_API size_t se3d_study_count_sensitivities(const se3d_study *study);
+
+/* Get the name of a parameter of which derivatives are taken.
+ * @param[in] index  from 0, below se3d_study_count_sensitivities
+ * @return the text, owned by the model; "" for NULL or a wrong index. @since 0.1 */
+SE3D_API const char *se3d_study_get_sensitivity_name(const se3d_study *study, size_t index);
+
+/* Run the model with its own parameters and measure it, as exactly as for derivatives: dynamics by
+ * a method of high order at the tolerance 1e-11, if the options of the model ask for no other.
+ * @param[out] measures  [se3d_study_count_measures], each in SI units; NaN: it has none
+ * @param[out] error     filled on failure: why; may be NULL
+ * @return as se3d_study_eval.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_study_eval_nominal(se3d_study *study, double *measures,
+                                             se3d_model_error *error);
+
+/* Take the derivatives of all measures with respect to one parameter, where all parameters are as
+ * in the model: by differences of runs, extrapolated to the step 0; of one side, where runs on the
+ * other one fail. docs/theory/sensitivities.md
+ * @param[in] index         from 0, below se3d_study_count_sensitivities
+ * @param[out] value        of the parameter, in SI units [SI] if it has a unit, else in those of
+ *                          the file
+ * @param[out] derivatives  [se3d_study_count_measures]; NaN: there is none
+ * @param[out] errors       [se3d_study_count_measures] estimates of their errors; may be NULL
+ * @param[out] error        filled on failure: why; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (index), STATE (while a sample runs), NO_MEMORY, INTERRUPTED,
+ *         NOT_FINITE (a measure has no value: the others have their derivatives), or why the model
+ *         could not be run.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_study_eval_sensitivity(se3d_study *study, size_t index, double *value,
+                                                 double *derivatives, double *errors,
+                                                 se3d_model_error *error);
+
+/* What a study seeks, as `optimize` of its file says. @since 0.1 */
+typedef struct se3d_study_goal {
+    const char *method;   /* "cobyla", "slsqp", ...; owned by the library */
+    int32_t maximizes;    /* not 0: the measure is to be the greatest, else the least */
+    int32_t reserved;     /* 0 */
+    size_t measure;       /* index of the measure */
+    uint64_t evaluations; /* of the measures, at most */
+    double tolerance;     /* end below steps of this share of the bounds [1] */
+    uint64_t seed;        /* of methods that draw */
+} se3d_study_goal;
+
+/* As se3d_study_get_goal, told the size of *goal in bytes. @return as se3d_study_get_goal, and
+ * INVALID_ARGUMENT (size). @since 0.1 */
+SE3D_API se3d_status se3d_study_get_goal_sized(const se3d_study *study, se3d_study_goal *goal,
+                                               size_t size);
+
+/* Get what a study seeks. @return OK, NULL, STATE (nothing). @since 0.1 */
+static inline se3d_status se3d_study_get_goal(const se3d_study *study, se3d_study_goal *goal)
+{
+    return se3d_study_get_goal_sized(study, goal, sizeof *goal);
+}
+
+/* Count the parameters that are sought. @return the number; 0 for NULL, or if there are none.
+ * @since 0.1 */
+SE3D_API size_t se3d_study_count_unknowns(const se3d_study *study);
+
+/* Get the name of a parameter that is sought.
+ * @param[in] index  from 0, below se3d_study_count_unknowns
+ * @return the text, owned by the model; "" for NULL or a wrong index. @since 0.1 */
+SE3D_API const char *se3d_study_get_unknown_name(const se3d_study *study, size_t index);
+
+/* Get between what a parameter is sought, and from where.
+ * @param[in] index    from 0, below se3d_study_count_unknowns
+ * @param[out] bounds  the least and the greatest value, in SI units [SI] if `optimize` gives it a
+ *                     unit, else in those of the file
+ * @param[out] start   the first value, in the same unit [SI]
+ * @return OK, NULL, INVALID_ARGUMENT (index). @since 0.1 */
+SE3D_API se3d_status se3d_study_get_unknown(const se3d_study *study, size_t index, double bounds[2],
+                                            double *start);
+
+/* Write a value of a parameter that is sought as the model file takes it, and --set: "0.2 kg*m^2".
+ * @param[in] index  from 0, below se3d_study_count_unknowns
+ * @param[in] value  as in se3d_study_get_unknown [SI]
+ * @param[out] text  [size] with a 0 at its end
+ * @param[in] size   at least 100
+ * @return OK, NULL, INVALID_ARGUMENT (index, size). @since 0.1 */
+SE3D_API se3d_status se3d_study_write_unknown(const se3d_study *study, size_t index, double value,
+                                              char *text, size_t size);
+
+/* Count the measures that are limited. @return the number; 0 for NULL, or if there are none.
+ * @since 0.1 */
+SE3D_API size_t se3d_study_count_limits(const se3d_study *study);
+
+/* Get the limits of a measure.
+ * @param[in] index     from 0, below se3d_study_count_limits
+ * @param[out] measure  its index
+ * @param[out] bounds   the least and the greatest value [SI], as numbers in the frame of the
+ *                      measure; infinite: none; equal: the only value
+ * @return OK, NULL, INVALID_ARGUMENT (index). @since 0.1 */
+SE3D_API se3d_status se3d_study_get_limit(const se3d_study *study, size_t index, size_t *measure,
+                                          double bounds[2]);
+
+/* Run the model with values of the parameters that are sought, and measure it.
+ * @param[in] values        [se3d_study_count_unknowns], as in se3d_study_get_unknown [SI]
+ * @param[out] measures     [se3d_study_count_measures], each in SI units; NaN: it has none
+ * @param[out] derivatives  [se3d_study_count_unknowns][se3d_study_count_measures] of each measure
+ *                          with respect to each parameter, by differences of fourth order of
+ *                          runs within its bounds; NaN: there is none; NULL: not wanted
+ * @param[out] error        filled on failure: why; may be NULL
+ * @return OK, NULL, INVALID_ARGUMENT (a value is not finite), STATE (nothing is sought, or while a
+ *         sample runs), or as se3d_study_eval.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values,
+                                              double *measures, double *derivatives,
+                                              se3d_model_error *error);
+
 /* Answer a request in JSON, {"id": 1, "parameters": {"m": 2}}, with {"id": 1, "measures": {"top":
  * 0.5}}; what fails has "error". Any parameter of the model may be given, in the units of its file;
  * those that are not are as in the file. {"id": 1, "sample": 7} runs a sample of the study.

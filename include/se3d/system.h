@@ -98,6 +98,13 @@ SE3D_API se3d_status se3d_system_get_gravity(const se3d_system *system, double g
 SE3D_API se3d_status se3d_system_set_gravity_function(se3d_system *system,
                                                       const se3d_function gravity[3]);
 
+/* Get the functions of the components of gravity.
+ * @param[out] gravity  of x, y, z; null: a constant, that of se3d_system_get_gravity
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_get_gravity_function(const se3d_system *system,
+                                                      se3d_function gravity[3]);
+
 /* Set the time at which functions of time are evaluated, also that of the system's particle sets.
  * @param[in] time  [s]
  * @return OK, NULL, INVALID_ARGUMENT.

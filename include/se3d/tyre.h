@@ -257,10 +257,15 @@ typedef struct se3d_tyre_def {
                                    patch_length nor rolling_resistance */
     size_t coefficient_count;   /* those behind it have their values of the list */
     int32_t measured_side;      /* se3d_tyre_side that the coefficients hold for */
-    int32_t is_transient; /* 1: slip lags by relaxation lengths, those below or, where they are 0,
+    int32_t is_transient;   /* 1: slip lags by relaxation lengths, those below or, where they are 0,
                              those of a Magic Formula's coefficients; default 0 */
-    double relaxation_x;  /* relaxation length of the slip ratio, >= 0 [m]; > 0: it lags */
-    double relaxation_y;  /* of the slip angle, >= 0 [m]; > 0: it lags */
+    double relaxation_x;    /* relaxation length of the slip ratio, >= 0 [m]; > 0: it lags */
+    double relaxation_y;    /* of the slip angle, >= 0 [m]; > 0: it lags */
+    se3d_road surface;      /* in place of point and normal, on the body `road` (which may be null
+                             then); null: a plane */
+    double envelope_length; /* over which obstacles are rolled, >= 0 [m]; 0: the tyre touches a
+                               point, on a mesh 0.4 radius */
+    double envelope_width;  /* the same across, >= 0 [m]; 0: the length */
 } se3d_tyre_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_tyre_def_default. @since 0.1 */
@@ -291,6 +296,13 @@ SE3D_API se3d_status se3d_tyre_coefficient_find(const char *name, size_t *index)
  * INVALID_ARGUMENT, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def,
                                             se3d_force *force);
+
+/* Get the definition of a tyre. Set def->struct_size before the call.
+ * @param[out] def  its name (NULL: none) and coefficients are valid until the system is edited
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (an element of another type, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_force_get_tyre(const se3d_system *system, se3d_force force,
+                                         se3d_tyre_def *def);
 
 /* What a tyre tells: X(NAME, number, name). Forces [N] and moments [N m] in the axes at the contact
  * point, on the wheel; MY is about the spin axis and what comes on top of the forces at the contact
@@ -331,7 +343,8 @@ typedef enum se3d_tyre_value {
  * @param[in] first    the first value, se3d_tyre_value
  * @param[in] count    of values from there on
  * @param[out] values  [count]
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (first, count, or no tyre).
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (first, count, or no tyre), NOT_FINITE,
+ * CALLBACK (of the road).
  * @since 0.1 */
 SE3D_API se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,
                                           size_t count, double *values);

@@ -67,6 +67,13 @@ SE3D_API se3d_status se3d_wheel_destroy(se3d_system *system, se3d_wheel wheel);
 SE3D_API se3d_status se3d_wheel_get_name(const se3d_system *system, se3d_wheel wheel,
                                          const char **name);
 
+/* Get the definition of a wheel. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_wheel_get_def(const se3d_system *system, se3d_wheel wheel,
+                                        se3d_wheel_def *def);
+
 /* Count the wheels of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_wheels(const se3d_system *system);
 

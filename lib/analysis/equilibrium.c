@@ -17,6 +17,7 @@
 #include "analysis/equilibrium.h"
 
 #include "analysis/static_newton.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 #include "nonlinear/ranks.h"
 #include "primitive/turn_counter.h"
@@ -120,7 +121,7 @@ static double measure_step(const statics *s)
     double length = 0.0;
     for (size_t k = 0; k < s->equations->assembly.unknown_count; ++k) {
         const double part = fabs(s->step[k]) / (k % 6 < 3 ? s->size : 1.0);
-        length = part <= length ? length : part; /* NaN stays */
+        length = se3di_larger(length, part);
     }
     return length;
 }

@@ -161,28 +161,32 @@ static se3d_status build_equations(se3di_run *run)
                                 run->analysis == SE3D_ANALYSIS_DYNAMICS, run->error);
 }
 
-/* The formulation of `auto`. *picked: the equations are built, in joint coordinates, which are the
- * whole motion; with loops, prescribed motion or friction under load they cost more than bodies. */
+/* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
+#define TOLERANCE_OF_LOOPS 2.3e-10
+
+/* And gauss passes singular positions in fewer steps, and more exactly, by the bodies. */
+static int takes_loops(const se3di_run *run)
+{
+    return run->integration.method->tag != SE3D_METHOD_GAUSS &&
+           !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
+}
+
+/* The formulation of `auto`. *picked: the equations are built, in joint coordinates. */
 static se3d_status try_joints(se3di_run *run, int *picked)
 {
-    const se3di_model *model = run->model;
-    const size_t joints = model->constraint_slots.count;
+    se3di_model *model = run->model;
     *picked = 0;
     run->formulation = &se3di_formulation_romega;
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS || !run->integration.method->is_explicit ||
-        joints == 0 || joints > model->body_slots.count) {
+        model->constraint_slots.count == 0) {
         return SE3D_OK;
     }
-    run->formulation = &se3di_formulation_joint;
-    const se3d_status status = build_equations(run);
-    *picked = status >= 0 && run->equations.is_open_tree;
-    if (!*picked) {
-        run->formulation = &se3di_formulation_romega;
+    SE3DI_TRY(
+        se3di_equations_try_joints(&run->equations, model, takes_loops(run), run->error, picked));
+    if (*picked) {
+        run->formulation = &se3di_formulation_joint;
     }
-    if (!*picked && status >= 0) {
-        se3di_equations_destroy(&run->equations);
-    }
-    return status < 0 ? status : SE3D_OK;
+    return SE3D_OK;
 }
 
 /* Methods that take bodies one by one. */

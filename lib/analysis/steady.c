@@ -5,6 +5,7 @@
  * units of the masses and of the fastest rate. */
 #include "analysis/steady.h"
 
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -188,7 +189,7 @@ static double compare(const se3di_linear *linear, const coefficients *a, const c
                                    fabs(a->D[k] - b->D[k]) / (mass * rate),
                                    fabs(a->K[k] - b->K[k]) / (mass * rate * rate)};
         for (int c = 0; c < 4; ++c) {
-            most = changes[c] <= most ? most : changes[c]; /* NaN stays */
+            most = se3di_larger(most, changes[c]);
         }
     }
     return most;

@@ -100,7 +100,7 @@ se3d_status se3di_loads_potential(const se3di_model *model, double t, double *po
                                   double *springs)
 {
     SE3DI_TRY(se3di_forces_potential(model, t, potential));
-    *springs = se3di_contacts_potential(model);
+    *springs = se3di_contacts_potential(model, t);
     *potential += *springs;
     return SE3D_OK;
 }
@@ -109,7 +109,10 @@ se3d_status se3di_loads_complete_power(const se3di_model *model, double t, doubl
 {
     power[2] = 0.0;
     SE3DI_TRY(driver_power(model, t, &power[2]));
-    power[0] += se3di_contacts_power(model);
+    double into, fed;
+    se3di_contacts_power(model, t, &into, &fed);
+    power[0] += into;
+    power[1] += fed;
     return SE3D_OK;
 }
 
@@ -131,7 +134,7 @@ void se3di_work_take(se3di_model *model, double h, const double power[3])
 {
     if (model->work_valid <= 0) {
         memset(model->work, 0, sizeof model->work);
-        model->work[0] = se3di_contacts_potential(model);
+        model->work[0] = se3di_contacts_potential(model, model->time);
     }
     for (int k = 0; k < 3; ++k) {
         model->work[k] += model->work_valid > 0 ? 0.5 * h * (model->power[k] + power[k]) : 0.0;

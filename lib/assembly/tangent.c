@@ -424,15 +424,15 @@ static void leave_excess(const se3di_model *model, const se3di_force *force, dou
 }
 
 /* The rate of a slip that lags: its derivatives, and what the wrench of the tyre has of it. */
-static void add_lag(se3di_tangent *tangent, const se3di_force *state)
+static se3d_status add_lag(se3di_tangent *tangent, const se3di_force *state, double t)
 {
     const se3di_model *model = tangent->assembly->model;
     const se3di_force *tyre = &model->forces[state->tyre_index];
     const uint32_t bodies[2] = {tyre->body_i, tyre->body_j}, carrier = state->body_j;
     const double zero[72] = {0.0};
     double own[72] = {SE3DI_CARRIER_MASS};
-    se3di_tyre_lag lag;
-    se3di_tyre_lag_eval(model, tyre, state->coordinate, 1, &lag);
+    se3di_tyre_lag lag = {.wants_derivative = 1};
+    SE3DI_TRY(se3di_tyre_lag_eval(model, tyre, t, state->coordinate, &lag));
     own[0] *= lag.own;
     add_force_block(tangent, carrier, carrier, zero, own);
     for (int b = 0; b < 2; ++b) {
@@ -445,6 +445,7 @@ static void add_lag(se3di_tangent *tangent, const se3di_force *state)
         add_force_block(tangent, carrier, bodies[b], K, D);
         add_force_block(tangent, bodies[b], carrier, zero, gain);
     }
+    return SE3D_OK;
 }
 
 static se3d_status add_forces(se3di_tangent *tangent, double t)
@@ -459,7 +460,7 @@ static se3d_status add_forces(se3di_tangent *tangent, double t)
         leave_excess(model, force, tangent->excess ? tangent->excess[k] : 0.0, &effect);
         add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
         if (force->tyre_index >= 0 && !tangent->is_convex) {
-            add_lag(tangent, force);
+            SE3DI_TRY(add_lag(tangent, force, t));
         }
         for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
             if (force->function[c] >= 0) {
@@ -739,7 +740,7 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
         se3di_convex_blocks(tangent);
     }
     SE3DI_TRY(add_forces(tangent, t));
-    return se3di_contacts_visit(model, add_contact, tangent);
+    return se3di_contacts_visit(model, t, add_contact, tangent);
 }
 
 static void add_block(const double *block, size_t n, double s, const double *x, double *out)

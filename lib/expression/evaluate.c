@@ -7,16 +7,22 @@
  *     y = f(a, b):  y_i = f_a a_i + f_b b_i,    y'' = f_a a'' + f_b b'' + f_aa a'^2 + 2 f_ab a' b'
  *                                                     + f_bb b'^2
  *
- * with first derivatives along all variables (struct slope) or first and second along the first
- * variable (struct jet). The masks of an instruction say on which variables an operand depends:
- * a term that is zero for that reason stays zero also if f_u is infinite. */
+ * with first derivatives along all variables (struct slope) or first and second along a direction,
+ * that of the time or another (struct jet). The masks of an instruction say on which variables an
+ * operand depends: a term that is zero for that reason stays zero also if f_u is infinite. */
 #include "expression/functions.h"
 #include "expression/program.h"
 #include "se3d/expression.h"
 
 #include <math.h>
 
-/* ---- value, first and second derivative with respect to variable 0 --------------------------*/
+/* ---- value, first and second derivative along a direction of the variables --------------------*/
+
+/* A derivative along variables: their bits, and the direction's components. */
+typedef struct way {
+    unsigned mask;
+    const double *components; /* of the variables in the mask */
+} way;
 
 typedef struct jet {
     double f, t, tt;
@@ -43,24 +49,24 @@ static inline jet jet_divide(jet a, jet b)
 
 static inline void jet_chain(jet *u, const double d[3], unsigned mask)
 {
-    int depends = (mask & 1u) != 0;
+    int depends = mask != 0;
     u->tt = depends ? d[1] * u->tt + d[2] * u->t * u->t : 0.0;
     u->t = depends ? d[1] * u->t : 0.0;
     u->f = d[0];
 }
 
-static void jet_chain2(jet *a, jet b, const se3di_partials *d, const se3di_instruction *in)
+static void jet_chain2(jet *a, jet b, const se3di_partials *d, unsigned mask_a, unsigned mask_b)
 {
     double t = 0.0, tt = 0.0;
-    if (in->mask_a & 1u) {
+    if (mask_a) {
         t = d->a * a->t;
         tt = d->a * a->tt + d->aa * a->t * a->t;
     }
-    if (in->mask_b & 1u) {
+    if (mask_b) {
         t += d->b * b.t;
         tt += d->b * b.tt + d->bb * b.t * b.t;
     }
-    if (in->mask_a & in->mask_b & 1u) {
+    if (mask_a && mask_b) {
         tt += 2.0 * d->ab * a->t * b.t;
     }
     *a = (jet){d->f, t, tt};
@@ -85,11 +91,11 @@ static void jet_step(jet s[5])
     }
 }
 
-static void jet_binary(jet *a, const se3di_instruction *in)
+static void jet_binary(jet *a, const se3di_instruction *in, unsigned mask)
 {
     se3di_partials d;
     se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
-    jet_chain2(a, a[1], &d, in);
+    jet_chain2(a, a[1], &d, in->mask_a & mask, in->mask_b & mask);
 }
 
 static void jet_select(jet *a, const se3di_instruction *in)
@@ -111,8 +117,8 @@ static inline uint32_t branch(double condition, uint32_t jump, double *poison)
     return condition == 0.0 ? jump : 0;
 }
 
-void se3di_program_eval_time(const se3di_instruction *code, size_t count, const double *x,
-                             double out[3])
+static inline void eval_along(const se3di_instruction *code, size_t count, const double *x, way w,
+                              double out[3])
 {
     jet stack[SE3DI_PROGRAM_STACK + 1]; /* values begin at stack[1] */
     jet *top = stack;
@@ -123,7 +129,8 @@ void se3di_program_eval_time(const se3di_instruction *code, size_t count, const 
             *++top = (jet){in->value, 0.0, 0.0};
             break;
         case SE3DI_OP_VARIABLE:
-            *++top = (jet){x[in->function], in->mask_a & 1u, 0.0};
+            *++top =
+                (jet){x[in->function], in->mask_a & w.mask ? w.components[in->function] : 0.0, 0.0};
             break;
         case SE3DI_OP_ADD:
             --top;
@@ -149,14 +156,14 @@ void se3di_program_eval_time(const se3di_instruction *code, size_t count, const 
             break;
         case SE3DI_OP_POWER:
             se3di_function_power(top->f, in->value, d);
-            jet_chain(top, d, in->mask_a);
+            jet_chain(top, d, in->mask_a & w.mask);
             break;
         case SE3DI_OP_UNARY:
             se3di_functions[in->function].unary(top->f, d);
-            jet_chain(top, d, in->mask_a);
+            jet_chain(top, d, in->mask_a & w.mask);
             break;
         case SE3DI_OP_BINARY:
-            jet_binary(--top, in);
+            jet_binary(--top, in, w.mask);
             break;
         case SE3DI_OP_SELECT:
             jet_select(--top, in);
@@ -175,6 +182,19 @@ void se3di_program_eval_time(const se3di_instruction *code, size_t count, const 
     out[0] = top->f + poison;
     out[1] = top->t + poison;
     out[2] = top->tt + poison;
+}
+
+void se3di_program_eval_time(const se3di_instruction *code, size_t count, const double *x,
+                             double out[3])
+{
+    static const double time[1] = {1.0};
+    eval_along(code, count, x, (way){1u, time}, out);
+}
+
+void se3di_program_eval_along(const se3di_instruction *code, size_t count, const double *x,
+                              const double *direction, unsigned mask, double out[3])
+{
+    eval_along(code, count, x, (way){mask, direction}, out);
 }
 
 /* ---- value and first derivatives with respect to all variables ------------------------------*/

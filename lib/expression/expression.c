@@ -2,6 +2,7 @@
 /* The public functions: one block of memory per expression, code and text behind the header. */
 #include "expression/expression.h"
 
+#include "expression/format.h"
 #include "expression/functions.h"
 #include "expression/names.h"
 #include "expression/parser.h"
@@ -224,6 +225,12 @@ se3d_status se3d_expression_eval_gradient(const se3d_expression *expression, con
     return all_finite(result, 1 + n) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+void se3di_expression_eval_along(const se3d_expression *expression, const double *x,
+                                 const double *direction, unsigned mask, double jet[3])
+{
+    se3di_program_eval_along(expression->code, expression->code_count, x, direction, mask, jet);
+}
+
 int se3d_expression_is_constant(const se3d_expression *expression)
 {
     return expression && expression->code_count == 1 && expression->code[0].op == SE3DI_OP_CONSTANT;
@@ -291,4 +298,21 @@ int se3di_expression_is_total(const se3d_expression *expression)
 const char *se3d_expression_get_text(const se3d_expression *expression)
 {
     return expression ? (const char *)(expression->code + expression->code_count) : "";
+}
+
+se3d_status se3d_expression_write(const se3d_expression *expression, const char *const *variables,
+                                  char *text, size_t capacity, size_t *length)
+{
+    size_t needed = 0;
+    if (length) {
+        *length = 0;
+    }
+    if (!expression || !length || (!variables && expression->variable_count > 0)) {
+        return SE3D_ERR_NULL;
+    }
+    const se3d_allocator allocator = expression->allocator;
+    const se3d_status status = se3di_program_format(
+        &allocator, expression->code, expression->code_count, variables, text, capacity, &needed);
+    *length = status < 0 ? 0 : needed;
+    return status >= 0 && text && needed >= capacity ? SE3D_ERR_INVALID_ARGUMENT : status;
 }

@@ -13,6 +13,11 @@ se3d_status se3di_expression_clone(const se3d_expression *expression,
 /* Number of variables it was compiled for. */
 size_t se3di_expression_variable_count(const se3d_expression *expression);
 
+/* f and its first and second derivative along a direction: its components of the variables whose
+ * bits are in the mask, 0 of the others. What is not finite stays so. */
+void se3di_expression_eval_along(const se3d_expression *expression, const double *x,
+                                 const double *direction, unsigned mask, double jet[3]);
+
 /* Whether it has derivatives wherever it has a value, for certain: no |x|, condition or root. */
 int se3di_expression_is_smooth(const se3d_expression *expression);
 

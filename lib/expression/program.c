@@ -5,9 +5,13 @@
 
 #include "base/error.h"
 #include "expression/functions.h"
+#include "se3d/expression.h"
 
 #include <math.h>
 #include <string.h>
+
+_Static_assert(SE3D_EXPRESSION_VARIABLE_MAX <= 16, "the masks of an instruction have 16 bits");
+_Static_assert(SE3D_EXPRESSION_TEXT_MAX < UINT16_MAX, "and so has its jump");
 
 void se3di_program_destroy(se3di_program *program)
 {
@@ -46,7 +50,7 @@ se3d_status se3di_program_push_variable(se3di_program *program, size_t index, se
     *out = (se3di_operand){program->count, mask};
     return append(program, (se3di_instruction){.op = SE3DI_OP_VARIABLE,
                                                .function = (uint8_t)index,
-                                               .mask_a = (uint8_t)mask});
+                                               .mask_a = (uint16_t)mask});
 }
 
 /* Reduce the code from `start` on, which needs no variables, to one number. */
@@ -80,7 +84,7 @@ se3d_status se3di_program_unary(se3di_program *program, size_t function, se3di_o
     return apply(program,
                  (se3di_instruction){.op = SE3DI_OP_UNARY,
                                      .function = (uint8_t)function,
-                                     .mask_a = (uint8_t)a->mask},
+                                     .mask_a = (uint16_t)a->mask},
                  a);
 }
 
@@ -88,7 +92,7 @@ se3d_status se3di_program_unary(se3di_program *program, size_t function, se3di_o
 static se3d_status apply_right_constant(se3di_program *program, se3di_op op, se3di_operand *a,
                                         double c, int *done)
 {
-    se3di_instruction instruction = {.value = c, .mask_a = (uint8_t)a->mask};
+    se3di_instruction instruction = {.value = c, .mask_a = (uint16_t)a->mask};
     *done = 1;
     switch (op) {
     case SE3DI_OP_ADD:
@@ -138,8 +142,8 @@ se3d_status se3di_program_binary(se3di_program *program, se3di_op op, size_t fun
     }
     se3di_instruction instruction = {.op = (uint8_t)(op == SE3DI_OP_POWER ? SE3DI_OP_BINARY : op),
                                      .function = (uint8_t)function,
-                                     .mask_a = (uint8_t)a->mask,
-                                     .mask_b = (uint8_t)b.mask};
+                                     .mask_a = (uint16_t)a->mask,
+                                     .mask_b = (uint16_t)b.mask};
     a->mask |= b.mask;
     if (a_constant && !b_constant && (op == SE3DI_OP_ADD || op == SE3DI_OP_MULTIPLY)) {
         return apply_left_constant(program, op, *a, program->count - b.start);
@@ -178,7 +182,7 @@ se3d_status se3di_program_jump(se3di_program *program, se3di_op op, size_t *at)
 
 void se3di_program_land(se3di_program *program, size_t at)
 {
-    program->code[at].jump = (uint32_t)(program->count - at - 1);
+    program->code[at].jump = (uint16_t)(program->count - at - 1);
 }
 
 size_t se3di_program_stack_size(const se3di_program *program)

@@ -27,9 +27,9 @@ typedef struct se3di_instruction {
     double value;
     uint8_t op;       /* se3di_op */
     uint8_t function; /* row of se3di_functions, or number of the variable */
-    uint8_t mask_a;   /* bit k: the first operand depends on variable k ... */
-    uint8_t mask_b;   /* ... and the second; derivatives of the others are exactly 0 */
-    uint32_t jump;
+    uint16_t mask_a;  /* bit k: the first operand depends on variable k ... */
+    uint16_t mask_b;  /* ... and the second; derivatives of the others are exactly 0 */
+    uint16_t jump;    /* texts have fewer characters than this can tell */
 } se3di_instruction;
 
 #define SE3DI_PROGRAM_STACK 128 /* values that may wait at one time */
@@ -42,6 +42,11 @@ void se3di_program_eval(const se3di_instruction *code, size_t count, const doubl
 /* Evaluate f, f' and f'' with respect to variable 0. */
 void se3di_program_eval_time(const se3di_instruction *code, size_t count, const double *x,
                              double jet[3]);
+
+/* Evaluate f and its first and second derivative along a direction: components of the variables
+ * whose bits are in the mask, 0 of the others. */
+void se3di_program_eval_along(const se3di_instruction *code, size_t count, const double *x,
+                              const double *direction, unsigned mask, double out[3]);
 
 /* ---- building -------------------------------------------------------------------------------*/
 

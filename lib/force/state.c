@@ -15,8 +15,9 @@ static se3d_status eval_state(const se3di_model *model, const se3di_force *force
 {
     double jet[3] = {0.0, 0.0, 0.0};
     if (force->tyre_index >= 0) {
-        se3di_tyre_lag lag;
-        se3di_tyre_lag_eval(model, &model->forces[force->tyre_index], force->coordinate, 0, &lag);
+        const se3di_force *tyre = &model->forces[force->tyre_index];
+        se3di_tyre_lag lag = {.wants_derivative = 0};
+        SE3DI_TRY(se3di_tyre_lag_eval(model, tyre, t, force->coordinate, &lag));
         jet[0] = lag.rate;
     } else if (force->function[0] >= 0) {
         SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Tyre: a wheel (body j, centre c, spin axis a to the left, radius R) on a plane road (body i,
- * point P, normal n). With sin g = a . n:
+/* Tyre: a wheel (body j, centre c, spin axis a to the left, radius R) on a plane (body i, point P,
+ * normal n): the road, or what force/road.h finds of it below the wheel, which rises with the speed
+ * z_t along its up axis u. With sin g = a . n:
  *
  *     x = a x n / cos g,  y = n x x,  d = (sin g a - n) / cos g       d: down, in the wheel's plane
  *     l = n . (c - P) / cos g,  C = c + l d,  rho = R - l
- *     v = velocity of the wheel less that of the road at C,  W = relative spin about a
+ *     v = velocity of the wheel less that of the road (z_t u, too) at C,  W = relative spin about a
  *     rhodot = -n . v / cos g,  V_x = x . v + W l,  V_sx = V_x - W r_e,  V_sy = y . v
  *     Fz = (k rho + c rhodot) / cos g, never below 0
  *
@@ -16,6 +17,7 @@
 #include "force/tyre.h"
 
 #include "force/measure.h"
+#include "force/road.h"
 #include "math/vec3.h"
 #include "model/state.h"
 
@@ -33,6 +35,10 @@ typedef struct patch {
     double cosine, length, radius; /* cos g, l, R */
     double input[SE3DI_PATCH_INPUTS];
     int touches;
+    int is_uneven;          /* 1: the plane depends on where the wheel is: */
+    double axes[9];         /* of the road, columns: forward, left, up */
+    double up[3], rise;     /* z_t */
+    se3di_road_plane plane; /* frame of the road */
 } patch;
 
 static void take_velocity(const se3di_frame *i, const se3di_frame *j, patch *c)
@@ -45,6 +51,7 @@ static void take_velocity(const se3di_frame *i, const se3di_frame *j, patch *c)
     se3di_sub(c->v, i->v, c->v);
     se3di_cross(c->omega_i, c->b, turned);
     se3di_sub(c->v, turned, c->v);
+    se3di_add_scaled(-c->rise, c->up, c->v);
     se3di_sub(c->omega_j, c->omega_i, omega);
     const double spin = se3di_dot(omega, c->a);
     c->input[SE3DI_PATCH_RATE] = -se3di_dot(c->n, c->v) / c->cosine;
@@ -53,14 +60,65 @@ static void take_velocity(const se3di_frame *i, const se3di_frame *j, patch *c)
     c->input[SE3DI_PATCH_SPIN] = spin;
 }
 
-static void take_patch(const se3di_model *model, const se3di_force *force, patch *c)
+static void values_of(const se3di_dual x[3], double v[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        v[k] = x[k].v;
+    }
+}
+
+/* The plane below the wheel; of a wheel that lies on its side the road's own. */
+static se3d_status take_road(const se3di_model *model, const se3di_force *force, double t, patch *c)
+{
+    const se3di_road *road = &model->roads[force->tyre->surface];
+    const se3di_frame *i = &model->frames[force->body_i];
+    se3di_road_wheel wheel = {.time = t,
+                              .radius = force->rest,
+                              .length = force->tyre->envelope[0],
+                              .width = force->tyre->envelope[1]};
+    double part[3];
+    for (int k = 0; k < 3; ++k) { /* columns */
+        double axis[3];
+        se3di_mul(i->A, road->axes + 3 * k, axis);
+        for (int m = 0; m < 3; ++m) {
+            c->axes[3 * m + k] = axis[m];
+        }
+        se3di_copy(axis, c->up);
+    }
+    se3di_mul(i->A, road->point, c->p);
+    se3di_copy(c->up, c->n);
+    se3di_add(model->frames[force->body_j].r, c->s, part);
+    se3di_sub(part, i->r, part);
+    se3di_sub(part, c->p, part);
+    se3di_mul_transposed(c->axes, part, wheel.center);
+    se3di_mul_transposed(c->axes, c->a, wheel.axis);
+    c->is_uneven = wheel.axis[2] * wheel.axis[2] < 1.0 - UPRIGHT * UPRIGHT;
+    if (!c->is_uneven) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_road_find_plane(model, road, &wheel, &c->plane));
+    values_of(c->plane.normal, part);
+    se3di_mul(c->axes, part, c->n);
+    values_of(c->plane.point, wheel.center);
+    se3di_mul(c->axes, wheel.center, part);
+    se3di_add(c->p, part, c->p);
+    c->rise = c->plane.rise.v;
+    return SE3D_OK;
+}
+
+static se3d_status take_patch(const se3di_model *model, const se3di_force *force, double t,
+                              patch *c)
 {
     const se3di_frame *i = &model->frames[force->body_i], *j = &model->frames[force->body_j];
     memset(c, 0, sizeof *c);
-    se3di_mul(i->A, force->tyre->normal, c->n);
     se3di_mul(j->A, force->tyre->axis, c->a);
     se3di_mul(j->A, force->s_j, c->s);
-    se3di_mul(i->A, force->s_i, c->p);
+    if (force->tyre->surface < 0) {
+        se3di_mul(i->A, force->tyre->normal, c->n);
+        se3di_mul(i->A, force->s_i, c->p);
+    } else {
+        SE3DI_TRY(take_road(model, force, t, c));
+    }
     se3di_add(j->r, c->s, c->e);
     se3di_sub(c->e, i->r, c->e);
     se3di_sub(c->e, c->p, c->e);
@@ -74,7 +132,7 @@ static void take_patch(const se3di_model *model, const se3di_force *force, patch
     }
     if (c->cosine < UPRIGHT) {
         c->length = c->radius;
-        return;
+        return SE3D_OK;
     }
     c->length = se3di_dot(c->n, c->e) / c->cosine;
     c->input[SE3DI_PATCH_DEFLECTION] = c->radius - c->length;
@@ -89,6 +147,7 @@ static void take_patch(const se3di_model *model, const se3di_force *force, patch
     se3di_add(c->q, j->r, c->b);
     se3di_sub(c->b, i->r, c->b);
     take_velocity(i, j, c);
+    return SE3D_OK;
 }
 
 /* ---- Forces by the inputs ------------------------------------------------------------------*/
@@ -220,7 +279,39 @@ static void moment_about(const double b[3], const double F[3], const double M[3]
 typedef struct turn {
     double r_i[3], f_i[3], r_j[3], f_j[3]; /* f: rotations */
     double v_i[3], w_i[3], v_j[3], w_j[3];
+    double time; /* that passes for a road that moves by itself */
 } turn;
+
+/* How plane and rise change as the wheel goes over the road. */
+static void vary_plane(const patch *c, const turn *t, patch *out)
+{
+    double by[SE3DI_DUALS] = {0.0}, part[3], arm[3], n[3], p[3];
+    se3di_add(c->e, c->p, arm); /* centre from the origin of body i */
+    se3di_sub(t->r_j, t->r_i, part);
+    se3di_add(part, out->s, part);
+    se3di_cross(t->f_i, arm, n);
+    se3di_sub(part, n, part);
+    se3di_mul_transposed(c->axes, part, by + SE3DI_ROAD_CENTER);
+    se3di_cross(t->f_i, c->a, n);
+    se3di_sub(out->a, n, part);
+    se3di_mul_transposed(c->axes, part, by + SE3DI_ROAD_AXIS);
+    by[SE3DI_ROAD_TIME] = t->time;
+    memset(n, 0, sizeof n);
+    memset(p, 0, sizeof p);
+    out->rise = 0.0;
+    for (int m = 0; m <= SE3DI_ROAD_TIME; ++m) {
+        for (int k = 0; k < 3; ++k) {
+            n[k] += c->plane.normal[k].d[m] * by[m];
+            p[k] += c->plane.point[k].d[m] * by[m];
+        }
+        out->rise += c->plane.rise.d[m] * by[m];
+    }
+    se3di_mul(c->axes, n, part);
+    se3di_add(out->n, part, out->n);
+    se3di_mul(c->axes, p, part);
+    se3di_add(out->p, part, out->p);
+    se3di_cross(t->f_i, c->up, out->up);
+}
 
 /* How the patch changes; `out` holds changes in place of values. */
 static void vary_pose(const patch *c, const turn *t, patch *out)
@@ -230,6 +321,9 @@ static void vary_pose(const patch *c, const turn *t, patch *out)
     se3di_cross(t->f_j, c->a, out->a);
     se3di_cross(t->f_j, c->s, out->s);
     se3di_cross(t->f_i, c->p, out->p);
+    if (c->is_uneven) {
+        vary_plane(c, t, out);
+    }
     se3di_add(t->r_j, out->s, out->e);
     se3di_sub(out->e, t->r_i, out->e);
     se3di_sub(out->e, out->p, out->e);
@@ -276,6 +370,10 @@ static void vary_velocity(const patch *c, const turn *t, patch *out)
     se3di_sub(out->v, part, out->v);
     se3di_cross(c->omega_i, out->b, part);
     se3di_sub(out->v, part, out->v);
+    if (c->is_uneven) {
+        se3di_add_scaled(-out->rise, c->up, out->v);
+        se3di_add_scaled(-c->rise, out->up, out->v);
+    }
     se3di_sub(c->omega_j, c->omega_i, omega);
     se3di_sub(out->omega_j, out->omega_i, part);
     const double spin = se3di_dot(part, c->a) + se3di_dot(omega, out->a);
@@ -349,6 +447,22 @@ static void add_derivatives(const se3di_frame *const frames[2], const patch *c,
     }
 }
 
+/* drho/dt, the plane's way along the road included: what the audit of energy needs. */
+static double find_rate_of_deflection(const se3di_frame *const frames[2], const patch *c)
+{
+    turn t = {.time = 1.0};
+    patch out;
+    if (!c->is_uneven) {
+        return c->input[SE3DI_PATCH_RATE];
+    }
+    se3di_copy(frames[0]->v, t.r_i);
+    se3di_copy(c->omega_i, t.f_i);
+    se3di_copy(frames[1]->v, t.r_j);
+    se3di_copy(c->omega_j, t.f_j);
+    vary_pose(c, &t, &out);
+    return out.input[SE3DI_PATCH_DEFLECTION];
+}
+
 /* What F and M at the patch are on road and wheel. */
 static void to_wrench(const se3di_frame *const frames[2], const patch *c, const double of[6],
                       double wrench[12])
@@ -367,14 +481,13 @@ static void to_wrench(const se3di_frame *const frames[2], const patch *c, const 
 static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect)
 {
-    (void)t;
     const se3di_frame *const frames[2] = {&model->frames[force->body_i],
                                           &model->frames[force->body_j]};
     patch c;
     se3di_tyre_slip slip;
     se3di_tyre_forces forces;
     double of[6], u[12];
-    take_patch(model, force, &c);
+    SE3DI_TRY(take_patch(model, force, t, &c));
     if (!c.touches) {
         return SE3D_OK;
     }
@@ -385,7 +498,9 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     to_wrench(frames, &c, of, effect->wrench);
     const double *in = c.input;
     effect->potential = 0.5 * force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_DEFLECTION];
-    effect->power[0] = -force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_RATE];
+    effect->power[1] = c.rise * se3di_dot(effect->wrench + 6, c.up); /* of a road that rises */
+    effect->power[0] = effect->power[1] -
+                       force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, &c);
     se3di_velocity_pair(model, force, u);
     for (int k = 0; k < 12; ++k) {
         effect->power[0] -= effect->wrench[k] * u[k];
@@ -444,30 +559,31 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
     }
 }
 
-void se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, int direction,
-                         int wants, se3di_tyre_lag *lag)
+se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,
+                                int direction, se3di_tyre_lag *lag)
 {
     const se3di_frame *const frames[2] = {&model->frames[tyre->body_i],
                                           &model->frames[tyre->body_j]};
-    patch c, out;
-    take_patch(model, tyre, &c);
+    patch c, out = {.cosine = 0.0};
+    SE3DI_TRY(take_patch(model, tyre, t, &c));
     const se3di_dual rate = find_rate(tyre, &c, direction);
     lag->rate = rate.v;
-    if (!wants) {
-        return;
+    if (!lag->wants_derivative) {
+        return SE3D_OK;
     }
     lag->own = rate.d[SE3DI_PATCH_LAGGED + direction];
     find_gain(tyre, frames, &c, direction, lag->gain);
     memset(lag->K, 0, sizeof lag->K);
     memset(lag->D, 0, sizeof lag->D);
     for (int k = 0; k < 24 && !(c.cosine < UPRIGHT); ++k) {
-        const turn t = turn_of(frames, k);
-        vary_pose(&c, &t, &out);
-        vary_velocity(&c, &t, &out);
+        const turn unit = turn_of(frames, k);
+        vary_pose(&c, &unit, &out);
+        vary_velocity(&c, &unit, &out);
         for (int m = 0; m < SE3DI_PATCH_INPUTS; ++m) {
             (k < 12 ? lag->K : lag->D)[k % 12] += rate.d[m] * out.input[m];
         }
     }
+    return SE3D_OK;
 }
 
 /* The slips that the forces follow; those of a brush are relative to the speed of rolling. */
@@ -481,14 +597,14 @@ static void tell_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *
     values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(find_slip(force, slip, 1)->v);
 }
 
-void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
-                     double values[SE3D_TYRE_VALUES])
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
+                            double values[SE3D_TYRE_VALUES])
 {
     patch c;
     se3di_tyre_slip slip = {.load = {.v = 0.0}};
     se3di_tyre_forces forces = {.of = {{.v = 0.0}}};
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
-    take_patch(model, force, &c);
+    SE3DI_TRY(take_patch(model, force, model->time, &c));
     if (c.touches) {
         find_forces(force, &c, &slip, &forces);
         take_slip(force, &c, &slip);
@@ -505,6 +621,7 @@ void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
     se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
     tell_lag(force, &c, &slip, values);
+    return SE3D_OK;
 }
 
 const se3di_force_class se3di_force_class_tyre = {

@@ -58,19 +58,20 @@ void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip
 
 /* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
 typedef struct se3di_tyre_lag {
-    double rate;     /* z' [1/s] */
-    double own;      /* dz'/dz */
-    double K[12];    /* dz' / d (dr, dtheta) of road and wheel */
-    double D[12];    /* dz' / d (v, w) */
-    double gain[12]; /* d wrench / dz */
+    int32_t wants_derivative; /* set by the caller; 0: the rate only */
+    double rate;              /* z' [1/s] */
+    double own;               /* dz'/dz */
+    double K[12];             /* dz' / d (dr, dtheta) of road and wheel */
+    double D[12];             /* dz' / d (v, w) */
+    double gain[12];          /* d wrench / dz */
 } se3di_tyre_lag;
 
-/* `wants` 0: the rate only. */
-void se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, int direction,
-                         int wants, se3di_tyre_lag *lag);
+/* @return as se3di_force_eval */
+se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,
+                                int direction, se3di_tyre_lag *lag);
 
-/* What it tells at the present state, see se3d_tyre_value. */
-void se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
-                     double values[SE3D_TYRE_VALUES]);
+/* What it tells at the present state, see se3d_tyre_value. @return as se3di_force_eval */
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
+                            double values[SE3D_TYRE_VALUES]);
 
 #endif

@@ -18,6 +18,7 @@
 #include "contact/bodies/pace.h"
 #include "force/force.h"
 #include "math/elementary.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -112,15 +113,15 @@ static double measure(const se3di_bdf *m)
         if (se3di_state_is_carrier(m->assembly, k / SE3DI_STATE_SIZE)) {
             const double z =
                 se3di_state_part(m->assembly, k / SE3DI_STATE_SIZE, &m->past->scale, e + 7);
-            v = z <= v ? v : z;
+            v = se3di_larger(v, z);
             continue;
         }
         const double turn = sqrt(e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6]);
         const double q = se3di_norm(e) / m->past->scale.length + 2.0 * turn;
         const double s =
             se3di_norm(e + 7) / m->past->scale.speed + se3di_norm(e + 10) / m->past->scale.spin;
-        r = q <= r ? r : q; /* NaN stays */
-        v = s <= v ? v : s;
+        r = se3di_larger(r, q);
+        v = se3di_larger(v, s);
     }
     return (r + v) / m->tolerance;
 }
@@ -169,7 +170,7 @@ static se3d_status measure_tangent(se3di_bdf *m, double *error)
             }
             const double part = se3di_norm(m->work + k) / (level ? scale->speed : scale->length) +
                                 se3di_norm(m->work + k + 3) / (level ? scale->spin : 1.0);
-            largest[level] = part <= largest[level] ? largest[level] : part;
+            largest[level] = se3di_larger(largest[level], part);
         }
     }
     *error = (largest[0] + largest[1]) / m->tolerance;
@@ -211,9 +212,9 @@ static se3d_status review_contacts(se3di_bdf *m, double *error)
     }
     se3di_equations_save(m->equations);
     set_middle(m);
-    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t - 0.5 * m->h, m->h, tolerance,
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t - 0.5 * m->h, m->t, m->h, tolerance,
                                            &m->past->scale, &of_contacts));
-    *error = fmax(*error, of_contacts);
+    *error = se3di_larger(*error, of_contacts);
     m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
     return SE3D_OK;
 }
@@ -224,8 +225,14 @@ static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
 {
     const double tolerance = is_controlled ? m->integration->settings.tolerance : HUGE_VAL;
     se3di_memory_end end;
-    const se3di_memory_step step = {
-        m->t, m->h, tolerance, m->lambda, &m->past->scale, m->integration->newton.memory, m->work};
+    const se3di_memory_step step = {.t = m->t,
+                                    .h = m->h,
+                                    .tolerance = tolerance,
+                                    .begin = m->points,
+                                    .lambda = m->lambda,
+                                    .scale = &m->past->scale,
+                                    .memory = m->integration->newton.memory,
+                                    .work = m->work};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     m->fraction = end.fraction;
     if (end.has_changed) { /* what stands still does so */
@@ -236,7 +243,7 @@ static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
         memcpy(m->y + bodies, work, sizeof work);
     }
     if (is_controlled) {
-        *error = fmax(*error, end.error);
+        *error = se3di_larger(*error, end.error);
         if (!(*error <= 1.0)) {
             forget(m);
         }

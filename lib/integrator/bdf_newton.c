@@ -14,6 +14,7 @@
 
 #include "contact/bodies/pace.h"
 #include "force/friction.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -80,13 +81,13 @@ static double measure(const se3di_bdf *m, const double *change)
     for (size_t k = 0; k < 6 * (size_t)m->assembly->body_count; k += 6) {
         if (se3di_state_is_carrier(m->assembly, k / 6)) {
             const double z = se3di_state_part(m->assembly, k / 6, &m->past->scale, change + k);
-            largest = z <= largest ? largest : z;
+            largest = se3di_larger(largest, z);
             continue;
         }
         const double linear = se3di_norm(change + k), angular = se3di_norm(change + k + 3);
         const double part = linear * (1.0 / m->past->scale.speed + m->c / m->past->scale.length) +
                             angular * (1.0 / m->past->scale.spin + m->c);
-        largest = part <= largest ? largest : part; /* NaN stays */
+        largest = se3di_larger(largest, part);
     }
     return m->c * largest / m->tolerance;
 }

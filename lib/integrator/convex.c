@@ -219,6 +219,7 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(se3di_acceleration_solve(equations, t1));
     SE3DI_TRY(se3di_user_report(model, equations->error));
     model->work[0] -= se3di_convex_work(c);
+    model->work[1] += se3di_convex_fed(c);
     SE3DI_TRY(se3di_work_accept(model, c->h));
     model->history[0] = c->h;
     return SE3D_OK;
@@ -302,7 +303,10 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 static se3d_status renew(se3di_integration *integration)
 {
     se3di_model *model = integration->equations->assembly.model;
-    model->power[0] -= se3di_contacts_power(model);
+    double into, fed;
+    se3di_contacts_power(model, model->time, &into, &fed);
+    model->power[0] -= into;
+    model->power[1] -= fed;
     return SE3D_OK;
 }
 

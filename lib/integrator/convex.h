@@ -35,6 +35,7 @@ typedef struct se3di_convex_contact {
     double turn[2][9];  /* an impulse on the point to the turning of the body: J^-1 lever^T */
     double response[2]; /* of the velocity to an impulse: along the normal; at most across it */
     double xi[3];       /* stretch of the spring that sticks */
+    double drift[3];    /* velocity of surface j on its body less that of i */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
     double tangential, drag;           /* k_t; -dy/dv_t */
@@ -97,7 +98,9 @@ void se3di_convex_destroy(se3di_convex *convex, const se3d_allocator *allocator)
  * known. @return OK, NO_MEMORY, UNSUPPORTED */
 se3d_status se3di_convex_collect(se3di_convex *c, const se3di_assembly *assembly,
                                  se3di_error *error);
-/* The velocity of a point for velocities `v` [unknowns] of the bodies. */
+/* The velocity of a point for velocities `v` [unknowns] of the bodies, with that of surfaces on
+ * them; without. */
+void se3di_convex_slip(const se3di_convex_contact *contact, const double *v, double out[3]);
 void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3]);
 /* The impulse at a velocity of the point, and minus its derivative [3 x 3]; `slope` may be NULL. */
 void se3di_convex_impulse(const se3di_convex_contact *contact, double h, const double v[3],
@@ -109,8 +112,9 @@ double se3di_convex_along(const se3di_convex_contact *contact, double h, const d
                           double *bend);
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
-/* The work of all impulses on the bodies [J]. */
+/* The work of all impulses on the surfaces [J]; the work of what moves these on their bodies. */
 double se3di_convex_work(const se3di_convex *c);
+double se3di_convex_fed(const se3di_convex *c);
 
 /* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);

@@ -35,6 +35,12 @@ void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v,
     }
 }
 
+void se3di_convex_slip(const se3di_convex_contact *contact, const double *v, double out[3])
+{
+    se3di_convex_velocity(contact, v, out);
+    se3di_add(out, contact->drift, out);
+}
+
 double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, double *slope)
 {
     *slope = 0.0;
@@ -194,6 +200,27 @@ static void set_geometry(se3di_convex_contact *c, const se3di_assembly *assembly
     se3di_add_scaled(-se3di_dot(c->xi, c->normal), c->normal, c->xi);
 }
 
+/* As it is half a step on, on a surface that turns: what sticks to it stays on its circle. */
+static void set_drift(se3di_convex_contact *c, const se3di_model *model, double h)
+{
+    const se3di_body_contact *r = c->record;
+    for (int k = 0; k < 2; ++k) {
+        const se3di_shape *s = &model->shapes[k ? r->shape_j : r->shape_i];
+        const se3di_frame *frame = &model->frames[s->body];
+        double arm[3], local[3], half[3], u[3], spin[3];
+        if (!se3di_surface_moves(s)) {
+            continue;
+        }
+        se3di_sub(r->point, frame->r, arm);
+        se3di_mul_transposed(frame->A, arm, local);
+        se3di_surface_carry(s, 0.5 * h, local, half);
+        se3di_mul(frame->A, half, arm);
+        se3di_surface_velocity(s, frame->A, arm, u, spin);
+        se3di_add_scaled(k ? 1.0 : -1.0, u, c->drift);
+    }
+    se3di_add_scaled(-se3di_dot(c->drift, c->normal), c->normal, c->drift);
+}
+
 /* What loads alone make of the velocities of the two points in the step, along the normal: of each
  * body by itself, since what carries one of them lets the other go on. */
 static double loads_change(const se3di_convex *convex, const se3di_convex_contact *c)
@@ -227,7 +254,8 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
         return;
     }
     set_law(c, model, pair);
-    se3di_convex_velocity(c, convex->start, c->before);
+    set_drift(c, model, convex->h);
+    se3di_convex_slip(c, convex->start, c->before);
     choose_way(c, pair, convex->h, -se3di_dot(c->before, c->normal), loads_change(convex, c));
     c->bound = convex->h * c->friction * fmax(0.0, se3di_dot(record->force, c->normal));
     for (int k = 0; k < 2; ++k) {
@@ -292,6 +320,15 @@ double se3di_convex_work(const se3di_convex *convex)
     for (size_t k = 0; k < convex->contact_count; ++k) {
         const se3di_convex_contact *c = &convex->contacts[k];
         sum += 0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v));
+    }
+    return sum;
+}
+
+double se3di_convex_fed(const se3di_convex *convex)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        sum -= se3di_dot(convex->contacts[k].impulse, convex->contacts[k].drift);
     }
     return sum;
 }

@@ -8,6 +8,7 @@
  * The caps of friction follow the normal impulses until they agree.    docs/theory/convex.md */
 #include "integrator/convex.h"
 
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -235,7 +236,7 @@ static void follow(se3di_convex *c, const se3di_convex_island *island)
         const double vn = se3di_dot(contact->v, contact->normal);
         contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, vn, &slope);
         largest = fmax(largest, contact->wanted);
-        change = fmax(change, fabs(contact->wanted - contact->bound));
+        change = se3di_larger(change, fabs(contact->wanted - contact->bound));
     }
     for (size_t k = island->contact; k < island->contact_end && change > CAP_CHANGE * largest;
          ++k) {
@@ -293,7 +294,7 @@ static double measure(const se3di_convex *c, se3di_equations *equations,
         se3di_assembly_add_transposed(assembly, 1.0, c->lambda, sum);
     }
     const double rest = weigh(c, island, sum);
-    return rest > 0.0 ? sqrt(rest / fmax(size, rest)) : 0.0;
+    return rest <= 0.0 ? 0.0 : sqrt(rest / fmax(size, rest)); /* NaN stays */
 }
 
 /* The matrix of an island, whose bodies count from 0. */
@@ -419,7 +420,7 @@ static void move(se3di_convex *c, const se3di_convex_island *island, double s)
     }
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        se3di_convex_velocity(contact, c->v, contact->v);
+        se3di_convex_slip(contact, c->v, contact->v);
     }
 }
 

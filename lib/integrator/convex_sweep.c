@@ -5,6 +5,7 @@
  * with the impulses of the step before. */
 #include "integrator/convex.h"
 
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -79,7 +80,7 @@ static double settle(se3di_convex *c, se3di_convex_contact *contact)
     const double *n = contact->normal;
     const double *response = contact->response;
     double v[3], p[3], change[3];
-    se3di_convex_velocity(contact, c->v, v);
+    se3di_convex_slip(contact, c->v, v);
     const double vn = se3di_dot(v, n), before = se3di_dot(contact->impulse, n);
     const double normal = find_normal(contact, c->h, vn - response[0] * before, response[0]);
     const double share = 1.0 / (1.0 + contact->drag * response[1]);
@@ -119,7 +120,7 @@ void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
         for (size_t k = 0; k < count; ++k) {
             const size_t at = sweep % 2 ? count - 1 - k : k;
             se3di_convex_contact *contact = se3di_convex_at(c, island->contact + at);
-            change = fmax(change, settle(c, contact));
+            change = se3di_larger(change, settle(c, contact));
             largest = fmax(largest, se3di_norm(contact->impulse));
         }
         if (!(change > CALM * largest)) {

@@ -8,17 +8,19 @@
 #include <math.h>
 #include <string.h>
 
-#define SLOW_MAX  0.01  /* most of a step times the rate of the motion, */
-#define DECAY_MIN 0.5   /* and least of it times a decay, if decays limit the step */
-#define HELD_EACH 8.0   /* steps between looks if there is no sign */
-#define SAFETY    0.8   /* a rejected step costs more than several that are this much shorter */
-#define CAUTION   0.01  /* of a first step that has one estimate of two */
-#define LOOP_PACE 0.35  /* where radau is worth its steps, */
-#define LOOP_REST 100.0 /* tolerances: a smaller change of velocities is that of a rest */
-#define LOOP_AT   (SE3DI_EXPLICIT_PART * 1e-6) /* at this tolerance */
-#define TIMES     1e-8 /* of the time: shorter steps are not known to the digits that this takes */
-#define SHORTEST  0.05 /* of steps in this one, before which the second estimate is rounding */
-#define GROWTH    3.0  /* largest, of a step: one small error may be chance */
+#define SLOW_MAX   0.01  /* most of a step times the rate of the motion, */
+#define DECAY_MIN  0.5   /* and least of it times a decay, if decays limit the step */
+#define HELD_EACH  8.0   /* steps between looks if there is no sign */
+#define SAFETY     0.8   /* a rejected step costs more than several that are this much shorter */
+#define CAUTION    0.01  /* of a first step that has one estimate of two */
+#define LOOP_PACE  0.35  /* where radau is worth its steps, */
+#define LOOP_REST  100.0 /* tolerances: a smaller change of velocities is that of a rest */
+#define REST_SLOW  1e-5  /* of a step times the rate of the motion, at a rest, */
+#define REST_ERROR 0.01  /* and least of its error, if stiffness limits the step */
+#define LOOP_AT    (SE3DI_EXPLICIT_PART * 1e-6) /* at this tolerance */
+#define TIMES      1e-8 /* of the time: shorter steps are not known to the digits that this takes */
+#define SHORTEST   0.05 /* of steps in this one, before which the second estimate is rounding */
+#define GROWTH     3.0  /* largest, of a step: one small error may be chance */
 
 static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
 {
@@ -208,6 +210,29 @@ static double square_of(const se3di_explicit *m, const double *change)
     return sum;
 }
 
+/* Next to nothing has moved in this step, of `change` (square_of()). */
+static int is_rest(const se3di_explicit *m, double change)
+{
+    const double rest = LOOP_REST * m->tolerance;
+    return change < rest * rest;
+}
+
+/* The step is far shorter than anything that moves asks for, and has an error all the same: it is
+ * made of what stiffness makes of rounding. A vibration that is a part of the motion changes
+ * velocities by more. */
+static int is_held_at_rest(const se3di_explicit *m, double h)
+{
+    const double rate = fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
+    const double *end = m->y, *begin = m->y0;
+    if (!(h * rate < REST_SLOW) || !(m->past->at.error > REST_ERROR)) {
+        return 0;
+    }
+    for (size_t k = 0; k < m->count; ++k) {
+        m->sum[k] = end[k] - begin[k];
+    }
+    return is_rest(m, square_of(m, m->sum));
+}
+
 /* Whether another method would make longer steps than stability allows. The step times the rate at
  * which the motion itself changes is |h (y'(end) - y'(begin))| / |y(end) - y(begin)| of the
  * velocities. If bodies and joints make loops radau takes about twice the time for a step, which is
@@ -225,8 +250,8 @@ static int gains_by_leaving(se3di_explicit *m, double h)
         m->sum3[k] = h * (end[k] - m->K[k]);
     }
     const double accurate = LOOP_PACE * se3di_pow(m->tolerance / LOOP_AT, 0.2);
-    const double change = square_of(m, m->sum), rest = LOOP_REST * m->tolerance;
-    return change < rest * rest || square_of(m, m->sum3) < accurate * accurate * change;
+    const double change = square_of(m, m->sum);
+    return is_rest(m, change) || square_of(m, m->sum3) < accurate * accurate * change;
 }
 
 /* The step is far below what the motion asks for, and of the size of a decay. Disturbances of each
@@ -264,10 +289,10 @@ static void watch_stability(se3di_explicit *m, double h)
     memset(m->sum + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum);
     memset(m->sum3 + m->count - SE3DI_STATE_WORK, 0, SE3DI_STATE_WORK * sizeof *m->sum3);
     const double apart = se3di_explicit_measure(m, m->sum);
-    const int is_held =
-        apart > 0.01 &&
-        (se3di_explicit_measure(m, m->sum3) > tableau->stable * apart || is_held_by_decay(m, h));
-    se3di_explicit_count_sign(m, is_held && gains_by_leaving(m, h));
+    int is_held = apart > 0.01 && (se3di_explicit_measure(m, m->sum3) > tableau->stable * apart ||
+                                   is_held_by_decay(m, h));
+    is_held = (is_held && gains_by_leaving(m, h)) || (apart > 0.01 && is_held_at_rest(m, h));
+    se3di_explicit_count_sign(m, is_held);
 }
 
 /* The stages of the last step once more: what was to be done after them failed, and they are not a

@@ -8,6 +8,7 @@
 #include "contact/bodies/pace.h"
 #include "integrator/motion.h"
 #include "math/elementary.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
@@ -196,14 +197,14 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
         const double *e = end;
         if (se3di_state_is_carrier(m->assembly, k)) {
             const double part = se3di_state_part(m->assembly, k, &m->past->scale, e + 7);
-            z = part <= z ? z : part;
+            z = se3di_larger(z, part);
             continue;
         }
         double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
         double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
                            se3di_dot(e + 10, e + 10)};
         for (int c = 0; c < 4; ++c) {
-            most[c] = parts[c] <= most[c] ? most[c] : parts[c]; /* NaN stays */
+            most[c] = se3di_larger(most[c], parts[c]);
         }
     }
     return se3di_explicit_size_of(m, most, end) + z;
@@ -293,6 +294,15 @@ static void accept(se3di_explicit *m, double t)
     ++m->equations->counters.steps;
 }
 
+/* The state that the step begins with, as the bodies have it; the one that was set last stays. */
+static void show_begin(se3di_explicit *m, double *bodies)
+{
+    double *end = m->sum3;
+    m->motion->keep(m->equations, end);
+    m->motion->show(m->equations, m->y1, bodies);
+    m->motion->stand(m->equations, end);
+}
+
 /* Elements with a memory (stick or slip, stops) change it between steps: *error is raised to what
  * that says of the step, and the memory stays as it was if that is too much. The derivative after
  * the change is the next step's; the interpolation of this one ends with that before. */
@@ -305,10 +315,17 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
         return SE3D_OK;
     }
     se3di_memory_end end;
-    const se3di_memory_step step = {
-        t, h, m->tolerance, model->lambda, &m->past->scale, m->memory, m->bodies[0]};
+    const se3di_memory_step step = {.t = t,
+                                    .h = h,
+                                    .tolerance = m->tolerance,
+                                    .begin = m->bodies[1],
+                                    .lambda = model->lambda,
+                                    .scale = &m->past->scale,
+                                    .memory = m->memory,
+                                    .work = m->bodies[0]};
+    show_begin(m, m->bodies[1]);
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
-    *error = fmax(*error, end.error);
+    *error = se3di_larger(*error, end.error);
     m->step.fraction = end.fraction;
     if (!(*error <= 1.0)) {
         se3di_model_restore_memory(model, m->memory);
@@ -333,10 +350,11 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
         m->sum3[k] = 0.5 * (m->y1[k] + m->y[k]) + 0.125 * h * (f0[k] - f[k]);
     }
     m->motion->set(m->equations, m->sum3);
-    const se3d_status status = se3di_memory_review_contacts(
-        m->equations, m->past->at.time + 0.5 * h, h, m->tolerance, &m->past->scale, &of_contacts);
+    const se3d_status status =
+        se3di_memory_review_contacts(m->equations, m->past->at.time + 0.5 * h, m->past->at.time + h,
+                                     h, m->tolerance, &m->past->scale, &of_contacts);
     m->motion->stand(m->equations, end);
-    *error = fmax(*error, of_contacts);
+    *error = se3di_larger(*error, of_contacts);
     m->step.fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
     return status;
 }
@@ -844,7 +862,7 @@ static se3d_status measure_gap(se3di_explicit *m)
         m->methods->interpolate(m, t, m->y);
         m->motion->set(m->equations, m->y);
         SE3DI_TRY(se3di_state_measure_gap(m->equations, t, &m->past->scale, &gap));
-        worst = gap <= worst ? worst : gap;
+        worst = se3di_larger(worst, gap);
     }
     m->past->gap = worst;
     return SE3D_OK;

@@ -3,6 +3,7 @@
 
 #include "force/friction.h"
 #include "force/measure.h"
+#include "math/larger.h"
 #include "nonlinear/friction_system.h"
 
 #include <math.h>
@@ -161,7 +162,7 @@ static void solve_box(se3di_lie_friction *f, int fixed)
             }
             n = row[k] > 0.0 ? fmin(fmax(n + rest / row[k], -limit), limit) : 0.0;
             n = fixed && fabs(f->mode[k]) > 0.0 ? f->mode[k] * limit : n;
-            change = fmax(change, limit > 0.0 ? fabs(n - f->n[k]) / limit : 0.0);
+            change = se3di_larger(change, limit > 0.0 ? fabs(n - f->n[k]) / limit : 0.0);
             f->n[k] = n;
         }
     }
@@ -243,7 +244,7 @@ static double take_loads(se3di_lie_friction *f)
             const double before = *load;
             se3di_friction_reaction(model, force, model->lambda, R);
             *load = se3di_friction_load(model, force, R, NULL);
-            change = fmax(change, fabs(*load - before));
+            change = se3di_larger(change, fabs(*load - before));
             largest = fmax(largest, *load);
         }
     }
@@ -287,7 +288,7 @@ double se3di_lie_friction_change(const se3di_lie_friction *f)
     size_t at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {
         const double load = next_element(f, &at)->state[1];
-        change = fmax(change, fabs(load - f->load[k]));
+        change = se3di_larger(change, fabs(load - f->load[k]));
         largest = fmax(largest, load);
     }
     return largest > 0.0 ? change / largest : 0.0;

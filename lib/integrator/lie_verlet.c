@@ -6,6 +6,7 @@
 #include "integrator/state.h"
 #include "math/elementary.h"
 #include "math/inertia.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "model/state.h"
@@ -216,7 +217,7 @@ static double eval_gap(se3di_lie_verlet *m)
     se3di_assembly_eval_phi(assembly, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         double gap = fabs(equations->c[k]) / se3di_row_get_scale(assembly->model, k, m->size);
-        worst = gap <= worst ? worst : gap;
+        worst = se3di_larger(worst, gap);
         equations->c[k] *= 2.0 / (m->h * m->h);
     }
     return worst;
@@ -329,7 +330,8 @@ static double largest_state_change(const se3di_lie_verlet *m)
         const uint32_t body = assembly->free_body[k];
         if (se3di_state_is_carrier(assembly, k)) {
             const double difference = m->equations->x[k * block] - m->last[k * block];
-            change = fmax(change, fabs(difference) / se3di_state_size(assembly->model, body));
+            change =
+                se3di_larger(change, fabs(difference) / se3di_state_size(assembly->model, body));
         }
     }
     return change;
@@ -360,7 +362,7 @@ static se3d_status solve_velocities(se3di_lie_verlet *m)
             if (se3di_state_is_carrier(assembly, k / block)) {
                 continue;
             }
-            change = fmax(change, fabs(equations->x[k] - m->last[k]));
+            change = se3di_larger(change, fabs(equations->x[k] - m->last[k]));
             size = fmax(size, fabs(equations->x[k]));
         }
         if (!se3di_loads_are_stiff(assembly->model) || (change <= 1e-13 * size && state <= 1e-13)) {

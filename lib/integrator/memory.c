@@ -5,7 +5,9 @@
 #include "force/friction.h"
 #include "force/measure.h"
 #include "force/stop.h"
+#include "integrator/hold_review.h"
 #include "math/inertia.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -54,7 +56,7 @@ static void review_excursion(const excursion *e, double allowed, se3di_memory_en
             after = middle;
         }
     }
-    end->error = fmax(end->error, against / allowed);
+    end->error = se3di_larger(end->error, against / allowed);
     end->fraction = end->fraction > 0.0 ? fmin(end->fraction, after) : after;
 }
 
@@ -73,7 +75,7 @@ static int review_slip(const se3di_force *force, const se3di_measure *measure,
         review_excursion(&e, allowed + ROUNDING * size / step->h, end);
         return 0;
     }
-    end->error = fmax(end->error, against / allowed);
+    end->error = se3di_larger(end->error, against / allowed);
     if (before > 0.0 && against > allowed) {
         const double fraction = (before + LANDING * allowed) / (before + against);
         end->fraction = end->fraction > 0.0 ? fmin(end->fraction, fraction) : fraction;
@@ -102,9 +104,10 @@ static int32_t review_stick(const se3di_equations *equations, uint32_t k, double
            se3di_friction_limit(force, 0);
 }
 
-/* Which elements may have to change: friction.rests. @return how many */
+/* Which elements may have to change: friction.rests. *since: the part of the step before its end
+ * for which that is so, at most. @return how many */
 static uint32_t review(se3di_equations *equations, const se3di_memory_step *step,
-                       se3di_memory_end *end, uint32_t *broken)
+                       se3di_memory_end *end, uint32_t *broken, double *since)
 {
     const se3di_state_scale *scale = step->scale;
     const double tolerance = step->tolerance;
@@ -122,6 +125,7 @@ static uint32_t review(se3di_equations *equations, const se3di_memory_step *step
             changes =
                 review_stick(equations, k, measure.rate, slowness_of(force, scale, tolerance));
             *broken += changes != 0;
+            *since = changes < 0 ? 1.0 : *since;
         }
         equations->friction.rests[k] = changes;
         count += changes != 0;
@@ -187,22 +191,6 @@ static void add_standing(se3di_equations *equations, const se3di_state_scale *sc
     }
 }
 
-static double change_of(const se3di_equations *equations, const double *before, double h,
-                        const se3di_state_scale *scale)
-{
-    double largest = 0.0;
-    for (size_t k = 0; k < equations->assembly.unknown_count; k += 6) {
-        double change[6];
-        for (size_t c = 0; c < 6; ++c) {
-            change[c] = h * (equations->x[k + c] - before[k + c]);
-        }
-        const double part =
-            se3di_norm(change) / scale->speed + se3di_norm(change + 3) / scale->spin;
-        largest = part <= largest ? largest : part; /* NaN stays */
-    }
-    return largest;
-}
-
 /* @return with the accelerations of the new modes */
 static se3d_status change_modes(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double tolerance,
@@ -240,7 +228,7 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
             part *= 1.0 - LANDING / error;
             *fraction = *fraction > 0.0 ? fmin(*fraction, part) : part;
         }
-        worst = error <= worst ? worst : error; /* NaN stays */
+        worst = se3di_larger(worst, error);
     }
     return worst;
 }
@@ -304,13 +292,13 @@ static double effect_of(const se3di_model *model, const double *wrench, double h
         se3di_solve3(J, wrench + 3, turn);
         const double part =
             h * (se3di_norm(wrench) / (body->mass * scale->speed) + se3di_norm(turn) / scale->spin);
-        worst = part <= worst ? worst : part; /* NaN stays */
+        worst = se3di_larger(worst, part);
     }
     return worst;
 }
 
-se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double h,
-                                         double tolerance, const se3di_state_scale *scale,
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double t_end,
+                                         double h, double tolerance, const se3di_state_scale *scale,
                                          double *error)
 {
     se3di_assembly *assembly = &equations->assembly;
@@ -329,11 +317,11 @@ se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, d
     }
     memset(wrench, 0, count * sizeof *wrench);
     springs s = {-1.0, h, wrench};
-    (void)se3di_contacts_visit(model, add_spring, &s);
+    (void)se3di_contacts_visit(model, t_end, add_spring, &s);
     se3di_contacts_hide(model);
     s.sign = 1.0;
-    (void)se3di_contacts_visit(model, add_spring, &s);
-    (void)se3di_contacts_visit(model, add_overshoot, &s);
+    (void)se3di_contacts_visit(model, t_end, add_spring, &s);
+    (void)se3di_contacts_visit(model, t_end, add_overshoot, &s);
     *error = effect_of(model, wrench, h, scale) / tolerance;
     return SE3D_OK;
 }
@@ -347,6 +335,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
                                 se3di_memory_end *end)
 {
     const double t = step->t, h = step->h, tolerance = step->tolerance, *lambda = step->lambda;
+    double since = 1.0;
     const se3di_state_scale *scale = step->scale;
     double *memory = step->memory, *work = step->work;
     se3di_model *model = equations->assembly.model;
@@ -354,13 +343,16 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     *end = (se3di_memory_end){0.0, 0.0, 0, 0};
     se3di_model_save_memory(model, memory);
     end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
+    if (end->error <= 1.0) {
+        SE3DI_TRY(se3di_hold_review(equations, step, end, &since));
+    }
     if (equations->friction.count > 0) {
         se3di_frictions_take_loads(model, lambda);
         if (equations->assembly.row_count > 0 && lambda != model->lambda) {
             memcpy(model->lambda, lambda, equations->assembly.row_count * sizeof *lambda);
         }
     }
-    const uint32_t count = review(equations, step, end, &broken);
+    const uint32_t count = review(equations, step, end, &broken, &since);
     if (count > 0 && end->error <= 1.0) {
         se3d_status status = se3di_state_evaluate(equations, t);
         memcpy(work, equations->x, equations->assembly.unknown_count * sizeof *work);
@@ -371,8 +363,9 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
             se3di_model_restore_memory(model, memory);
             return status;
         }
-        const double change = broken > 0 ? change_of(equations, work, h, scale) / tolerance : 0.0;
-        end->error = change <= end->error ? end->error : change;
+        const double change =
+            broken > 0 ? se3di_hold_change(equations, work, since * h, scale) / tolerance : 0.0;
+        end->error = se3di_larger(end->error, change);
     } else if (count > 0) {
         memset(equations->friction.rests, 0,
                equations->friction.count * sizeof *equations->friction.rests);

@@ -17,6 +17,7 @@ typedef struct se3di_memory_end {
 typedef struct se3di_memory_step {
     double t, h; /* its end and length */
     double tolerance;
+    const double *begin;  /* the state that it begins with, as bodies have it (state.h) */
     const double *lambda; /* [rows] at the end */
     const se3di_state_scale *scale;
     double *memory; /* [forces * SE3DI_FORCE_STATES]: takes that of before, to be restored if the
@@ -32,11 +33,11 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
 
 /* What contacts remember of the end of a step of h is made of the beginning and the end alone: what
  * slips and sticks again on the way, or begins to touch, is forgotten. The frames are those at t,
- * half way; the ones of the end, in equations->saved, come back. *error is what the forces at the
- * end would be otherwise, if contacts had been accepted at t, too, times h, relative to the scales
- * and the tolerance. */
-se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double h,
-                                         double tolerance, const se3di_state_scale *scale,
+ * half way; the ones of the end, at t_end, in equations->saved, come back. *error is what the
+ * forces at the end would be otherwise, if contacts had been accepted at t, too, times h, relative
+ * to the scales and the tolerance. */
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double t_end,
+                                         double h, double tolerance, const se3di_state_scale *scale,
                                          double *error);
 /* Of the tolerance of a run, for implicit methods: what one step forgets adds up. */
 #define SE3DI_MEMORY_PART 0.03

@@ -14,6 +14,7 @@
  * docs/theory/newmark.md */
 #include "integrator/newmark.h"
 
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -78,7 +79,7 @@ static double measure(const se3di_newmark_step *step, const se3di_newmark_header
             se3di_state_is_carrier(step->assembly, k / 6)
                 ? se3di_state_part(step->assembly, k / 6, &header->scale, change)
                 : change[0] / fmax(scale[kind], kind ? header->scale.spin : header->scale.speed);
-        worst = size <= worst ? worst : size; /* NaN stays */
+        worst = se3di_larger(worst, size);
     }
     return PHASE * get_constant(step, header->place / step->h) * step->h * step->h * worst /
            fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
@@ -113,7 +114,7 @@ se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double
     *error = measure(step, past.header, jerk);
     if (step->exact && *error > most && isfinite(*error)) {
         SE3DI_TRY(filter(step, jerk));
-        *error = fmin(*error, fmax(STAYS, measure(step, past.header, step->equations->x)));
+        *error = fmin(*error, se3di_larger(STAYS, measure(step, past.header, step->equations->x)));
     }
     return SE3D_OK;
 }

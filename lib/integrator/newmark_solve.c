@@ -6,6 +6,7 @@
 #include "contact/bodies/pace.h"
 #include "force/friction.h"
 #include "integrator/state.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "model/state.h"
 
@@ -72,7 +73,7 @@ static se3d_status eval_residual(se3di_newmark_step *step)
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         const double gap =
             fabs(equations->phi[k]) / se3di_row_get_scale(assembly->model, k, step->length);
-        step->gap = gap <= step->gap ? step->gap : gap; /* NaN stays */
+        step->gap = se3di_larger(step->gap, gap);
         equations->c[k] = (assembly->f[3 * (size_t)k + 1] - equations->c[k]) / step->velocity;
     }
     return SE3D_OK;
@@ -146,7 +147,8 @@ static void take_solution(se3di_newmark_step *step)
     add(step->vdot, equations->x, n);
     add(step->lambda, equations->l, step->assembly->row_count);
     const double unit = 1.0 + largest_acceleration(step, step->vdot, 0.0);
-    step->correction = fmax(step->correction, largest_acceleration(step, equations->x, unit));
+    step->correction =
+        se3di_larger(step->correction, largest_acceleration(step, equations->x, unit));
     for (uint32_t k = 0; k < n; ++k) {
         step->is_finite = step->is_finite && isfinite(equations->x[k]);
     }

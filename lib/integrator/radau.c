@@ -18,6 +18,7 @@
 #include "force/force.h"
 #include "force/friction.h"
 #include "math/elementary.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -254,9 +255,10 @@ static se3d_status review_contacts(se3di_radau *m, double tolerance, double *err
     }
     se3di_equations_save(m->equations);
     se3di_state_set(m->assembly, m->Y + m->count);
-    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t + se3di_radau_c[1] * m->h, m->h,
-                                           SE3DI_MEMORY_PART * tolerance, &m->scale, &of_contacts));
-    *error = fmax(*error, of_contacts);
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t + se3di_radau_c[1] * m->h,
+                                           m->t + m->h, m->h, SE3DI_MEMORY_PART * tolerance,
+                                           &m->scale, &of_contacts));
+    *error = se3di_larger(*error, of_contacts);
     m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
     return SE3D_OK;
 }
@@ -268,7 +270,7 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
     se3di_memory_end end;
     SE3DI_TRY(add_work(m)); /* ends at the last stage */
     if (m->inner > 0.0) {
-        *error = fmax(*error, measure_work(m) / m->inner);
+        *error = se3di_larger(*error, measure_work(m) / m->inner);
         if (!(*error <= 1.0)) {
             return SE3D_OK;
         }
@@ -280,12 +282,13 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
     const se3di_memory_step step = {.t = m->t + m->h,
                                     .h = m->h,
                                     .tolerance = tolerance,
+                                    .begin = m->y0,
                                     .lambda = m->assembly->model->lambda,
                                     .scale = &m->scale,
                                     .memory = m->integration->newton.memory,
                                     .work = m->vdot};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
-    *error = fmax(*error, end.error);
+    *error = se3di_larger(*error, end.error);
     m->fraction = end.fraction;
     if (!(*error <= 1.0)) {
         forget(m);

@@ -14,6 +14,7 @@
 #include "force/friction.h"
 #include "integrator/radau.h"
 #include "integrator/radau_lines.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -366,7 +367,7 @@ static void apply_corrections(se3di_radau *m)
             se3di_add(y + 7, v, y + 7);
             se3di_add(y + 10, v + 3, y + 10);
             const double part = measure(m, k, q, v) / m->tolerance;
-            m->size = part <= m->size ? m->size : part;
+            m->size = se3di_larger(m->size, part);
         }
     }
 }
@@ -393,7 +394,7 @@ static double largest_gap(const se3di_radau *m)
         const double gap =
             fabs(m->gap[k]) /
             se3di_row_get_scale(m->assembly->model, (uint32_t)(k % rows), m->scale.length);
-        largest = gap <= largest ? largest : gap;
+        largest = se3di_larger(largest, gap);
     }
     return largest;
 }
@@ -417,7 +418,7 @@ static se3d_status correct_positions(se3di_radau *m)
             const double *six = equations->x + 6 * k;
             double *shift = at(m->shift, i, 6 * bodies) + 6 * k;
             const double part = measure(m, k, six, none) / m->tolerance;
-            m->size = part <= m->size ? m->size : part;
+            m->size = se3di_larger(m->size, part);
             se3di_add(shift, six, shift);
             se3di_add(shift + 3, six + 3, shift + 3);
         }
@@ -604,7 +605,7 @@ se3d_status se3di_radau_filter(se3di_radau *m, double *d, double *error)
             q[j] += c * v[j];
         }
         const double part = measure(m, k, q, v);
-        *error = part <= *error ? *error : part;
+        *error = se3di_larger(*error, part);
     }
     m->is_stiff = whole > STIFF * *error;
     if (m->is_stiff) {

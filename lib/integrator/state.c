@@ -7,6 +7,7 @@
 #include "contact/bodies/body_contacts.h"
 #include "force/friction.h"
 #include "force/measure.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "model/state.h"
@@ -210,7 +211,7 @@ static double eval_gap(se3di_equations *equations, double length)
     se3di_assembly_eval_phi(assembly, equations->c);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         double gap = fabs(equations->c[k]) / se3di_row_get_scale(assembly->model, k, length);
-        worst = gap <= worst ? worst : gap;
+        worst = se3di_larger(worst, gap);
         equations->c[k] = -equations->c[k];
     }
     return worst;
@@ -228,7 +229,7 @@ static double eval_rate_gap(se3di_equations *equations, const se3di_state_scale 
         equations->c[k] = assembly->f[3 * k + 1] - equations->c[k];
         double gap =
             fabs(equations->c[k]) / (rate * se3di_row_get_scale(assembly->model, k, scale->length));
-        worst = gap <= worst ? worst : gap;
+        worst = se3di_larger(worst, gap);
     }
     return worst;
 }
@@ -274,7 +275,7 @@ static se3d_status project_positions(se3di_equations *equations, double t,
         }
         memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
         SE3DI_TRY(se3di_equations_solve(equations));
-        moved = fmax(moved, largest_shift(equations, scale->length));
+        moved = se3di_larger(moved, largest_shift(equations, scale->length));
         if (!(moved < 0.5)) {
             return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
                                    "t = %g s: the step leaves the constraints, it is too large", t);
@@ -340,7 +341,7 @@ se3d_status se3di_state_measure_gap(se3di_equations *equations, double t,
     const double positions = eval_gap(equations, scale->length);
     se3di_assembly_eval_jacobian(assembly);
     const double rates = eval_rate_gap(equations, scale);
-    *gap = positions <= rates ? rates : positions; /* NaN stays */
+    *gap = se3di_larger(rates, positions);
     return SE3D_OK;
 }
 

@@ -16,11 +16,11 @@
 int se3di_joint_frames_complete(const se3di_model *model, const uint32_t bodies[2], double angle,
                                 const double *ref_i, const double *ref_j, se3di_joint_frames *f)
 {
-    if (!se3di_joint_triad_build(f->axis_i, ref_i, f->ref_i, f->third_i)) {
+    if (!se3di_joint_triad_take(f->axis_i, ref_i, f->ref_i, f->third_i)) {
         return 1;
     }
     if (ref_j) {
-        return se3di_joint_triad_build(f->axis_j, ref_j, f->ref_j, f->third_j) ? 0 : 2;
+        return se3di_joint_triad_take(f->axis_j, ref_j, f->ref_j, f->third_j) ? 0 : 2;
     }
     se3di_joint_ref_match(f, angle, &model->frames[bodies[0]], &model->frames[bodies[1]], f->ref_j);
     se3di_cross(f->axis_j, f->ref_j, f->third_j);
@@ -67,6 +67,8 @@ void se3di_joint_draft(const se3di_model *model, const se3di_joint_type *type,
     const se3di_joint_frames *f = &draft->constraint.frames;
     draft->constraint.has_displacement = (type->flags & SE3DI_JOINT_DISPLACEMENT) != 0;
     draft->constraint.angle0 = def->angle0;
+    draft->constraint.pitch = def->pitch;
+    draft->constraint.distance = def->distance;
     if (type->flags & SE3DI_JOINT_ANGLE) {
         double offset = is_zero(def->ref_j) ? 0.0 : def->angle0;
         draft->has_angle = 1;

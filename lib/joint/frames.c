@@ -10,8 +10,9 @@
 #include <math.h>
 
 #define TWO_PI             6.283185307179586476925286766559
-#define PARALLEL_TOLERANCE 1e-6 /* sine of the angle between ref and axis */
-#define ALIGNED_COSINE     0.1  /* below, the axes of the bodies say nothing about the angle */
+#define PARALLEL_TOLERANCE 1e-6    /* sine of the angle between ref and axis */
+#define ROUNDING           0x1p-50 /* cosine of a right angle */
+#define ALIGNED_COSINE     0.1     /* below, the axes of the bodies say nothing about the angle */
 
 int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_out[3],
                             double third[3])
@@ -30,6 +31,17 @@ int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_
     } else {
         se3di_perpendicular(axis, ref_out);
     }
+    se3di_cross(axis, ref_out, third);
+    return 1;
+}
+
+int se3di_joint_triad_take(const double axis[3], const double *ref, double ref_out[3],
+                           double third[3])
+{
+    if (!ref || !se3di_is_unit(ref, 3) || fabs(se3di_dot(axis, ref)) > ROUNDING) {
+        return se3di_joint_triad_build(axis, ref, ref_out, third);
+    }
+    se3di_copy(ref, ref_out);
     se3di_cross(axis, ref_out, third);
     return 1;
 }

@@ -70,6 +70,11 @@ SE3DI_JOINT_LIST(SE3DI_JOINT_DECLARE)
 int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_out[3],
                             double third[3]);
 
+/* The same of a direction that the user gives: one that is of unit length and perpendicular to
+ * rounding stays as it is, so that a triad that is given again is the same to the bit. */
+int se3di_joint_triad_take(const double axis[3], const double *ref, double ref_out[3],
+                           double third[3]);
+
 /* The direction on body j, perpendicular to axis_j, at which the angle from ref_i about axis_i is
  * `angle` in the given poses. Uses axis_i, ref_i, third_i and axis_j of `frames`. */
 void se3di_joint_ref_match(const se3di_joint_frames *frames, double angle, const se3di_frame *i,

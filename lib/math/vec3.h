@@ -145,6 +145,18 @@ static inline int se3di_unit(const double a[3], double out[3])
     return 1;
 }
 
+/* Whether the length is 1 to rounding. What is so is kept as it is where directions and Euler
+ * parameters are read: what was made a unit vector once stays the same to the bit when it is given
+ * again. */
+static inline int se3di_is_unit(const double *values, int count)
+{
+    double square = 0.0;
+    for (int k = 0; k < count; ++k) {
+        square += values[k] * values[k];
+    }
+    return fabs(square - 1.0) <= 0x1p-49;
+}
+
 static inline int se3di_is_finite(const double *values, int count)
 {
     for (int k = 0; k < count; ++k) {

@@ -43,12 +43,13 @@ typedef struct se3di_body_contacts {
     uint32_t *order;   /* [shapes] by their lower ends along an axis */
     size_t reference_capacity, order_capacity;
     double margin;
-    uint64_t version; /* 0: none */
-    double step;      /* of a method under way that meets contacts within it; 0: not known */
-    double weight;    /* of forces at the end of a step of it, see se3di_contacts_begin */
-    int32_t jumps;    /* its equations may have jumps */
-    int32_t changed;  /* what touches, at the last accepted state */
-    size_t kept;      /* contacts of `next` that are in `list` */
+    double time, next_time; /* of the states of `list` and `next` */
+    uint64_t version;       /* 0: none */
+    double step;            /* of a method under way that meets contacts within it; 0: not known */
+    double weight;          /* of forces at the end of a step of it, see se3di_contacts_begin */
+    int32_t jumps;          /* its equations may have jumps */
+    int32_t changed;        /* what touches, at the last accepted state */
+    size_t kept;            /* contacts of `next` that are in `list` */
 } se3di_body_contacts;
 
 #endif

@@ -232,6 +232,9 @@ void se3di_model_remove_body(se3di_model *model, uint32_t body)
         lower(&model->wheels[k].body, body);
         lower(&model->wheels[k].chassis, body);
     }
+    for (size_t k = 0; k < model->road_slots.count; ++k) {
+        lower(&model->roads[k].body, body);
+    }
     se3di_model_touch(model);
 }
 
@@ -289,6 +292,9 @@ void se3di_model_remove_function(se3di_model *model, uint32_t function)
     }
     for (int c = 0; c < 3; ++c) {
         lower_signed(&model->gravity_function[c], function);
+    }
+    for (size_t k = 0; k < model->road_slots.count; ++k) {
+        lower_signed(&model->roads[k].function, function);
     }
 }
 
@@ -432,6 +438,9 @@ static void count_force_users(se3di_model *model, const se3di_force *force, uint
         if (force->function[c] >= 0) {
             model->functions[force->function[c]].users += by;
         }
+    }
+    if (force->tyre && force->tyre->surface >= 0) {
+        model->roads[force->tyre->surface].users += by;
     }
 }
 
@@ -657,5 +666,47 @@ void se3di_model_remove_wheel(se3di_model *model, uint32_t wheel)
         int32_t *opposite = &model->wheels[k].opposite;
         *opposite = *opposite == (int32_t)wheel ? -1 : *opposite;
         lower_signed(opposite, wheel);
+    }
+}
+
+static void count_road_users(se3di_model *model, const se3di_road *road, uint32_t by)
+{
+    model->bodies[road->body].users += by;
+    if (road->function >= 0) {
+        model->functions[road->function].users += by;
+    }
+}
+
+se3d_status se3di_model_add_road(se3di_model *model, const se3di_road *road, se3di_handle *handle)
+{
+    const size_t count = model->road_slots.count;
+    se3di_road own = *road;
+    RESERVE(model, roads, road_capacity, count + 1, sizeof *model->roads);
+    SE3DI_TRY(se3di_slots_reserve(&model->road_slots, &model->allocator));
+    SE3DI_TRY(se3di_road_own(&model->allocator, &own));
+    const int is_mesh = own.kind == SE3DI_ROAD_MESH;
+    if ((is_mesh && se3di_road_sort(&model->allocator, &own) < 0) ||
+        copy_name(model, &model->road_slots, road->name, &own.name) < 0) {
+        se3di_road_release(&model->allocator, &own);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    own.users = 0;
+    model->roads[count] = own;
+    count_road_users(model, road, 1);
+    *handle = add_named(&model->road_slots, 0, own.name);
+    return SE3D_OK;
+}
+
+void se3di_model_remove_road(se3di_model *model, uint32_t road)
+{
+    count_road_users(model, &model->roads[road], UINT32_MAX);
+    char *name = model->roads[road].name;
+    se3di_road_release(&model->allocator, &model->roads[road]);
+    close_gap(model->roads, model->road_slots.count, road, 1, sizeof *model->roads);
+    remove_named(model, &model->road_slots, road, 0, name);
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].tyre) {
+            lower_signed(&model->forces[k].tyre->surface, road);
+        }
     }
 }

@@ -15,7 +15,7 @@ se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator
     model->gravity_function[0] = model->gravity_function[1] = model->gravity_function[2] = -1;
     se3di_slots *slots[] = {&model->body_slots,       &model->marker_slots, &model->function_slots,
                             &model->constraint_slots, &model->force_slots,  &model->material_slots,
-                            &model->shape_slots,      &model->wheel_slots};
+                            &model->shape_slots,      &model->wheel_slots,  &model->road_slots};
     for (size_t k = 0; k < sizeof slots / sizeof slots[0]; ++k) {
         se3di_slots_init(slots[k], salt);
     }
@@ -50,6 +50,9 @@ static void destroy_names(se3di_model *model)
     for (size_t k = 0; k < model->wheel_slots.count; ++k) {
         se3di_text_free(allocator, model->wheels[k].name);
     }
+    for (size_t k = 0; k < model->road_slots.count; ++k) {
+        se3di_text_free(allocator, model->roads[k].name);
+    }
 }
 
 /* Every growing array of the model: where it is, its capacity and the size of an element. */
@@ -59,7 +62,7 @@ typedef struct model_array {
     size_t count, size;
 } model_array;
 
-#define MODEL_ARRAYS 22
+#define MODEL_ARRAYS 23
 
 static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
 {
@@ -87,6 +90,7 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
         {(void **)&m->pairs, &m->pair_capacity, materials * materials, sizeof *m->pairs},
         {(void **)&m->shapes, &m->shape_capacity, m->shape_slots.count, sizeof *m->shapes},
         {(void **)&m->wheels, &m->wheel_capacity, m->wheel_slots.count, sizeof *m->wheels},
+        {(void **)&m->roads, &m->road_capacity, m->road_slots.count, sizeof *m->roads},
         {(void **)&c->list, &c->capacity, c->count, sizeof *c->list},
         {(void **)&c->next, &c->next_capacity, 0, sizeof *c->next},
         {(void **)&c->pairs, &c->pair_capacity, listed > 0 ? c->pair_count : 0,
@@ -109,6 +113,7 @@ static void destroy_slots(se3di_model *model)
     se3di_slots_destroy(&model->material_slots, &model->allocator);
     se3di_slots_destroy(&model->shape_slots, &model->allocator);
     se3di_slots_destroy(&model->wheel_slots, &model->allocator);
+    se3di_slots_destroy(&model->road_slots, &model->allocator);
 }
 
 void se3di_model_destroy(se3di_model *model)
@@ -123,6 +128,9 @@ void se3di_model_destroy(se3di_model *model)
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         se3di_force_release(allocator, &model->forces[k]);
+    }
+    for (size_t k = 0; k < model->road_slots.count; ++k) {
+        se3di_road_release(allocator, &model->roads[k]);
     }
     model_array arrays[MODEL_ARRAYS];
     list_arrays(model, arrays);
@@ -152,6 +160,7 @@ static void disown(se3di_model *copy)
     se3di_slots_init(&copy->material_slots, 0);
     se3di_slots_init(&copy->shape_slots, 0);
     se3di_slots_init(&copy->wheel_slots, 0);
+    se3di_slots_init(&copy->road_slots, 0);
     copy->sets = NULL;
     copy->pending = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
@@ -189,6 +198,10 @@ static se3d_status copy_names(se3di_model *copy)
     }
     for (size_t k = 0; k < copy->wheel_slots.count; ++k) {
         status = copy_name(allocator, &copy->wheels[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    }
+    for (size_t k = 0; k < copy->road_slots.count; ++k) {
+        status = copy_name(allocator, &copy->roads[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+        status = se3di_road_own(allocator, &copy->roads[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
     for (size_t k = 0; k < copy->function_slots.count; ++k) {
         status =
@@ -229,6 +242,9 @@ static void list_names(se3di_model *copy)
     for (size_t k = 0; k < copy->wheel_slots.count; ++k) {
         list_name(&copy->wheel_slots, k, 0, copy->wheels[k].name);
     }
+    for (size_t k = 0; k < copy->road_slots.count; ++k) {
+        list_name(&copy->road_slots, k, 0, copy->roads[k].name);
+    }
 }
 
 static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
@@ -242,6 +258,7 @@ static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
     SE3DI_TRY(se3di_slots_clone(&model->material_slots, allocator, &copy->material_slots));
     SE3DI_TRY(se3di_slots_clone(&model->shape_slots, allocator, &copy->shape_slots));
     SE3DI_TRY(se3di_slots_clone(&model->wheel_slots, allocator, &copy->wheel_slots));
+    SE3DI_TRY(se3di_slots_clone(&model->road_slots, allocator, &copy->road_slots));
     return SE3D_OK;
 }
 
@@ -295,6 +312,7 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
     copy->material_slots = slots.material_slots;
     copy->shape_slots = slots.shape_slots;
     copy->wheel_slots = slots.wheel_slots;
+    copy->road_slots = slots.road_slots;
     status = copy_names(copy);
     if (status < 0) {
         se3di_model_destroy(copy);

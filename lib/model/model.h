@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/slots.h"
 #include "model/body_contact.h"
+#include "model/road.h"
 #include "model/shape.h"
 #include "model/term.h"
 #include "model/tyre.h"
@@ -110,6 +111,7 @@ typedef struct se3di_constraint {
     int32_t has_displacement;
     se3di_joint_frames frames; /* joints: axes; all: the points where reactions are reported */
     double angle0;
+    double pitch, distance;            /* joints: of the definition, the distance resolved */
     se3d_constraint_callback callback; /* user constraints; their rows have no terms */
     void *ctx;
     uint32_t user_first; /* the callback's bodies begin here in `bodies` */
@@ -273,6 +275,10 @@ typedef struct se3di_model {
     se3di_wheel *wheels;
     size_t wheel_capacity;
 
+    se3di_slots road_slots;
+    se3di_road *roads;
+    size_t road_capacity;
+
     se3di_body_contacts contacts;
 
     double *history; /* what an integrator carries from step to step */
@@ -336,6 +342,9 @@ se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *m
 se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
                                   se3di_handle *handle);
 
+/* Name, heights and mesh are copied. */
+se3d_status se3di_model_add_road(se3di_model *model, const se3di_road *road, se3di_handle *handle);
+
 /* The same with a turn counter of its own. */
 se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_force *force,
                                              const se3di_angle *angle, se3di_handle *handle);
@@ -348,6 +357,7 @@ void se3di_model_remove_constraint(se3di_model *model, uint32_t constraint);
 void se3di_model_remove_force(se3di_model *model, uint32_t force);
 void se3di_model_remove_shape(se3di_model *model, uint32_t shape);
 void se3di_model_remove_wheel(se3di_model *model, uint32_t wheel);
+void se3di_model_remove_road(se3di_model *model, uint32_t road);
 void se3di_model_remove_material(se3di_model *model, uint32_t material);
 
 /* What holds between two materials, and for all contacts. */

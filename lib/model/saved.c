@@ -89,6 +89,7 @@ static void save_state(se3di_saved *saved, const se3di_model *model)
     memcpy(saved->work, model->work, sizeof saved->work);
     memcpy(saved->power, model->power, sizeof saved->power);
     saved->contact_step = model->contacts.step;
+    saved->contact_time = model->contacts.time;
     saved->work_valid = model->work_valid;
     saved->settled = model->settled;
     saved->shows_before = model->shows_before;
@@ -165,6 +166,7 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
          saved->contacts.count * sizeof *model->contacts.list);
     model->contacts.count = saved->contacts.count;
     model->contacts.step = saved->contact_step;
+    model->contacts.time = saved->contact_time;
     for (size_t k = 0; k < saved->turns.count; ++k) {
         model->angles[k].theta = turns[k];
     }

@@ -15,7 +15,7 @@ typedef struct se3di_saved_array {
 typedef struct se3di_saved {
     double time, time_rest, rest_time;
     double work[3], power[3];
-    double contact_step;
+    double contact_step, contact_time;
     uint64_t history_tag;
     int64_t history_redundant;
     uint64_t history_inputs, history_values;

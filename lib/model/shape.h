@@ -67,6 +67,7 @@ typedef struct se3di_contact_settings {
 #define SE3DI_SHAPE_HAS_RIMS      8u  /* two circles with `radius` at its ends along z */
 #define SE3DI_SHAPE_IS_SURFACE    16u /* triangles with two sides, and nothing between them */
 #define SE3DI_SHAPE_IS_HALF_SPACE 32u /* all that is below z = 0: without end */
+#define SE3DI_SHAPE_IS_TURNED     64u /* a surface about z that particles know without triangles */
 
 /* The kinds of shapes, X(KIND, name, traits): each has a se3di_shape_class_<name> in the file of
  * this name in lib/contact/shape, and a SE3D_SHAPE_<KIND>. New ones go to the end. */
@@ -77,7 +78,9 @@ typedef struct se3di_contact_settings {
     X(CYLINDER, cylinder, SE3DI_SHAPE_IS_ROUND | SE3DI_SHAPE_HAS_RIMS)                             \
     X(PLANE, plane, SE3DI_SHAPE_IS_HALF_SPACE)                                                     \
     X(MESH, mesh, SE3DI_SHAPE_IS_SURFACE)                                                          \
-    X(HULL, hull, 0u)
+    X(HULL, hull, 0u)                                                                              \
+    X(HEIGHTFIELD, heightfield, SE3DI_SHAPE_IS_SURFACE)                                            \
+    X(FUNNEL, funnel, SE3DI_SHAPE_IS_SURFACE | SE3DI_SHAPE_IS_TURNED)
 
 typedef enum se3di_shape_kind {
 #define SE3DI_SHAPE_ENUM(KIND, name, traits) SE3DI_SHAPE_##KIND,
@@ -95,10 +98,12 @@ typedef struct se3di_shape {
     uint32_t users;
     double x[3];                /* origin, body frame */
     double A[9];                /* shape -> body, row-major */
+    double p[4];                /* the same as Euler parameters */
     double half[3];             /* box: half lengths */
     double radius, half_length; /* round ones, along z; capsule: of its cylinder */
+    double top_radius;          /* funnel, at z = half_length; `radius` is that at the other end */
     double bound;               /* radius about the origin that holds it; infinite: plane */
-    double *vertices;           /* mesh, hull: [3 * vertex_count], shape frame */
+    double *vertices;           /* mesh, hull, heightfield, funnel: [3 * vertex_count], own frame */
     uint32_t *triangles;        /* [3 * triangle_count]; hull: its faces, seen from outside */
     size_t vertex_count, triangle_count;
     void *tree; /* mesh: bounding volumes, see contact/shape/mesh.h */
@@ -110,6 +115,10 @@ typedef struct se3di_shape {
     int32_t convex; /* mesh: closed, and the hull of its vertices */
     int32_t oriented; /* mesh: in one piece, its triangles of one sense */
     int32_t reserved;
+    uint32_t rows, columns; /* heightfield: of heights, see contact/shape/grid.h; else 0 */
+    double spacing[2];      /* of its columns (along x) and rows (along y) */
+    /* its surface moves on the body: at its origin; about it; body frame */
+    double surface_velocity[3], surface_spin[3];
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
 

@@ -60,6 +60,9 @@ void se3di_equations_suit_masses(se3di_equations *equations)
     }
     if (equations->tree) {
         se3di_tree_refresh(equations->tree);
+        if (equations->has_loops && equations->masses_version != model->masses_version) {
+            se3di_tree_loops_refresh(&equations->loops);
+        }
         equations->is_placed = 0;
     }
     equations->masses_version = model->masses_version;
@@ -95,6 +98,26 @@ static int has_loops(const se3di_tree *tree)
     return found;
 }
 
+/* Of a recursion over the tree, a link, in the units of the costs of loops and the KKT solver. */
+#define LINK_COST 100.0
+
+enum { AS_TOLD, IF_OPEN, IF_THEY_PAY, LEFT }; /* equations->joints */
+
+/* Loops are not built that cannot pay. */
+static se3d_status foresee_loops(se3di_equations *equations)
+{
+    size_t members;
+    if (!equations->has_loops || equations->joints == AS_TOLD) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_tree_loops_count_members(equations->tree, &equations->assembly, &members));
+    const double cost = LINK_COST * equations->tree->count + se3di_loop_system_least_cost(members);
+    if (equations->joints == IF_OPEN || cost >= se3di_kkt_get_cost(equations->kkt)) {
+        equations->joints = LEFT;
+    }
+    return SE3D_OK;
+}
+
 static se3d_status create_tree(se3di_equations *equations)
 {
     se3di_model *model = equations->assembly.model;
@@ -119,6 +142,10 @@ static se3d_status create_tree(se3di_equations *equations)
     /* nothing but the tree constrains the motion, and nothing that acts depends on multipliers */
     equations->is_open_tree = tree->given_count == 0 && equations->friction.count == 0 &&
                               !equations->has_loops && tree->foreign_armature < 0;
+    SE3DI_TRY(foresee_loops(equations));
+    if (equations->joints == LEFT) {
+        return SE3D_OK;
+    }
     if (equations->has_loops) {
         SE3DI_TRY(
             se3di_tree_loops_init(&equations->loops, tree, &equations->assembly, equations->error));
@@ -126,6 +153,24 @@ static se3d_status create_tree(se3di_equations *equations)
     equations->joint_before = alloc_doubles(equations, tree->q_count);
     equations->joint_moves = alloc_doubles(equations, 12 * (size_t)tree->count);
     return equations->joint_before && equations->joint_moves ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+static int prefers_joints(const se3di_equations *equations)
+{
+    const se3di_tree *tree = equations->tree;
+    int joints = 0;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        joints |= tree->nodes[k].constraint >= 0;
+    }
+    if (!joints || equations->joints == LEFT || equations->friction.count > 0 ||
+        tree->foreign_armature >= 0 || equations->assembly.model->left_out_count > 0) {
+        return 0;
+    }
+    return !equations->has_loops ||
+           (equations->loops.leaves_freedom &&
+            se3di_loop_system_is_regular(&equations->loops.system) &&
+            LINK_COST * tree->count + se3di_loop_system_cost(&equations->loops.system) <
+                se3di_kkt_get_cost(equations->kkt));
 }
 
 static void destroy_tree(se3di_equations *equations)
@@ -147,6 +192,9 @@ static se3d_status allocate(se3di_equations *equations)
     SE3DI_TRY(create_kkt(equations));
     SE3DI_TRY(se3di_friction_system_init(&equations->friction, assembly));
     SE3DI_TRY(create_tree(equations));
+    if (equations->joints == LEFT) {
+        return SE3D_OK;
+    }
     se3di_equations_suit_masses(equations);
     equations->b = alloc_doubles(equations, assembly->unknown_count);
     equations->x = alloc_doubles(equations, assembly->unknown_count);
@@ -166,11 +214,9 @@ static se3d_status allocate(se3di_equations *equations)
     return complete ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
-se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
-                                 const se3di_formulation *formulation, int moves_states,
-                                 se3di_error *error)
+static se3d_status init(se3di_equations *equations, se3di_model *model,
+                        const se3di_formulation *formulation, int moves_states, se3di_error *error)
 {
-    *equations = (se3di_equations){.error = error, .iterations_max = 25};
     model->remembers = 1;
     SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, moves_states, error));
     se3d_status status = allocate(equations);
@@ -179,6 +225,28 @@ se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
         se3di_error_set(error, status, "no memory for the linear solver");
     }
     return status;
+}
+
+se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
+                                 const se3di_formulation *formulation, int moves_states,
+                                 se3di_error *error)
+{
+    *equations = (se3di_equations){.error = error, .iterations_max = 25};
+    return init(equations, model, formulation, moves_states, error);
+}
+
+se3d_status se3di_equations_try_joints(se3di_equations *equations, se3di_model *model,
+                                       int takes_loops, se3di_error *error, int *picked)
+{
+    *picked = 0;
+    *equations = (se3di_equations){
+        .error = error, .iterations_max = 25, .joints = takes_loops ? IF_THEY_PAY : IF_OPEN};
+    SE3DI_TRY(init(equations, model, &se3di_formulation_joint, 1, error));
+    *picked = prefers_joints(equations);
+    if (!*picked) {
+        se3di_equations_destroy(equations);
+    }
+    return SE3D_OK;
 }
 
 void se3di_equations_destroy(se3di_equations *equations)

@@ -66,13 +66,19 @@ typedef struct se3di_equations {
     int32_t takes_rows;      /* stages take the loops' rows on the tree, not all equations */
     int32_t is_suited;       /* masses_version and poses_version were looked at */
     int32_t is_placed;       /* the links of the tree are at its q and qdot, with poses */
-    int32_t reserved_too;
+    int32_t joints;          /* what for, and whether they were left at building */
 } se3di_equations;
 
 /* moves_states: whether user-defined states are integrated; else they stay as they are. */
 se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
                                  const se3di_formulation *formulation, int moves_states,
                                  se3di_error *error);
+/* The same in joint coordinates, if explicit methods gain by them: they are the whole motion,
+ * friction needs no load, and loops (only if takes_loops) are few clear rows. By the structure
+ * alone, so that whoever goes on with a motion decides as it was begun. *picked: they are there;
+ * else nothing is held, nor was built what would take far more than the equations of the bodies. */
+se3d_status se3di_equations_try_joints(se3di_equations *equations, se3di_model *model,
+                                       int takes_loops, se3di_error *error, int *picked);
 void se3di_equations_destroy(se3di_equations *equations);
 /* Masses or poses may have changed: rows of light bodies are told from dependent ones by
  * elimination without regularisation, and the tree takes them. */

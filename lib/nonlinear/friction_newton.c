@@ -8,6 +8,8 @@
  * solution is the one that begins at mu = 0. If that branch ends before s = 1, friction jams. */
 #include "nonlinear/friction_internal.h"
 
+#include "math/larger.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -195,7 +197,7 @@ static double eval_system(const se3di_equations *equations, double part)
     for (uint32_t u = 0; u < s->active; ++u) {
         const double residual =
             s->holds[s->unknown[u]] ? eval_held(equations, u) : eval_slipping(equations, u, part);
-        largest = residual <= largest ? largest : residual; /* NaN stays */
+        largest = se3di_larger(largest, residual);
     }
     return largest;
 }
@@ -263,7 +265,7 @@ static int centre(se3di_equations *equations)
         }
         change = 0.0;
         for (uint32_t u = 0; u < s->active; ++u) {
-            change = fmax(change, fabs(s->n[u] - s->centre[u]));
+            change = se3di_larger(change, fabs(s->n[u] - s->centre[u]));
             largest = fmax(largest, fabs(s->n[u]));
         }
         change = largest > 0.0 ? change / largest : 0.0;

@@ -20,7 +20,7 @@ static void copy(double *to, const double *from, size_t count)
 
 /* Allocation. */
 
-#define ARRAYS 21
+#define ARRAYS 22
 #define MARKS  6 /* arrays of int32_t */
 
 static void list_arrays(friction *s, const se3di_assembly *assembly, double **list[ARRAYS],
@@ -31,13 +31,28 @@ static void list_arrays(friction *s, const se3di_assembly *assembly, double **li
         double **place;
         size_t size;
     } const parts[ARRAYS] = {
-        {&s->n, m},      {&s->centre, m},   {&s->share, m},
-        {&s->kept, m},   {&s->Q, 16 * m},   {&s->b, n},
-        {&s->c, rows},   {&s->x, n},        {&s->l, rows},
-        {&s->X, m * n},  {&s->L, m * rows}, {&s->R, m * (m + 1) * PARTS},
-        {&s->a, m},      {&s->W, m * m},    {&s->J, m * (m + 1)},
-        {&s->limit, m},  {&s->stiff, m},    {&s->guess, m},
-        {&s->loaded, m}, {&s->P, m * m},    {&s->work, SE3DI_FRICTION_BOX_WORK(m)},
+        {&s->n, m},
+        {&s->centre, m},
+        {&s->share, m},
+        {&s->kept, m},
+        {&s->Q, 16 * m},
+        {&s->b, n},
+        {&s->c, rows},
+        {&s->x, n},
+        {&s->l, rows},
+        {&s->X, m * n},
+        {&s->L, m * rows},
+        {&s->R, m * (m + 1) * PARTS},
+        {&s->a, m},
+        {&s->W, m * m},
+        {&s->J, m * (m + 1)},
+        {&s->limit, m},
+        {&s->stiff, m},
+        {&s->guess, m},
+        {&s->loaded, m},
+        {&s->P, m * m},
+        {&s->work, SE3DI_FRICTION_BOX_WORK(m)},
+        {&s->probes, 4 * SE3DI_FRICTION_PROBES * m},
     };
     for (int k = 0; k < ARRAYS; ++k) {
         list[k] = parts[k].place;

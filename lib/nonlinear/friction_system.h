@@ -14,6 +14,8 @@
 
 #include "assembly/assembly.h"
 
+#define SE3DI_FRICTION_PROBES 5
+
 typedef struct se3di_friction_system {
     uint32_t count;    /* friction elements of the model */
     int32_t is_rigid;  /* what sticks holds by an acceleration of zero, not by its spring */
@@ -43,6 +45,7 @@ typedef struct se3di_friction_system {
     double *guess;     /* [active]: forces under loads as they are */
     double *loaded;    /* [active]: forces which these follow from */
     double *P, *work;  /* of friction_box.h */
+    double *probes;    /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h */
 } se3di_friction_system;
 
 struct se3di_equations;

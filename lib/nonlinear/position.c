@@ -7,6 +7,7 @@
 #include "nonlinear/equations.h"
 
 #include "math/elementary.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -51,7 +52,7 @@ static void measure(position_problem *problem)
         double gap =
             assembly->formulation->normalisation(&assembly->model->frames[assembly->free_body[k]]);
         problem->merit += gap * gap;
-        problem->worst = fmax(problem->worst, fabs(gap));
+        problem->worst = se3di_larger(problem->worst, fabs(gap));
     }
 }
 

@@ -80,8 +80,7 @@ static double part_along(const averaging *a, double x, double radius, int axis)
     return part;
 }
 
-/* Volumes of spheres; those of a clump share the volume of their union. */
-static double sphere_volume(const se3di_particles *set, size_t k)
+double se3di_particles_volume(const se3di_particles *set, size_t k)
 {
     const double R = set->particles[k].radius, own = 4.0 / 3.0 * PI * R * R * R;
     const se3di_clump *clump = se3di_clump_find(set, k);
@@ -107,11 +106,11 @@ static double solid_part(const averaging *a, size_t k)
     for (int axis = 0; axis < 3; ++axis) {
         part *= part_along(a, x[axis], particle->radius, axis);
     }
-    return part > 0.0 ? part * sphere_volume(a->set, k) : 0.0;
+    return part > 0.0 ? part * se3di_particles_volume(a->set, k) : 0.0;
 }
 
-/* A free sphere or a clump, which its first sphere stands for; returns 0 for the others. */
-static int get_motion(const se3di_particles *set, size_t k, double *mass, double x[3], double v[3])
+int se3di_particles_whole(const se3di_particles *set, size_t k, double *mass, double x[3],
+                          double v[3])
 {
     const se3di_clump *clump = se3di_clump_find(set, k);
     if (clump && clump->first != set->spins[k].id) {
@@ -127,7 +126,7 @@ static int get_motion(const se3di_particles *set, size_t k, double *mass, double
 static int counts(const averaging *a, size_t k, double *mass, double v[3])
 {
     double x[3];
-    if (!is_meant(a, k) || !get_motion(a->set, k, mass, x, v)) {
+    if (!is_meant(a, k) || !se3di_particles_whole(a->set, k, mass, x, v)) {
         return 0;
     }
     to_box(a, x);

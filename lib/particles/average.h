@@ -16,4 +16,10 @@ typedef struct se3di_average_box {
 void se3di_particles_average(const se3di_particles *set, const se3di_average_box *box,
                              se3d_average *average);
 
+/* The volume of sphere k; those of a clump share the volume of their union. */
+double se3di_particles_volume(const se3di_particles *set, size_t k);
+/* A free sphere or a clump, which its first sphere stands for; returns 0 for the others. */
+int se3di_particles_whole(const se3di_particles *set, size_t k, double *mass, double x[3],
+                          double v[3]);
+
 #endif

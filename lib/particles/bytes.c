@@ -112,6 +112,29 @@ static void code_flow(se3di_coder *c, se3di_particles *set)
     }
 }
 
+static void code_sum(se3di_coder *c, se3di_flow_sum *sum)
+{
+    se3di_code_word(c, &sum->forward);
+    se3di_code_word(c, &sum->backward);
+    se3di_code_numbers(c, &sum->mass, 1);
+    se3di_code_numbers(c, sum->momentum, 3);
+}
+
+/* What has passed through the flows. */
+static void code_passed(se3di_coder *c, se3di_particles *set)
+{
+    for (size_t k = 0; k < set->flow_count; ++k) {
+        se3di_flow *flow = &set->flows[k];
+        se3di_code_flag(c, &flow->has_rates);
+        se3di_code_numbers(c, &flow->begun, 1);
+        code_sum(c, &flow->before);
+        code_sum(c, &flow->total);
+        se3di_code_numbers(c, &flow->rates.count, 1);
+        se3di_code_numbers(c, &flow->rates.mass, 1);
+        se3di_code_numbers(c, flow->rates.momentum, 3);
+    }
+}
+
 static void code_wall(se3di_coder *c, se3di_wall *wall)
 {
     se3di_code_uint32(c, &wall->handle.index1);
@@ -314,6 +337,7 @@ static void write_set(se3di_coder *c, const se3di_particles *set)
     code_stuffs(c, &same);
     code_record(c, &same);
     code_flow(c, &same);
+    code_passed(c, &same);
     for (size_t k = 0; k < n.walls; ++k) {
         code_wall(c, &same.walls[k]);
     }
@@ -475,6 +499,7 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     }
     code_record(c, set);
     code_flow(c, set);
+    code_passed(c, set);
     SE3DI_TRY(read_walls(c, set));
     if (c->failed || !fit(set, &n)) {
         return SE3D_ERR_INVALID_ARGUMENT;

@@ -5,6 +5,7 @@
 #include "particles/bytes.h"
 
 #include "particles/clump.h"
+#include "particles/wall.h"
 
 #include <math.h>
 
@@ -22,7 +23,7 @@ static int are_finite(const double *values, size_t count)
 
 static int is_surface(const se3di_particles *set, uint32_t wall)
 {
-    return se3di_shape_is(&set->walls[wall].shape, SE3DI_SHAPE_IS_SURFACE);
+    return se3di_wall_is_mesh(&set->walls[wall]);
 }
 
 static int is_stuff(const se3di_particles *set, uint32_t material)
@@ -38,6 +39,16 @@ static int are_numbers(const se3di_particles *set)
            are_finite(set->high, 3) && are_finite(set->home_low, 3) &&
            are_finite(set->home_high, 3) && set->skin >= 0.0 && set->stretch >= 0.0 &&
            set->pace >= 0.0 && set->drift >= 0.0;
+}
+
+static int are_flows(const se3di_particles *set)
+{
+    int good = 1;
+    for (size_t k = 0; k < set->flow_count; ++k) {
+        const se3di_flow *flow = &set->flows[k];
+        good = good && isfinite(flow->begun) && isfinite(flow->total.mass);
+    }
+    return good;
 }
 
 static int are_particles(const se3di_particles *set)
@@ -272,5 +283,5 @@ static int are_clumps(se3di_particles *set)
 int se3di_particles_are_sound(se3di_particles *set)
 {
     return are_numbers(set) && are_particles(set) && are_clumps(set) && are_sources(set) &&
-           are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
+           are_flows(set) && are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
 }

@@ -12,6 +12,7 @@
 #include "particles/clump.h"
 
 #include "base/floats.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 
 #include <math.h>
@@ -160,8 +161,8 @@ static void carry(se3di_particles *set, const se3di_clump *clump, double drift, 
         se3di_copy(x, particle->x);
         set->loads[index] = (se3di_load){{0.0}, {0.0}};
         const double v2 = se3di_dot(way, way) * rate, worn = v2 * wear[index];
-        *fastest = v2 <= *fastest ? *fastest : v2; /* NaN stays */
-        *hasty = worn <= *hasty ? *hasty : worn;
+        *fastest = se3di_larger(*fastest, v2);
+        *hasty = se3di_larger(*hasty, worn);
     }
 }
 

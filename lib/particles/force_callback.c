@@ -176,6 +176,16 @@ static double wall_response(const se3di_wall *wall, const double lever[3], const
     return wall->inverse_mass + se3di_dot(arm, turned);
 }
 
+/* Velocity of the wall's surface on its body `side` from the centre of mass: what is tangential. */
+static void find_drift(const se3di_wall *wall, const double side[3], const double n[3],
+                       double drift[3])
+{
+    double turned[3];
+    se3di_cross(wall->pose.spin, side, turned);
+    se3di_add(wall->pose.u, turned, drift);
+    se3di_add_scaled(-se3di_dot(drift, n), n, drift);
+}
+
 static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
 {
     se3di_particle_block *block = &task->blocks[b];
@@ -183,9 +193,11 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     const se3di_wall *wall = &task->walls[block->j[0]];
     const se3di_particle *g = &task->particles[i];
     double point[3], at[3], side[3], turn[3], xi[3], force[3], lever[3], moment[3];
+    double drift[3], spin[3];
+    se3di_add(wall->pose.w, wall->pose.spin, spin);
     touch t = {.radius = g->radius,
                .w_i = task->spins[i].w,
-               .w_j = wall->pose.w,
+               .w_j = spin,
                .material_i = task->spins[i].material,
                .material_j = wall->material};
     double distance, x[3];
@@ -212,8 +224,9 @@ static void wall_lane(se3di_force_task *task, uint32_t b, int lane)
     se3di_add_scaled(-distance, t.n, side);
     t.mass = 1.0 / (mobility_of(task, i, t.n) + wall_response(wall, side, t.n));
     se3di_cross(wall->pose.w, side, at);
+    find_drift(wall, side, t.n, drift);
     for (int a = 0; a < 3; ++a) {
-        t.v[a] = g->v[a] - wall->pose.v[a] - at[a];
+        t.v[a] = g->v[a] - wall->pose.v[a] - at[a] - drift[a];
     }
     ++task->touching;
     task->overlap = fmax(task->overlap, t.delta - task->limit * g->radius);

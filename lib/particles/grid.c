@@ -49,17 +49,6 @@ static int class_of(double radius, double largest)
     return c;
 }
 
-/* Into the period along those axes that have one. */
-static void come_home(const se3di_particles *set, double x[3])
-{
-    for (int a = 0; a < 3; ++a) {
-        const double length = set->upper[a] - set->lower[a];
-        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-            x[a] -= length * floor((x[a] - set->lower[a]) / length);
-        }
-    }
-}
-
 /* Whether x is beyond an end of the domain that is a sink. */
 static int is_beyond(const se3di_particles *set, const double x[3])
 {
@@ -78,10 +67,10 @@ static size_t leave(se3di_particles *set)
 {
     size_t gone = 0;
     for (size_t k = 0; k < set->clump_count; ++k) {
-        come_home(set, set->clumps[k].x);
+        se3di_particles_come_home(set, set->clumps[k].x);
     }
     for (size_t k = 0; k < set->count; ++k) {
-        come_home(set, set->particles[k].x);
+        se3di_particles_come_home(set, set->particles[k].x);
         const se3di_clump *clump = se3di_clump_find(set, k);
         const double *x = clump ? clump->x : set->particles[k].x;
         set->order[k] = !is_beyond(set, x);

@@ -23,7 +23,7 @@ typedef struct part {
     size_t bytes;
 } part;
 
-enum { PARTS_SLOW = 12, PARTS = 23 };
+enum { PARTS_SLOW = 12, PARTS = 24 };
 
 /* The arrays in use of a set: those that change with the lists, then the others. */
 static void list_parts(const se3di_particles *set, part parts[PARTS])
@@ -56,6 +56,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->walls, set->wall_count * sizeof *set->walls},
         {set->sources, set->source_count * sizeof *set->sources},
         {set->sinks, set->sink_count * sizeof *set->sinks},
+        {set->flows, set->flow_count * sizeof *set->flows},
     };
     _Static_assert(sizeof all == PARTS * sizeof *all, "all of them");
     memcpy(parts, all, sizeof all);
@@ -96,7 +97,7 @@ static size_t room_of(const se3di_particles *set)
            set->roll_memory.bytes +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
-           set->sink_capacity * sizeof *set->sinks;
+           set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows;
 }
 
 static se3d_status reserve(se3di_particles *set)

@@ -275,8 +275,7 @@ static uint32_t mark_walls(se3di_particles *set, const se3di_slab *slab, size_t 
         uint32_t i = entry->i & ~SE3DI_LIST_ACTIVE;
         const se3di_wall *wall = &set->walls[entry->wall];
         /* meshes have pairs of their own */
-        int active =
-            !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE) && is_near_wall(set, wall, i);
+        int active = !se3di_wall_is_mesh(wall) && is_near_wall(set, wall, i);
         entry->i = active ? i | SE3DI_LIST_ACTIVE : i;
         if (entry->wall != last) {
             blocks += blocks_of(count);

@@ -12,11 +12,6 @@
 
 #define SAME_PLACE 0.7 /* cosine of the angle by which a normal may turn in a step */
 
-static int is_mesh(const se3di_wall *wall)
-{
-    return se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE);
-}
-
 /* The touch of the pair with the nearest normal that is not taken; -1: none. */
 static int match(const se3di_mesh_pair *pair, const double normal[3], unsigned taken)
 {
@@ -231,7 +226,7 @@ se3d_status se3di_particles_mesh_activate(se3di_particles *set)
     set->mesh_count = 0;
     int any = 0;
     for (size_t k = 0; k < set->wall_count; ++k) {
-        any = any || is_mesh(&set->walls[k]);
+        any = any || se3di_wall_is_mesh(&set->walls[k]);
     }
     if (any) {
         chain(set);
@@ -241,7 +236,7 @@ se3d_status se3di_particles_mesh_activate(se3di_particles *set)
         slab->mesh_begin = (uint32_t)set->mesh_count;
         for (uint32_t k = slab->near_begin; any && k < slab->near_end; ++k) {
             const se3di_near_wall *near = &set->near_walls[k];
-            if (is_mesh(&set->walls[near->wall]) && is_active(set, near)) {
+            if (se3di_wall_is_mesh(&set->walls[near->wall]) && is_active(set, near)) {
                 SE3DI_TRY(push(set, near));
             }
         }

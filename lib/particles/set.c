@@ -65,6 +65,7 @@ void se3di_particles_destroy(se3di_particles *set)
     }
     se3di_free(a, set->sources, set->source_capacity, sizeof *set->sources);
     se3di_free(a, set->sinks, set->sink_capacity, sizeof *set->sinks);
+    se3di_free(a, set->flows, set->flow_capacity, sizeof *set->flows);
     se3d_allocator allocator = set->allocator;
     memset(set, 0, sizeof *set);
     set->allocator = allocator;
@@ -94,7 +95,8 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->ball_capacity * sizeof *set->balls + set->clump_capacity * sizeof *set->clumps +
            set->clump_of_capacity * sizeof *set->clump_of +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
-           set->sink_capacity * sizeof *set->sinks + se3di_particles_kept_memory(set) + sizeof *set;
+           set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
+           se3di_particles_kept_memory(set) + sizeof *set;
 }
 
 /* An array of exactly `count` elements of which `keep` stay in *to; on failure *to is NULL. */
@@ -262,6 +264,7 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->walls, from->walls, from->wall_capacity, sizeof(se3di_wall)},
         {&to->sources, from->sources, from->source_capacity, sizeof(se3di_source)},
         {&to->sinks, from->sinks, from->sink_capacity, sizeof(se3di_sink)},
+        {&to->flows, from->flows, from->flow_capacity, sizeof(se3di_flow)},
     };
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {

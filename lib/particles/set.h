@@ -80,6 +80,8 @@ typedef struct se3di_wall {
     se3di_handle body; /* the handle of shape.body */
     uint32_t material; /* in the set's table */
     int32_t loose;     /* nothing but forces moves the body: it gives way where it is hit */
+    int32_t far;       /* the second wall of a funnel: what is beyond its axis */
+    int32_t reserved;
     se3di_shape_pose pose;
     double inverse_mass;         /* of a body that gives way; 0: it moves as it is told */
     double turn[9];              /* its inverse inertia, ground frame */
@@ -216,6 +218,30 @@ typedef struct se3di_sink {
     uint64_t count;
 } se3di_sink;
 
+/* What has passed through a plane, net but for the numbers. */
+typedef struct se3di_flow_sum {
+    uint64_t forward, backward;
+    double mass, momentum[3];
+} se3di_flow_sum;
+
+typedef struct se3di_flow_rates {
+    double count, mass, momentum[3];
+} se3di_flow_rates;
+
+/* Counts what passes through a plane, or a disk or rectangle in it.             passage.c */
+typedef struct se3di_flow {
+    double point[3], normal[3];
+    double along[3], across[3], half[2]; /* of a rectangle; half 0: none */
+    double radius;                       /* of a disk; 0: none */
+    double window;
+    int32_t tag; /* -1: all */
+    int32_t has_rates;
+    /* what it has seen */
+    double begun;                 /* time at the beginning of the window, */
+    se3di_flow_sum before, total; /* what had passed then, and now */
+    se3di_flow_rates rates;       /* of the last whole window */
+} se3di_flow;
+
 /* A sphere of a template: place in the principal axes, from the centre of mass. */
 typedef struct se3di_clump_ball {
     double r[3], radius; /* at scale 1 */
@@ -350,6 +376,8 @@ typedef struct se3di_particles {
     size_t source_count, source_capacity;
     se3di_sink *sinks;
     size_t sink_count, sink_capacity;
+    se3di_flow *flows;
+    size_t flow_count, flow_capacity;
     uint64_t touching;
     int32_t starved;       /* memory was missing in the last evaluation of the forces */
     int32_t failed_placed; /* the overlap was there before any step was made */

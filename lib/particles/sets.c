@@ -5,6 +5,7 @@
 #include "math/vec3.h"
 #include "particles/flow.h"
 #include "particles/kept.h"
+#include "particles/passage.h"
 #include "particles/step.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
@@ -222,6 +223,7 @@ se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_erro
     for (se3di_particles *set = model->sets; set; set = set->next) {
         set->time = t;
         ++set->steps;
+        se3di_flows_tick(set);
         if (se3di_particles_is_idle(set)) {
             continue;
         }

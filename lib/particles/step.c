@@ -6,10 +6,12 @@
 
 #include "base/hash.h"
 #include "contact/bodies/encounter.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 #include "particles/flow.h"
 #include "particles/grid.h"
 #include "particles/list.h"
+#include "particles/passage.h"
 #include "particles/piece.h"
 #include "particles/reach.h"
 #include "particles/sweep.h"
@@ -324,6 +326,7 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
         --steps;
         set->time += h;
         ++set->steps;
+        se3di_flows_tick(set);
         int on = steps > 0 && failure == SE3D_OK;
         se3di_particle_motion motion = {on ? 2 : 1, h, on ? h : 0.0};
         se3d_status status = evaluate(set, h, &motion);

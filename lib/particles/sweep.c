@@ -12,8 +12,10 @@
 #include "particles/sweep.h"
 #include "base/floats.h"
 #include "base/threads.h"
+#include "math/larger.h"
 #include "particles/clump.h"
 #include "particles/mesh.h"
+#include "particles/passage.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,11 +23,6 @@
 #if defined(_OPENMP) && !defined(__STDC_NO_THREADS__)
 #include <threads.h>
 #endif
-
-double se3di_larger(double a, double b)
-{
-    return b <= a || a != a ? a : b;
-}
 
 /* The largest of some particles; NaN if one is NaN. */
 typedef struct haste {
@@ -71,8 +68,8 @@ static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, 
             particle->x[a] += drift * v;
         }
         const double worn = v2 * wear[k];
-        most.fastest = v2 <= most.fastest ? most.fastest : v2; /* NaN stays */
-        most.hasty = worn <= most.hasty ? most.hasty : worn;
+        most.fastest = se3di_larger(most.fastest, v2);
+        most.hasty = se3di_larger(most.hasty, worn);
         if (drifts) {
             *load = (se3di_load){{0.0}, {0.0}};
         }
@@ -83,6 +80,9 @@ static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, 
 static haste move_range(se3di_particles *set, size_t begin, size_t end,
                         const se3di_particle_motion *motion)
 {
+    if (set->flow_count > 0 && motion->drift != 0.0) {
+        se3di_flows_mark(set, begin, end);
+    }
     if (set->clump_count > 0) {
         return move_kicked(set, begin, end, motion->kicks, 1, motion);
     }
@@ -100,6 +100,9 @@ static haste move_range(se3di_particles *set, size_t begin, size_t end,
 static void note_motion(se3di_particles *set, const se3di_particle_motion *motion, haste most)
 {
     if (motion->drift != 0.0) {
+        if (set->flow_count > 0) {
+            se3di_flows_count(set, motion->drift);
+        }
         set->drift = fabs(motion->drift);
         set->pace = sqrt(most.fastest) * set->drift;
         set->worn += sqrt(most.hasty) * set->drift;
@@ -127,6 +130,9 @@ static void pass(se3di_particles *set, const se3di_particle_motion *motion)
     for (size_t c = 0; c < PASS_PARTS; ++c) {
         const se3di_floats host = se3di_floats_set();
         most_of[c] = move_range(set, part_begin(count, c), part_begin(count, c + 1), motion);
+        if (set->flow_count > 0) {
+            se3di_flows_mark_clumps(set, part_begin(clumps, c), part_begin(clumps, c + 1));
+        }
         se3di_clumps_move(set, part_begin(clumps, c), part_begin(clumps, c + 1), motion,
                           &most_of[c].fastest, &most_of[c].hasty);
         se3di_floats_restore(host);

@@ -13,7 +13,5 @@ void se3di_particles_move(se3di_particles *set, int kicks, double h);
  * at where it was, its motion. */
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
                            const se3di_particle_motion *motion);
-/* The larger one; NaN if one is NaN. */
-double se3di_larger(double a, double b);
 
 #endif

@@ -5,6 +5,7 @@
 #include "particles/sync.h"
 #include "particles/list.h"
 #include "particles/mesh.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -99,10 +100,10 @@ static void remap_walls(se3di_particles *set, const uint32_t *place)
     se3di_particles_mesh_remap(set, NULL, place);
 }
 
-static uint32_t find_wall(const se3di_particles *set, se3di_handle handle)
+static uint32_t find_wall(const se3di_particles *set, se3di_handle handle, int32_t far)
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
-        if (same(set->walls[k].handle, handle)) {
+        if (same(set->walls[k].handle, handle) && set->walls[k].far == far) {
             return (uint32_t)k;
         }
     }
@@ -139,37 +140,50 @@ double se3di_particles_lightest_body(const se3di_particles *set, const se3di_mod
     return lightest;
 }
 
-/* The new walls, with the forces of the old ones; place[old] is the new index. */
+/* The wall that shape k is (or the far one), with the forces of the old one. Returns the index of
+ * that. */
+static uint32_t fill_wall(const se3di_particles *set, const se3di_model *model, uint32_t k,
+                          int32_t far, se3di_wall *wall)
+{
+    const se3di_shape *shape = &model->shapes[k];
+    const se3di_handle handle = se3di_slots_handle(&model->shape_slots, k);
+    const uint32_t old = find_wall(set, handle, far);
+    *wall = old == SE3DI_NO_INDEX ? (se3di_wall){.handle = handle, .far = far} : set->walls[old];
+    wall->shape = *shape;
+    wall->body = se3di_slots_handle(&model->body_slots, shape->body);
+    wall->loose = is_loose(model, shape->body);
+    se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+    if (old == SE3DI_NO_INDEX) { /* at rest so far */
+        memcpy(wall->near_x, wall->pose.x, sizeof wall->near_x);
+        memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
+    }
+    const se3di_handle material =
+        se3di_slots_handle(&model->material_slots, (uint32_t)shape->material);
+    for (size_t s = 0; s < set->stuff_count; ++s) {
+        wall->material = same(set->stuffs[s].handle, material) ? (uint32_t)s : wall->material;
+    }
+    return old;
+}
+
+static size_t walls_of(const se3di_particles *set, const se3di_shape *shape)
+{
+    return touches(set, shape) ? se3di_wall_count_of(shape) : 0;
+}
+
+/* The new walls; place[old] is the new index. */
 static size_t fill_walls(const se3di_particles *set, const se3di_model *model, se3di_wall *walls,
                          uint32_t *place)
 {
     size_t count = 0;
     for (uint32_t k = 0; k < model->shape_slots.count; ++k) {
-        const se3di_shape *shape = &model->shapes[k];
-        if (!touches(set, shape)) {
-            continue;
+        const size_t sides = walls_of(set, &model->shapes[k]);
+        for (size_t far = 0; far < sides; ++far) {
+            const uint32_t old = fill_wall(set, model, k, (int32_t)far, &walls[count]);
+            if (old != SE3DI_NO_INDEX) {
+                place[old] = (uint32_t)count;
+            }
+            ++count;
         }
-        se3di_handle handle = se3di_slots_handle(&model->shape_slots, k);
-        uint32_t old = find_wall(set, handle);
-        se3di_wall *wall = &walls[count];
-        *wall = old == SE3DI_NO_INDEX ? (se3di_wall){.handle = handle} : set->walls[old];
-        wall->shape = *shape;
-        wall->body = se3di_slots_handle(&model->body_slots, shape->body);
-        wall->loose = is_loose(model, shape->body);
-        se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
-        if (old == SE3DI_NO_INDEX) { /* at rest so far */
-            memcpy(wall->near_x, wall->pose.x, sizeof wall->near_x);
-            memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
-        }
-        se3di_handle material =
-            se3di_slots_handle(&model->material_slots, (uint32_t)shape->material);
-        for (size_t s = 0; s < set->stuff_count; ++s) {
-            wall->material = same(set->stuffs[s].handle, material) ? (uint32_t)s : wall->material;
-        }
-        if (old != SE3DI_NO_INDEX) {
-            place[old] = (uint32_t)count;
-        }
-        ++count;
     }
     return count;
 }
@@ -178,7 +192,7 @@ static se3d_status replace_walls(se3di_particles *set, const se3di_model *model)
 {
     size_t room = 0;
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
-        room += (size_t)touches(set, &model->shapes[k]);
+        room += walls_of(set, &model->shapes[k]);
     }
     const se3d_allocator *a = &set->allocator;
     size_t old = set->wall_count;
@@ -234,6 +248,23 @@ static void take_law(se3di_particles *set, const se3di_model *model)
     set->force_valid = 0;
 }
 
+/* How surfaces move on their bodies. */
+static void take_surfaces(se3di_particles *set, const se3di_model *model)
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        se3di_wall *wall = &set->walls[k];
+        const uint32_t index =
+            se3di_slots_find(&model->shape_slots, wall->handle.index1, wall->handle.generation);
+        if (index != SE3DI_NO_INDEX) {
+            const se3di_shape *shape = &model->shapes[index];
+            memcpy(wall->shape.surface_velocity, shape->surface_velocity,
+                   sizeof shape->surface_velocity);
+            memcpy(wall->shape.surface_spin, shape->surface_spin, sizeof shape->surface_spin);
+            se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+        }
+    }
+}
+
 /* Materials and the law have changed, but not what touches. *whole: more has to be done. */
 static se3d_status renew(se3di_particles *set, const se3di_model *model, int *whole)
 {
@@ -243,6 +274,7 @@ static se3d_status renew(se3di_particles *set, const se3di_model *model, int *wh
     set->rolling = rolling;
     if (!*whole) {
         take_law(set, model);
+        take_surfaces(set, model);
     }
     return SE3D_OK;
 }

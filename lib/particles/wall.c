@@ -21,12 +21,61 @@ void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3]
     se3di_mul_transposed(wall->pose.R, d, local);
 }
 
+/* The foot on the side of a funnel of a point at `rho` from the axis and z: its radius and z. */
+static void funnel_foot(const se3di_shape *s, double rho, double z, double foot[2])
+{
+    const double side = s->top_radius - s->radius, length = 2.0 * s->half_length;
+    const double along = (rho - s->radius) * side + (z + s->half_length) * length;
+    const double part = fmax(0.0, fmin(1.0, along / (side * side + length * length)));
+    foot[0] = s->radius + part * side;
+    foot[1] = part * length - s->half_length;
+}
+
+/* Signed from the axis, on the other side of which the far wall is. */
+static double funnel_rho(const se3di_wall *wall, const double local[3])
+{
+    const double rho = sqrt(local[0] * local[0] + local[1] * local[1]);
+    return wall->far ? -rho : rho;
+}
+
+static double funnel_distance(const se3di_wall *wall, const double local[3])
+{
+    const double rho = funnel_rho(wall, local);
+    double foot[2];
+    funnel_foot(&wall->shape, rho, local[2], foot);
+    const double d[2] = {rho - foot[0], local[2] - foot[1]};
+    return sqrt(d[0] * d[0] + d[1] * d[1]);
+}
+
+/* As funnel_distance() of force.inc. */
+static double funnel_nearest(const se3di_wall *wall, const double local[3], double n[3])
+{
+    const double rho = funnel_rho(wall, local);
+    double foot[2], beside[2];
+    funnel_foot(&wall->shape, rho, local[2], foot);
+    const double z = local[2] - foot[1];
+    const double distance = sqrt((rho - foot[0]) * (rho - foot[0]) + z * z);
+    const double u = distance > 0.0 ? (rho - foot[0]) / distance : -1.0;
+    n[0] = fabs(rho) > 0.0 ? u * (local[0] / rho) : wall->far ? -u : u;
+    n[1] = fabs(rho) > 0.0 ? u * (local[1] / rho) : 0.0;
+    n[2] = distance > 0.0 ? z / distance : 0.0;
+    if (wall->far) {
+        funnel_foot(&wall->shape, -rho, local[2], beside);
+        return -rho < beside[0] && foot[0] > 0.0 ? distance : SE3DI_WALL_NOWHERE;
+    }
+    return distance;
+}
+
 double se3di_wall_nearest(const se3di_wall *wall, const double x[3], double point[3],
                           double normal[3])
 {
     double local[3], at[3], n[3], distance;
     se3di_wall_local(wall, x, local);
-    se3di_shape_nearest(&wall->shape, local, at, n, &distance);
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_TURNED)) {
+        distance = funnel_nearest(wall, local, n);
+    } else {
+        se3di_shape_nearest(&wall->shape, local, at, n, &distance);
+    }
     se3di_mul(wall->pose.R, n, normal);
     se3di_copy(x, point);
     se3di_add_scaled(-distance, normal, point);
@@ -37,6 +86,9 @@ double se3di_wall_distance(const se3di_wall *wall, const double x[3])
 {
     double local[3], point[3], normal[3], distance;
     se3di_wall_local(wall, x, local);
+    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_TURNED)) {
+        return funnel_distance(wall, local);
+    }
     se3di_shape_nearest(&wall->shape, local, point, normal, &distance);
     return distance;
 }
@@ -85,6 +137,16 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
             double length = set->upper[a] - set->lower[a];
             d[a] -= length * se3di_nearest(d[a] / length);
+        }
+    }
+}
+
+void se3di_particles_come_home(const se3di_particles *set, double x[3])
+{
+    for (int a = 0; a < 3; ++a) {
+        const double length = set->upper[a] - set->lower[a];
+        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
+            x[a] -= length * floor((x[a] - set->lower[a]) / length);
         }
     }
 }
@@ -152,7 +214,7 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
     if (least_distance(wall, x) >= reach) {
         return SE3D_OK;
     }
-    if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE)) {
+    if (se3di_wall_is_mesh(wall)) {
         SE3DI_TRY(list_faces(set, wall, x, reach));
         if (set->face_count == face_begin) {
             return SE3D_OK;
@@ -212,7 +274,7 @@ static int is_clear(const se3di_wall *wall, const parcel *box)
     if (least_distance(wall, box->middle) >= reach) {
         return 1;
     }
-    if (!se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_SURFACE)) {
+    if (!se3di_wall_is_mesh(wall)) {
         return se3di_wall_distance(wall, box->middle) >= reach;
     }
     double local[3];

@@ -64,7 +64,7 @@ double se3di_audit_contacts(const se3di_model *model)
         return 0.0;
     }
     const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_CALL);
-    const double energy = se3di_contacts_potential(model);
+    const double energy = se3di_contacts_potential(model, model->time);
     se3di_busy_restore(model->busy, level);
     return energy;
 }

@@ -88,7 +88,8 @@ se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
     const se3di_body *data = &system->model.bodies[index];
     if (data->users > 0) {
         return SE3DI_FAIL(system, SE3D_ERR_IN_USE,
-                          "body %s is used by %u markers, constraints, forces, shapes or wheels; "
+                          "body %s is used by %u markers, constraints, forces, shapes, wheels or "
+                          "roads; "
                           "destroy them first",
                           data->name ? data->name : "without a name", data->users);
     }

@@ -2,6 +2,7 @@
 /* Checks of arguments at the public boundary. */
 #include "base/text.h"
 #include "math/direction.h"
+#include "math/vec3.h"
 #include "system/system_internal.h"
 
 #include <math.h>
@@ -59,8 +60,9 @@ se3d_status se3di_check_orientation(se3d_system *system, const char *what, const
                              "(length 1 within 1e-6)",
                              p[0], p[1], p[2], p[3], norm);
     }
+    const int is_unit = se3di_is_unit(p, 4);
     for (int k = 0; k < 4; ++k) {
-        unit[k] = p[k] / norm;
+        unit[k] = is_unit ? p[k] : p[k] / norm;
     }
     return SE3D_OK;
 }
@@ -127,6 +129,12 @@ se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel h
                              uint32_t *index)
 {
     return find(system, &system->model.wheel_slots, what, SE3DI_HANDLE(handle), index);
+}
+
+se3d_status se3di_find_road(se3d_system *system, const char *what, se3d_road handle,
+                            uint32_t *index)
+{
+    return find(system, &system->model.road_slots, what, SE3DI_HANDLE(handle), index);
 }
 
 se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint handle,

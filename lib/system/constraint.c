@@ -2,6 +2,7 @@
 /* Public layer: what primitives, joints and drivers have in common: names, counts, values and
  * Jacobians of their equations. */
 #include "joint/equation.h"
+#include "system/definition.h"
 #include "system/system_internal.h"
 
 #include <string.h>
@@ -117,8 +118,7 @@ se3d_status se3d_constraint_get_body(const se3d_system *system, se3d_constraint 
     if (slot >= found->body_count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    se3di_handle handle = se3di_slots_handle(&system->model.body_slots, found->bodies[slot]);
-    *body = (se3d_body){handle.index1, handle.generation};
+    *body = se3di_body_handle(&system->model, found->bodies[slot]);
     return SE3D_OK;
 }
 

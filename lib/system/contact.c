@@ -254,3 +254,33 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
     se3di_audit_contacts_change(&system->model, before);
     return SE3D_OK;
 }
+
+size_t se3d_system_count_materials(const se3d_system *system)
+{
+    return system ? system->model.material_slots.count : 0;
+}
+
+se3d_status se3d_system_get_material(const se3d_system *system, size_t index,
+                                     se3d_material *material)
+{
+    return se3di_read_handle(SE3DI_SLOTS(system, material), index, material);
+}
+
+se3d_status se3d_material_get_pair(const se3d_system *system, se3d_material a, se3d_material b,
+                                   se3d_material_pair_def *def)
+{
+    uint32_t index_a, index_b;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, material), SE3DI_HANDLE(a), def, &index_a));
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, material), SE3DI_HANDLE(b), def, &index_b));
+    const se3di_override *over =
+        &system->model.overrides[index_a * system->model.material_slots.count + index_b];
+    const se3d_material_pair_def full = {.struct_size = def->struct_size,
+                                         .friction = over->friction,
+                                         .restitution = over->restitution,
+                                         .rolling_friction = over->rolling_friction,
+                                         .torsional_friction = over->torsional_friction,
+                                         .stiffness = over->stiffness,
+                                         .cohesion = over->cohesion,
+                                         .adhesion = over->adhesion};
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
+}

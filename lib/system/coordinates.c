@@ -8,6 +8,7 @@
 #include "linsol/rank.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
+#include "system/definition.h"
 #include "tree/loops.h"
 #include "tree/recursion.h"
 
@@ -178,12 +179,6 @@ static se3d_status check_structure(const se3d_coordinates *c)
                       "made: make them anew");
 }
 
-static se3d_body body_at(const se3di_model *model, uint32_t index)
-{
-    const se3di_handle handle = se3di_slots_handle(&model->body_slots, index);
-    return (se3d_body){handle.index1, handle.generation};
-}
-
 static const se3di_tree_node *find_node(const se3di_tree *tree, size_t velocity)
 {
     const se3di_tree_node *n = tree->nodes;
@@ -207,18 +202,13 @@ se3d_status se3d_coordinates_get_entry(se3d_coordinates *coordinates, size_t ind
     const se3di_model *model = &system->model;
     const se3di_tree_node *n = find_node(&coordinates->tree, index);
     if (joint) {
-        *joint = (se3d_constraint){0, 0};
-        if (n->constraint >= 0) {
-            const se3di_handle handle =
-                se3di_slots_handle(&model->constraint_slots, (uint32_t)n->constraint);
-            *joint = (se3d_constraint){handle.index1, handle.generation};
-        }
+        *joint = se3di_constraint_handle(model, n->constraint);
     }
     if (body) {
-        *body = body_at(model, n->body);
+        *body = se3di_body_handle(model, n->body);
     }
     if (parent) {
-        *parent = body_at(model, n->parent_body);
+        *parent = se3di_body_handle(model, n->parent_body);
     }
     if (component) {
         *component = index - n->v;
@@ -238,6 +228,9 @@ static se3d_status begin(se3d_coordinates *c)
     const se3di_model *model = &c->system->model;
     if (c->masses_version != model->masses_version || c->poses_version != model->poses_version) {
         se3di_tree_refresh(&c->tree);
+        if (c->masses_version != model->masses_version) {
+            se3di_tree_loops_refresh(&c->loops);
+        }
         take_versions(c);
         c->is_placed = 0;
     }

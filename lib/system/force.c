@@ -91,8 +91,8 @@ static se3d_status make_angle(se3d_system *system, const se3d_rsda_def *def, se3
     SE3DI_TRY(se3di_check_finites(system, "ref_j", def->ref_j, 3));
     SE3DI_TRY(se3di_check_finite(system, "angle0", def->angle0));
     int chosen = memcmp(def->ref_i, none, sizeof none) == 0;
-    if (!se3di_joint_triad_build(frames.axis_i, chosen ? NULL : def->ref_i, frames.ref_i,
-                                 frames.third_i)) {
+    if (!se3di_joint_triad_take(frames.axis_i, chosen ? NULL : def->ref_i, frames.ref_i,
+                                frames.third_i)) {
         return SE3DI_FAIL_OF(system, "ref_i", SE3D_ERR_INVALID_ARGUMENT,
                              " = [%g, %g, %g] is parallel to axis_i, must not be", def->ref_i[0],
                              def->ref_i[1], def->ref_i[2]);

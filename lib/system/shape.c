@@ -5,6 +5,7 @@
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "particles/energy.h"
+#include "system/definition.h"
 #include "system/particles.h"
 
 #include <math.h>
@@ -32,10 +33,15 @@ static se3d_status read_common(se3d_system *system, const se3d_shape_def *def, s
     }
     SE3DI_TRY(se3di_check_new_name(system, &system->model.shape_slots, 0, "shape", def->name));
     SE3DI_TRY(se3di_check_finites(system, "position", def->position, 3));
+    SE3DI_TRY(se3di_check_finites(system, "surface_velocity", def->surface_velocity, 3));
+    SE3DI_TRY(se3di_check_finites(system, "surface_spin", def->surface_spin, 3));
+    se3di_copy(def->surface_velocity, shape->surface_velocity);
+    se3di_copy(def->surface_spin, shape->surface_spin);
     SE3DI_TRY(se3di_check_orientation(system, "orientation", def->orientation, p));
     memcpy(&shape->name, &def->name, sizeof shape->name); /* copied by the model */
     se3di_copy(def->position, shape->x);
     se3di_quat_to_matrix(p, shape->A);
+    memcpy(shape->p, p, sizeof shape->p);
     shape->group = def->group;
     shape->mask = def->mask;
     return SE3D_OK;
@@ -78,16 +84,39 @@ static se3d_status create(se3d_system *system, const char *function, const se3d_
 SE3DI_SHAPE_LIST(CREATE)
 #undef CREATE
 
-se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape)
+static se3d_status find_shape(se3d_system *system, se3d_shape shape, uint32_t *index)
 {
-    SE3DI_EDIT(system);
-    uint32_t index = se3di_slots_find(&system->model.shape_slots, shape.index1, shape.generation);
-    if (index == SE3DI_NO_INDEX) {
+    *index = se3di_slots_find(&system->model.shape_slots, shape.index1, shape.generation);
+    if (*index == SE3DI_NO_INDEX) {
         return SE3DI_FAIL(system, SE3D_ERR_STALE_HANDLE, "shape %s",
                           shape.index1 == 0 ? "is the null handle"
                                             : "was destroyed or belongs to another system");
     }
+    return SE3D_OK;
+}
+
+se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape)
+{
+    SE3DI_EDIT(system);
+    uint32_t index;
+    SE3DI_TRY(find_shape(system, shape, &index));
     se3di_model_remove_shape(&system->model, index);
+    return SE3D_OK;
+}
+
+se3d_status se3d_shape_set_surface_motion(se3d_system *system, se3d_shape shape,
+                                          const double velocity[3], const double spin[3])
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    SE3DI_TRY(find_shape(system, shape, &index));
+    SE3DI_TRY(se3di_check_pointer(system, "velocity", velocity));
+    SE3DI_TRY(se3di_check_pointer(system, "spin", spin));
+    SE3DI_TRY(se3di_check_finites(system, "velocity", velocity, 3));
+    SE3DI_TRY(se3di_check_finites(system, "spin", spin, 3));
+    se3di_copy(velocity, system->model.shapes[index].surface_velocity);
+    se3di_copy(spin, system->model.shapes[index].surface_spin);
+    se3di_model_touch_contact(&system->model);
     return SE3D_OK;
 }
 
@@ -97,6 +126,16 @@ static se3d_status find_reader(const se3d_system *system, se3d_shape shape, cons
     uint32_t index;
     SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, shape), SE3DI_HANDLE(shape), out, &index));
     *data = &system->model.shapes[index];
+    return SE3D_OK;
+}
+
+se3d_status se3d_shape_get_surface_motion(const se3d_system *system, se3d_shape shape,
+                                          double velocity[3], double spin[3])
+{
+    const se3di_shape *data;
+    SE3DI_TRY(find_reader(system, shape, velocity ? spin : NULL, &data));
+    se3di_copy(data->surface_velocity, velocity);
+    se3di_copy(data->surface_spin, spin);
     return SE3D_OK;
 }
 
@@ -190,4 +229,66 @@ se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,
     se3di_mul(pose.R, at, point);
     se3di_add(pose.x, point, point);
     return SE3D_OK;
+}
+
+size_t se3d_system_count_shapes(const se3d_system *system)
+{
+    return system ? system->model.shape_slots.count : 0;
+}
+
+se3d_status se3d_system_get_shape(const se3d_system *system, size_t index, se3d_shape *shape)
+{
+    return se3di_read_handle(SE3DI_SLOTS(system, shape), index, shape);
+}
+
+se3d_status se3d_shape_get_type(const se3d_system *system, se3d_shape shape, int32_t *type)
+{
+    const se3di_shape *data;
+    SE3DI_TRY(find_reader(system, shape, type, &data));
+    *type = data->kind;
+    return SE3D_OK;
+}
+
+se3d_status se3d_shape_get_def(const se3d_system *system, se3d_shape shape, se3d_shape_def *def)
+{
+    const se3di_shape *data;
+    SE3DI_TRY(find_reader(system, shape, def, &data));
+    const se3di_model *model = &system->model;
+    se3d_shape_def full = se3d_shape_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.body = se3di_body_handle(model, data->body);
+    full.material = se3di_material_handle(model, data->material);
+    se3di_copy(data->x, full.position);
+    if (se3di_is_unit(data->p, 4)) {
+        memcpy(full.orientation, data->p, sizeof full.orientation);
+    } else { /* a plane that was given its normal */
+        full.normal[0] = data->A[2];
+        full.normal[1] = data->A[5];
+        full.normal[2] = data->A[8];
+    }
+    se3di_scale(2.0, data->half, full.size);
+    if (data->kind == SE3DI_SHAPE_FUNNEL) {
+        full.bottom_radius = data->radius;
+        full.top_radius = data->top_radius;
+    } else {
+        full.radius = data->radius;
+    }
+    full.length = 2.0 * data->half_length;
+    full.group = data->group;
+    full.mask = data->mask;
+    full.row_count = data->rows;
+    full.column_count = data->columns;
+    memcpy(full.spacing, data->spacing, sizeof full.spacing);
+    se3di_copy(data->surface_velocity, full.surface_velocity);
+    se3di_copy(data->surface_spin, full.surface_spin);
+    if (data->kind != SE3DI_SHAPE_FUNNEL) { /* whose facets follow from its radii */
+        full.vertices = data->vertices;
+        full.vertex_count = data->vertex_count;
+    }
+    if (data->kind == SE3DI_SHAPE_MESH) { /* those of a hull follow from its vertices */
+        full.triangles = data->triangles;
+        full.triangle_count = data->triangle_count;
+    }
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

@@ -42,8 +42,8 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
     for (const se3di_particles *set = model->sets; set; set = set->next) {
         const uint32_t words[] = {(uint32_t)set->boundary[0], (uint32_t)set->boundary[1],
                                   (uint32_t)set->boundary[2], (uint32_t)set->source_count,
-                                  (uint32_t)set->sink_count};
-        hash = add_words(hash, words, 5);
+                                  (uint32_t)set->sink_count,  (uint32_t)set->flow_count};
+        hash = add_words(hash, words, set->flow_count > 0 ? 6 : 5);
     }
     return hash;
 }

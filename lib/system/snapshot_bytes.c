@@ -16,7 +16,7 @@
 #include <string.h>
 
 #define MARK    UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION UINT64_C(3)
+#define VERSION UINT64_C(4)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 
@@ -29,6 +29,7 @@ static void code_scalars(se3di_coder *c, se3di_saved *s)
     se3di_code_numbers(c, s->work, 3);
     se3di_code_numbers(c, s->power, 3);
     se3di_code_numbers(c, &s->contact_step, 1);
+    se3di_code_numbers(c, &s->contact_time, 1);
     se3di_code_numbers(c, &s->left_out_gap, 1);
     se3di_code_word(c, &s->history_tag);
     se3di_code_word(c, &redundant);
@@ -283,7 +284,8 @@ static int are_left_out(const se3di_saved *state, const se3di_model *model)
 
 static int are_numbers(const se3di_saved *s)
 {
-    return isfinite(s->time + s->time_rest + s->rest_time + s->contact_step + s->left_out_gap) &&
+    return isfinite(s->time + s->time_rest + s->rest_time + s->contact_step + s->contact_time +
+                    s->left_out_gap) &&
            isfinite(sum_of(s->work, 3) + sum_of(s->power, 3)) && are_finite(&s->frames, 26) &&
            are_finite(&s->acceleration, 1) && are_finite(&s->lambda, 1) &&
            are_finite(&s->turns, 1) && are_finite(&s->memory, 1) && are_finite(&s->wrench, 1) &&

@@ -4,6 +4,7 @@
 
 #include "force/signal.h"
 #include "model/state.h"
+#include "system/definition.h"
 #include "system/force_internal.h"
 
 #include <math.h>
@@ -194,4 +195,50 @@ se3d_status se3d_state_get_rate(const se3d_system *system, se3d_state state, dou
                              se3di_force_eval(model, &model->forces[index], model->time, &effect)));
     *rate = effect.value;
     return SE3D_OK;
+}
+
+se3d_status se3d_system_get_state(const se3d_system *system, size_t index, se3d_state *state)
+{
+    size_t dense = 0, seen = 0;
+    const size_t count = system ? system->model.force_slots.count : 0;
+    while (dense < count) {
+        const se3di_force *force = &system->model.forces[dense];
+        if (force->type == SE3DI_FORCE_STATE && seen++ == index) {
+            break;
+        }
+        ++dense;
+    }
+    return se3di_read_handle(SE3DI_SLOTS(system, force), dense, state);
+}
+
+se3d_status se3d_state_get_name(const se3d_system *system, se3d_state state, const char **name)
+{
+    if (name) {
+        *name = NULL;
+    }
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, state, name, &index));
+    const char *own = system->model.forces[index].name;
+    *name = own ? own : "";
+    return SE3D_OK;
+}
+
+se3d_status se3d_state_get_def(const se3d_system *system, se3d_state state, se3d_state_def *def)
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, state, def, &index));
+    if (system->model.forces[index].tyre_index >= 0) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_model *model = &system->model;
+    const se3di_force *data = &model->forces[index];
+    se3d_state_def full = se3d_state_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.rate = se3di_function_handle(model, data->function[0]);
+    full.output = se3di_function_handle(model, data->function[SE3DI_FORCE_OUTPUT]);
+    full.input = se3di_function_handle(model, data->function[SE3DI_FORCE_OUTPUT + 1]);
+    full.initial = se3di_state_value(model, data);
+    full.size = data->rest;
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Systems: creation, gravity, time, counts, energy, violation, hash. */
 #include "system/coordinate.h"
+#include "system/definition.h"
 #include "system/particles.h"
 #include "system/solver.h"
 
@@ -208,6 +209,17 @@ se3d_status se3d_system_get_gravity(const se3d_system *system, double gravity[3]
     return SE3D_OK;
 }
 
+se3d_status se3d_system_get_gravity_function(const se3d_system *system, se3d_function gravity[3])
+{
+    if (!system || !gravity) {
+        return SE3D_ERR_NULL;
+    }
+    for (int c = 0; c < 3; ++c) {
+        gravity[c] = se3di_function_handle(&system->model, system->model.gravity_function[c]);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_system_set_time(se3d_system *system, double time)
 {
     SE3DI_SET(system);
@@ -308,8 +320,9 @@ se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *wor
     const double *done = system->model.work;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    const double springs =
-        system->model.work_valid > 0 ? se3di_contacts_potential(&system->model) : 0.0;
+    const double springs = system->model.work_valid > 0
+                               ? se3di_contacts_potential(&system->model, system->model.time)
+                               : 0.0;
     const double lost = se3di_work_lost(&system->model, springs);
     const se3d_work full = {.dissipated = lost, .actuators = done[1], .drivers = done[2]};
     se3di_busy_unread(&reading);

@@ -138,6 +138,7 @@ se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_mate
                                 uint32_t *index);
 se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel wheel,
                              uint32_t *index);
+se3d_status se3di_find_road(se3d_system *system, const char *what, se3d_road road, uint32_t *index);
 /* A null handle gives -1; a function of other than `variables` variables is an error. */
 se3d_status se3di_find_law(se3d_system *system, const char *what, se3d_function function,
                            uint32_t variables, int32_t *index);

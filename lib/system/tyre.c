@@ -12,6 +12,7 @@
 
 #define LARGE    1e40
 #define POSITIVE 1e-40
+#define ENVELOPE 0.4  /* of tyres on meshes, over the radius */
 #define SLIP     1e-2 /* that errors of a slip that lags are measured by, at least */
 
 void se3d_tyre_def_init(se3d_tyre_def *def, size_t size)
@@ -156,6 +157,36 @@ static se3d_status take_relaxation(se3d_system *system, const se3d_tyre_def *def
     return SE3D_OK;
 }
 
+/* The body and, where it is no plane, the surface of the road. */
+static se3d_status take_road(se3d_system *system, const se3d_tyre_def *def, se3di_force *data)
+{
+    se3di_tyre *tyre = data->tyre;
+    uint32_t index;
+    tyre->surface = -1;
+    SE3DI_TRY(se3di_check_range(system, "envelope_length", def->envelope_length, 0.0, LARGE));
+    SE3DI_TRY(se3di_check_range(system, "envelope_width", def->envelope_width, 0.0, LARGE));
+    if (def->surface.index1 == 0 && def->surface.generation == 0) {
+        return se3di_find_body(system, "road", def->road, &data->body_i);
+    }
+    SE3DI_TRY(se3di_find_road(system, "surface", def->surface, &index));
+    const se3di_road *road = &system->model.roads[index];
+    data->body_i = road->body;
+    if (def->road.index1 != 0 || def->road.generation != 0) {
+        SE3DI_TRY(se3di_find_body(system, "road", def->road, &data->body_i));
+    }
+    if (data->body_i != road->body) {
+        return SE3DI_FAIL_OF(system, "road", SE3D_ERR_INVALID_ARGUMENT,
+                             " is another body than the one that the surface is on");
+    }
+    tyre->surface = (int32_t)index;
+    tyre->envelope[0] = def->envelope_length;
+    if (road->kind == SE3DI_ROAD_MESH && !(def->envelope_length > 0.0)) {
+        tyre->envelope[0] = ENVELOPE * def->radius;
+    }
+    tyre->envelope[1] = def->envelope_width > 0.0 ? def->envelope_width : tyre->envelope[0];
+    return SE3D_OK;
+}
+
 static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, se3di_force *data)
 {
     se3di_tyre *tyre = data->tyre;
@@ -182,6 +213,7 @@ static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, s
     data->c = def->c;
     data->mu = is_magic && memcmp(&def->mu, &(double){0.0}, sizeof def->mu) == 0 ? 1.0 : def->mu;
     tyre->law = def->law;
+    tyre->side = def->side;
     tyre->mu_min = def->mu_min;
     tyre->slip_stiffness = def->slip_stiffness;
     tyre->cornering_stiffness = def->cornering_stiffness;
@@ -200,13 +232,13 @@ se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def
     SE3DI_TRY(se3di_check_def(system, "tyre def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_new_name(system, &system->model.force_slots, 0, "force", full.name));
     se3di_force data = se3di_force_blank(SE3DI_FORCE_TYRE, full.name);
-    SE3DI_TRY(se3di_find_body(system, "road", full.road, &data.body_i));
+    data.tyre = &tyre; /* copied by the model */
+    SE3DI_TRY(take_road(system, &full, &data));
     SE3DI_TRY(se3di_find_body(system, "wheel", full.wheel, &data.body_j));
     if (data.body_i == data.body_j) {
         return SE3DI_FAIL_OF(system, "wheel", SE3D_ERR_INVALID_ARGUMENT,
                              " is the road's own body, must be another one");
     }
-    data.tyre = &tyre; /* copied by the model */
     SE3DI_TRY(take_numbers(system, &full, &data));
     se3di_force lag = se3di_force_blank(SE3DI_FORCE_STATE, NULL);
     se3di_handle handle;
@@ -228,7 +260,9 @@ se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, si
         count > SE3D_TYRE_VALUES - first) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    se3di_tyre_tell(&system->model, data, all);
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    SE3DI_TRY(se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, all)));
     memcpy(values, all + first, count * sizeof *values);
     return SE3D_OK;
 }

@@ -4,6 +4,7 @@
 
 #include "analysis/wheel.h"
 #include "math/vec3.h"
+#include "system/definition.h"
 #include "system/system_internal.h"
 
 #include <string.h>
@@ -195,4 +196,34 @@ size_t se3d_system_count_wheels(const se3d_system *system)
 se3d_status se3d_system_get_wheel(const se3d_system *system, size_t index, se3d_wheel *wheel)
 {
     return se3di_read_handle(SE3DI_SLOTS(system, wheel), index, wheel);
+}
+
+se3d_status se3d_wheel_get_def(const se3d_system *system, se3d_wheel wheel, se3d_wheel_def *def)
+{
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, wheel), SE3DI_HANDLE(wheel), def, &index));
+    const se3di_model *model = &system->model;
+    const se3di_wheel *data = &model->wheels[index];
+    se3d_wheel_def full = se3d_wheel_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.body = se3di_body_handle(model, data->body);
+    full.chassis = se3di_body_handle(model, data->chassis);
+    se3di_copy(data->center, full.center);
+    se3di_copy(data->axis, full.axis);
+    se3di_copy(data->vehicle, full.forward);
+    se3di_copy(data->vehicle + 6, full.up);
+    full.radius = data->radius;
+    full.width = data->width;
+    se3di_copy(data->lower, full.steer_lower);
+    se3di_copy(data->upper, full.steer_upper);
+    full.travel = se3di_constraint_handle(model, data->travel);
+    full.steering = se3di_constraint_handle(model, data->steering);
+    full.spring = se3di_force_handle(model, data->spring);
+    full.opposite = se3di_wheel_handle(model, data->opposite);
+    full.wheelbase = data->wheelbase;
+    full.cg_height = data->cg_height;
+    full.brake_share = data->brake_share;
+    full.drive_share = data->drive_share;
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

@@ -3,6 +3,9 @@
 
 #include "assembly/user.h"
 #include "math/vec3.h"
+#include "primitive/scale.h"
+#include "primitive/turn_counter.h"
+#include "tree/loop_core.h"
 #include "tree/recursion.h"
 
 #include <math.h>
@@ -17,7 +20,7 @@
 #define TOLERANCE   1e-15
 #define REFINEMENTS 3
 
-#define LOOPS_STRUCTURE 11
+#define LOOPS_STRUCTURE 12
 #define LOOPS_VALUES    12
 
 static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE])
@@ -29,6 +32,7 @@ static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE
         {(void **)&l->row_begin, n + 1, sizeof *l->row_begin},
         {(void **)&l->kept, l->row_count, sizeof *l->kept},
         {(void **)&l->kept_count, n, sizeof *l->kept_count},
+        {(void **)&l->kept_begin, n, sizeof *l->kept_begin},
         {(void **)&l->path_begin, n + 1, sizeof *l->path_begin},
         {(void **)&l->path_node, l->path_count, sizeof *l->path_node},
         {(void **)&l->path_parent, l->path_count, sizeof *l->path_parent},
@@ -63,8 +67,15 @@ static void list_values(se3di_tree_loops *l, se3di_array list[LOOPS_VALUES])
 
 /* ---- structure ---- */
 
-/* Marks of the nodes between the bodies of a constraint and the ground; returns how many. */
-static size_t mark_path(const se3di_tree_loops *loops, uint32_t constraint, int32_t *mark)
+static int32_t freedoms_of(const se3di_tree_node *n)
+{
+    return n->flags & SE3DI_TREE_GIVEN ? 0 : n->v_count;
+}
+
+/* Marks of the nodes between the bodies of a constraint and the ground; returns how many, their
+ * freedoms are added to *members. */
+static size_t mark_path(const se3di_tree_loops *loops, uint32_t constraint, int32_t *mark,
+                        size_t *members)
 {
     const se3di_assembly *a = loops->assembly;
     const se3di_tree *tree = loops->tree;
@@ -73,15 +84,27 @@ static size_t mark_path(const se3di_tree_loops *loops, uint32_t constraint, int3
         int32_t node = tree->node_of[a->free_body[a->joint_body[k]]];
         for (; node >= 0 && mark[node] != (int32_t)constraint + 1; ++count) {
             mark[node] = (int32_t)constraint + 1;
+            *members += (size_t)freedoms_of(&tree->nodes[node]);
             node = tree->nodes[node].parent;
         }
     }
     return count;
 }
 
-static int32_t freedoms_of(const se3di_tree_node *n)
+se3d_status se3di_tree_loops_count_members(se3di_tree *tree, se3di_assembly *assembly,
+                                           size_t *members)
 {
-    return n->flags & SE3DI_TREE_GIVEN ? 0 : n->v_count;
+    const se3d_allocator *allocator = &tree->model->allocator;
+    const se3di_tree_loops loops = {.tree = tree, .assembly = assembly};
+    int32_t *mark = se3di_alloc(allocator, tree->count, sizeof *mark);
+    *members = 0;
+    for (uint32_t k = 0; mark && k < tree->constraint_count; ++k) {
+        if (tree->tree_of[k] < 0) {
+            (void)mark_path(&loops, k, mark, members);
+        }
+    }
+    se3di_free(allocator, mark, tree->count, sizeof *mark);
+    return mark ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
 /* Sizes of everything; `mark` [nodes] zeroed. */
@@ -94,12 +117,9 @@ static void measure_paths(se3di_tree_loops *loops, int32_t *mark)
             continue;
         }
         const size_t rows = model->constraints[k].row_count;
-        const size_t path = mark_path(loops, k, mark);
         size_t members = 0;
-        for (uint32_t i = 0; i < tree->count; ++i) {
-            members += mark[i] == (int32_t)k + 1 ? (size_t)freedoms_of(&tree->nodes[i]) : 0;
-        }
-        const size_t scratch = 6 * rows * path;
+        const size_t path = mark_path(loops, k, mark, &members);
+        const size_t scratch = 6 * (rows > SE3DI_STRIP ? rows : SE3DI_STRIP) * path;
         loops->path_count += path;
         loops->member_count += members;
         loops->value_count += rows * members;
@@ -115,7 +135,8 @@ static void add_loop(se3di_tree_loops *loops, uint32_t constraint, int32_t *mark
     int32_t path = loops->path_begin[k], member = loops->member_begin[k];
     loops->constraints[k] = constraint;
     loops->rows[k] = (int32_t)tree->model->constraints[constraint].row_count;
-    (void)mark_path(loops, constraint, mark);
+    size_t members = 0;
+    (void)mark_path(loops, constraint, mark, &members);
     for (uint32_t i = tree->count; i-- > 0;) {
         if (mark[i] != (int32_t)constraint + 1) {
             continue;
@@ -182,7 +203,11 @@ static se3d_status build(se3di_tree_loops *loops)
     list_values(loops, values);
     SE3DI_TRY(se3di_arrays_alloc(allocator, values, LOOPS_VALUES));
     se3di_tree_loops_keep_rows(loops);
-    return create_kkt(loops);
+    SE3DI_TRY(se3di_tree_loops_count_freedoms(loops));
+    SE3DI_TRY(create_kkt(loops));
+    SE3DI_TRY(se3di_loop_system_init(&loops->system, loops));
+    se3di_tree_loops_refresh(loops);
+    return SE3D_OK;
 }
 
 se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
@@ -205,6 +230,7 @@ void se3di_tree_loops_destroy(se3di_tree_loops *loops)
     const se3d_allocator *allocator = &loops->tree->model->allocator;
     se3di_array structure[LOOPS_STRUCTURE], values[LOOPS_VALUES];
     se3di_kkt_destroy(loops->kkt);
+    se3di_loop_system_destroy(&loops->system, allocator);
     list_values(loops, values);
     se3di_arrays_free(allocator, values, LOOPS_VALUES);
     list_structure(loops, structure);
@@ -377,6 +403,86 @@ static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double
     }
 }
 
+/* ---- the same by strips ---- */
+
+/* Rows of a body into the lanes of K [6], of `weight`, and of c what its centre has on its own. */
+static void load_lanes(const se3di_tree_loops *loops, const se3di_loop_strip *strip, int32_t entry,
+                       double *K, size_t at)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    const se3di_loop_system *system = &loops->system;
+    const uint32_t body = a->free_body[a->joint_body[entry]];
+    const se3di_body *own = &tree->model->bodies[body];
+    const se3di_tree_link *link = &tree->links[tree->node_of[body]];
+    const double *A = tree->model->frames[body].A;
+    const double light = 1.0 / own->mass;
+    const double slim[3] = {1.0 / own->J[0], 1.0 / own->J[1], 1.0 / own->J[2]};
+    const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
+    double x[3], turning[3];
+    se3di_cross(link->w, link->s, x);
+    se3di_cross(link->w, x, turning);
+    for (int32_t r = 0; r < strip->count; ++r) {
+        const double *row = a->C + a->block_offset[entry] + 6 * (size_t)kept[r], *turns = row + 3;
+        double own_row[6], weight = light * se3di_dot(row, row);
+        row_to_link(link, A, row, own_row);
+        for (int k = 0; k < 6; ++k) {
+            K[SE3DI_STRIP * k + r] += own_row[k];
+        }
+        for (int k = 0; k < 3; ++k) {
+            weight += slim[k] * turns[k] * turns[k];
+        }
+        system->weight[at + (size_t)r] += weight;
+        system->c[at + (size_t)r] -= se3di_dot(row, turning);
+    }
+}
+
+/* A strip from its bodies to the ground: Y, c, weight. */
+static void carry_strip(se3di_tree_loops *loops, int32_t index)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    const se3di_loop_system *system = &loops->system;
+    const se3di_loop_strip *strip = &system->strips[index];
+    const uint32_t constraint = loops->constraints[strip->loop];
+    const double *gamma = loops->gamma + tree->model->constraints[constraint].row_begin;
+    const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
+    const int32_t begin = loops->path_begin[strip->loop];
+    const se3di_loop_path path = {.count = loops->path_begin[strip->loop + 1] - begin,
+                                  .node = loops->path_node + begin,
+                                  .parent = loops->path_parent + begin};
+    const size_t at = SE3DI_STRIP * (size_t)index;
+    memset(loops->K, 0, 6 * SE3DI_STRIP * (size_t)path.count * sizeof *loops->K);
+    for (int32_t r = 0; r < SE3DI_STRIP; ++r) {
+        system->c[at + (size_t)r] = r < strip->count ? gamma[kept[r]] : 0.0;
+        system->weight[at + (size_t)r] = 0.0;
+    }
+    for (int32_t e = a->joint_begin[constraint]; e < a->joint_begin[constraint + 1]; ++e) {
+        int32_t place = 0;
+        while (path.node[place] != tree->node_of[a->free_body[a->joint_body[e]]]) {
+            ++place;
+        }
+        load_lanes(loops, strip, e, loops->K + 6 * SE3DI_STRIP * (size_t)place, at);
+    }
+    system->core->carry(tree, &path, loops->K, system->c + at,
+                        system->Y + SE3DI_STRIP * (size_t)strip->Y);
+}
+
+void se3di_tree_loops_carry(se3di_tree_loops *loops)
+{
+    for (int32_t k = 0; k < loops->system.row_strips; ++k) {
+        carry_strip(loops, k);
+    }
+}
+
+static int factor_strips(se3di_tree_loops *loops)
+{
+    se3di_tree_loops_carry(loops);
+    return se3di_loop_system_factor(&loops->system, loops->tree);
+}
+
+/* ---- all rows ---- */
+
 /* out: those of the rows that are kept, of all loops one after the other; from `values` [rows of
  * the model]. */
 static void gather_rows(const se3di_tree_loops *loops, const double *values, double *out)
@@ -401,10 +507,10 @@ static void scatter_rows(const se3di_tree_loops *loops, const double *values, do
     }
 }
 
-se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
+/* With the rows evaluated, by all of them and the KKT solver. */
+static se3d_status factor_all(se3di_tree_loops *loops)
 {
     se3di_tree *tree = loops->tree;
-    se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
     gather_rows(loops, loops->gamma, loops->c);
     double *Y = loops->Y, *c = loops->c, *weight = loops->weight;
     for (uint32_t k = 0; k < loops->count; ++k) {
@@ -423,9 +529,26 @@ se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
             tree->e[tree->nodes[k].v] = 0.0;
         }
     }
-    SE3DI_TRY(se3di_user_report(tree->model, loops->error));
     const se3di_kkt_values values = {.body = loops->H, .joint = loops->Y, .weight = loops->weight};
     return se3di_kkt_factor(loops->kkt, &values, NULL);
+}
+
+void se3di_tree_loops_eval_rows(se3di_tree_loops *loops)
+{
+    se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
+}
+
+se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
+{
+    se3di_tree_loops_eval_rows(loops);
+    SE3DI_TRY(se3di_user_report(loops->tree->model, loops->error));
+    loops->is_clear = loops->system.is_there && factor_strips(loops);
+    return loops->is_clear ? SE3D_OK : factor_all(loops);
+}
+
+int32_t se3di_tree_loops_count_dependent(const se3di_tree_loops *loops)
+{
+    return loops->is_clear ? 0 : se3di_kkt_get_dependent_rows(loops->kkt);
 }
 
 static se3d_status solve(se3di_tree_loops *loops, const double *b, const double *c)
@@ -438,9 +561,38 @@ static se3d_status solve(se3di_tree_loops *loops, const double *b, const double 
     return status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-6) ? SE3D_OK : status;
 }
 
+/* lambda of the strips to the places of their rows in the model. */
+static se3d_status scatter_strips(se3di_tree_loops *loops)
+{
+    const se3di_loop_system *system = &loops->system;
+    const se3di_constraint *constraints = loops->tree->model->constraints;
+    double sum = 0.0;
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        memset(loops->lambda + constraints[loops->constraints[k]].row_begin, 0,
+               (size_t)loops->rows[k] * sizeof *loops->lambda);
+    }
+    for (int32_t k = 0; k < system->row_strips; ++k) {
+        const se3di_loop_strip *strip = &system->strips[k];
+        const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
+        double *lambda = loops->lambda + constraints[loops->constraints[strip->loop]].row_begin;
+        for (int32_t r = 0; r < strip->count; ++r) {
+            lambda[kept[r]] = system->z[SE3DI_STRIP * k + r];
+            sum += 0.0 * lambda[kept[r]];
+        }
+    }
+    return sum == 0.0 ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
 se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
 {
     se3di_tree *tree = loops->tree;
+    if (loops->is_clear) {
+        memcpy(loops->b, tree->e, tree->v_count * sizeof *loops->b);
+        se3di_loop_system_solve(&loops->system, tree, loops->b);
+        SE3DI_TRY(scatter_strips(loops));
+        se3di_tree_accelerate(tree, loops->b, qddot);
+        return SE3D_OK;
+    }
     const se3d_status status = solve(loops, tree->e, loops->c);
     SE3DI_TRY(status);
     scatter_rows(loops, loops->l, loops->lambda);
@@ -448,6 +600,91 @@ se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
         loops->b[v] = tree->D[v] * loops->y[v];
     }
     se3di_tree_accelerate(tree, loops->b, qddot);
+    return status;
+}
+
+/* ---- corrections ---- */
+
+double se3di_tree_loops_eval_gap(se3di_tree_loops *loops, double length, double *c)
+{
+    const se3di_model *model = loops->tree->model;
+    double worst = 0.0;
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t begin = model->constraints[loops->constraints[k]].row_begin;
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            const size_t row = begin + (size_t)loops->kept[loops->row_begin[k] + (uint32_t)r];
+            loops->gamma[row] =
+                se3di_row_violation(model, &model->rows[row], loops->assembly->f[3 * row]);
+        }
+    }
+    se3di_user_eval_phi(loops->assembly, loops->gamma);
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t begin = model->constraints[loops->constraints[k]].row_begin;
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            const uint32_t row = begin + (uint32_t)loops->kept[loops->row_begin[k] + (uint32_t)r];
+            const double gap = fabs(loops->gamma[row]) / se3di_row_get_scale(model, row, length);
+            worst = gap <= worst ? worst : gap; /* NaN stays */
+            *c++ = -loops->gamma[row];
+        }
+    }
+    return worst;
+}
+
+double se3di_tree_loops_eval_rate_gap(const se3di_tree_loops *loops, double length, double rate,
+                                      double *c)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_model *model = loops->tree->model;
+    double worst = 0.0;
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t constraint = loops->constraints[k];
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            const uint32_t own = (uint32_t)loops->kept[loops->row_begin[k] + (uint32_t)r];
+            const uint32_t row = model->constraints[constraint].row_begin + own;
+            double sum = a->f[3 * (size_t)row + 1];
+            for (int32_t e = a->joint_begin[constraint]; e < a->joint_begin[constraint + 1]; ++e) {
+                const se3di_frame *frame = &model->frames[a->free_body[a->joint_body[e]]];
+                const double *C = a->C + a->block_offset[e] + 6 * (size_t)own;
+                sum -= se3di_dot(C, frame->v) + se3di_dot(C + 3, frame->w);
+            }
+            const double gap = fabs(sum) / (rate * se3di_row_get_scale(model, row, length));
+            worst = gap <= worst ? worst : gap;
+            *c++ = sum;
+        }
+    }
+    return worst;
+}
+
+/* c as rows of strips. */
+static void take_strips(se3di_tree_loops *loops, const double *c)
+{
+    const se3di_loop_system *system = &loops->system;
+    for (int32_t k = 0; k < system->row_strips; ++k) {
+        const se3di_loop_strip *strip = &system->strips[k];
+        for (int32_t r = 0; r < strip->count; ++r) {
+            system->c[SE3DI_STRIP * k + r] = c[loops->kept_begin[strip->loop] + strip->first + r];
+        }
+    }
+}
+
+se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, double *dq)
+{
+    const se3di_tree *tree = loops->tree;
+    se3d_status status = SE3D_OK;
+    if (loops->is_clear) {
+        take_strips(loops, c);
+        memset(dq, 0, tree->v_count * sizeof *dq);
+        se3di_loop_system_solve(&loops->system, tree, dq);
+        for (uint32_t v = 0; v < tree->v_count; ++v) {
+            dq[v] *= tree->R[v];
+        }
+    } else {
+        memset(loops->b, 0, tree->v_count * sizeof *loops->b);
+        status = solve(loops, loops->b, c);
+        SE3DI_TRY(status);
+        memcpy(dq, loops->y, tree->v_count * sizeof *dq);
+    }
+    se3di_tree_spread(tree, dq, dq);
     return status;
 }
 

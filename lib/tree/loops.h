@@ -9,13 +9,15 @@
  *     [D  Y^T] [y     ]   [e ]
  *     [Y  0  ] [lambda] = [c']
  *
- * solved by the KKT solver (linsol/kkt.h): order, regularisation, refinement and multipliers of
- * least norm are its own.                                       docs/theory/joint_coordinates.md */
+ * solved without regularisation where the rows are clear of each other (tree/loop_system.h), else
+ * by the KKT solver (linsol/kkt.h): order, regularisation, refinement and multipliers of least norm
+ * are its own.                                                  docs/theory/joint_coordinates.md */
 #ifndef SE3DI_TREE_LOOPS_H
 #define SE3DI_TREE_LOOPS_H
 
 #include "assembly/assembly.h"
 #include "linsol/kkt.h"
+#include "tree/loop_system.h"
 #include "tree/tree.h"
 
 typedef struct se3di_tree_loops {
@@ -29,25 +31,30 @@ typedef struct se3di_tree_loops {
     int32_t *rows;         /* of each */
     uint32_t *row_begin;   /* [count + 1] its first among those of the loops */
     int32_t *kept;         /* [rows of the loops]: the rows of each that the tree does not imply */
-    int32_t *kept_count;   /* how many of them */
+    int32_t *kept_count;   /* how many of them, */
+    int32_t *kept_begin;   /* and of the loops before */
     int32_t *path_begin;   /* [count + 1] into the next two: nodes from its bodies to the ground, */
     int32_t *path_node;    /* descending */
     int32_t *path_parent;  /* place of the node's parent in the same path, -1: the ground */
     int32_t *member_begin; /* [count + 1] freedoms of those nodes that are not prescribed */
     int32_t *member;
     size_t path_count, member_count, value_count, scratch_count;
-    double *Y;         /* [values]: rows x 1 for each member */
-    double *gamma;     /* [rows of the model] */
-    double *lambda;    /* [rows of the model]: of loops, others 0 */
-    double *c, *l;     /* [rows of the loops]: of those that are kept */
-    double *weight;    /* [rows of the loops]: sizes of C M^-1 C^T of the bodies, which, unlike
+    double *Y;              /* [values]: rows x 1 for each member */
+    double *gamma;          /* [rows of the model] */
+    double *lambda;         /* [rows of the model]: of loops, others 0 */
+    double *c, *l;          /* [rows of the loops]: of those that are kept */
+    double *weight;         /* [rows of the loops]: sizes of C M^-1 C^T of the bodies, which, unlike
                                those of Y D^-1 Y^T, do not vanish at singular positions */
-    double *y;         /* [velocities] */
-    double *H, *b;     /* [velocities] */
-    double *K;         /* rows on the nodes of one path, */
-    double *size;      /* and the sizes of their halves before parts cancel */
-    double *noise;     /* [velocities]: rounding of a row */
-    int32_t *place_of; /* [nodes]: scratch of the building */
+    double *y;              /* [velocities] */
+    double *H, *b;          /* [velocities] */
+    double *K;              /* rows on the nodes of one path, */
+    double *size;           /* and the sizes of their halves before parts cancel */
+    double *noise;          /* [velocities]: rounding of a row */
+    int32_t *place_of;      /* [nodes]: scratch of the building */
+    int32_t is_clear;       /* the last factors are those of `system`, not of `kkt` */
+    int32_t leaves_freedom; /* each loop, and all that share freedoms with it, can move: more
+                               freedoms than rows, in a loop no fewer */
+    se3di_loop_system system;
 } se3di_tree_loops;
 
 /* On failure nothing is held; `error` (NULL: none) is kept. The model's frames are used as scratch
@@ -55,6 +62,15 @@ typedef struct se3di_tree_loops {
 se3d_status se3di_tree_loops_init(se3di_tree_loops *loops, se3di_tree *tree,
                                   se3di_assembly *assembly, se3di_error *error);
 void se3di_tree_loops_destroy(se3di_tree_loops *loops);
+
+/* Freedoms between the bodies of each loop and the ground, of all loops, without building anything.
+ * @return OK, NO_MEMORY */
+se3d_status se3di_tree_loops_count_members(se3di_tree *tree, se3di_assembly *assembly,
+                                           size_t *members);
+
+/* Masses have changed: which sizes of pivots are usual. The model's frames and the tree as above.
+ */
+void se3di_tree_loops_refresh(se3di_tree_loops *loops);
 
 /* Solve as another solver with these settings does, whatever it has against light bodies. */
 void se3di_tree_loops_filter(se3di_tree_loops *loops, const se3di_kkt_settings *settings);
@@ -67,6 +83,24 @@ void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly);
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops);
 /* Accelerations, and the multipliers of the loops. @return as se3di_kkt_solve */
 se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot);
+/* Rows that were dependent, or are filtered, at the last factorisation. */
+int32_t se3di_tree_loops_count_dependent(const se3di_tree_loops *loops);
+/* Whether the last factorisation was at, or not far from, a singular position. */
+static inline int se3di_tree_loops_is_near(const se3di_tree_loops *loops)
+{
+    return !loops->is_clear || loops->system.is_near;
+}
+/* Evaluate the rows at the model's frames, functions evaluated. */
+void se3di_tree_loops_eval_rows(se3di_tree_loops *loops);
+/* c [rows of the loops that are kept] = -Phi at the model's frames; returns the largest violation
+ * relative to its scale, with `length` for lengths. */
+double se3di_tree_loops_eval_gap(se3di_tree_loops *loops, double length, double *c);
+/* c = nu - Phi_q qdot, rows evaluated; the largest relative to a rate [1/s]. */
+double se3di_tree_loops_eval_rate_gap(const se3di_tree_loops *loops, double length, double rate,
+                                      double *c);
+/* The least change dq [velocities], weighed by the masses, that changes the rows by c; prescribed
+ * coordinates stay. By the last factorisation. @return as se3di_kkt_solve */
+se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, double *dq);
 /* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P. */
 void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
                                    double *wrench);
@@ -74,6 +108,10 @@ void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *
 void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G);
 /* Find the rows that the tree does not imply (tree/loop_rows.c). */
 void se3di_tree_loops_keep_rows(se3di_tree_loops *loops);
+/* Whether they leave a freedom. @return OK, NO_MEMORY */
+se3d_status se3di_tree_loops_count_freedoms(se3di_tree_loops *loops);
+/* Rows as evaluated into the strips of `system`. */
+void se3di_tree_loops_carry(se3di_tree_loops *loops);
 /* G [rows of the loops x velocities], row-major: the Jacobian to the velocities of the tree. */
 void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G);
 

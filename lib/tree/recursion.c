@@ -91,9 +91,7 @@ static void gather(se3di_tree *tree, const double *effort, double *y)
     }
 }
 
-/* With articulated inertias: x [velocities] where y = D^-1 times what the freedoms add, without
- * biases; prescribed coordinates 0. */
-static void spread(const se3di_tree *tree, const double *y, double *x)
+void se3di_tree_spread(const se3di_tree *tree, const double *y, double *x)
 {
     double *motion = tree->scratch;
     for (uint32_t i = 0; i < tree->count; ++i) {
@@ -114,7 +112,7 @@ static void spread(const se3di_tree *tree, const double *y, double *x)
 void se3di_tree_solve(se3di_tree *tree, const double *effort, double *x)
 {
     gather(tree, effort, x);
-    spread(tree, x, x);
+    se3di_tree_spread(tree, x, x);
 }
 
 /* ---- with the bodies' own inertias ---- */

@@ -9,6 +9,9 @@
 /* c of a node, with the acceleration of a prescribed coordinate. */
 void se3di_tree_bias(const se3di_tree *tree, uint32_t node, double bias[6]);
 
+/* x: the velocities that y = D^-1 times what is added to each freedom gives, without biases, by
+ * articulated inertias; x may be y. Prescribed coordinates: 0. */
+void se3di_tree_spread(const se3di_tree *tree, const double *y, double *x);
 /* x = M^-1 effort; x may be effort. Prescribed coordinates: 0. */
 void se3di_tree_solve(se3di_tree *tree, const double *effort, double *x);
 

@@ -18,7 +18,7 @@ JOINTS = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "univers
           "screw", "point_on_line", "point_on_plane", "distance", "revolute_spherical",
           "revolute_cylindrical", "parallel", "perpendicular", "orientation", "perpendicular1",
           "perpendicular2")
-SHAPES = ("sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh")
+SHAPES = ("sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh", "funnel")
 
 # The variables of functions of force elements; all others are functions of the time.
 _VARIABLES = {
@@ -274,8 +274,9 @@ class System:
         self.check(lib.se3d_system_set_contact(self.pointer, definition.pointer))
 
     def shape(self, type, *, vertices=None, triangles=None, **values):
-        """Create a shape: "sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh"; body,
-        material, position, orientation, normal, size, radius, length, vertices, triangles."""
+        """Create a shape: "sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh", "funnel";
+        body, material, position, orientation, normal, size, radius, length, bottom_radius,
+        top_radius, vertices, triangles."""
         if type not in SHAPES:
             raise ValueError(f"type is {type!r}, must be one of {', '.join(SHAPES)}")
         definition = Definition("se3d_shape_def", values, self)

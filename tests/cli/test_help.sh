@@ -3,7 +3,7 @@
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
-commands='run check evaluate explain channels new plot sketch view live video study import fmu help completion'
+commands='run check evaluate explain channels new plot sketch view live video study report import write fmu replay help completion'
 expect 'overview' 0 "$program" help
 cp "$dir/out" "$dir/overview"
 expect 'the same by -h' 0 "$program" -h

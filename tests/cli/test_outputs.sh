@@ -30,14 +30,14 @@ expect 'a series' 0 "$program" run "$dir/vtk.yaml" -o "$dir/vtk"
 holds "no word of it in $(cat "$dir/out")" grep -qF "wrote $dir/vtk/motion.pvd: 9 times" "$dir/out"
 holds 'something unfinished is left' [ -z "$(find "$dir/vtk" -name '*.partial')" ]
 "$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains.csv.run"
-sed 's/^output:/output:\n  - {vtk: "g\&1.pvd", every: 0.25}/' "$source/examples/models/pushed_grains.yaml" >"$dir/grains.yaml"
+sed 's/^output:/output:\n  - {vtk: "g\&1.pvd", every: 0.25, fields: {lower: [-9, -9, -9], upper: [9, 9, 9.5], cells: [4, 5, 6], width: 0.1}}/' "$source/examples/models/pushed_grains.yaml" >"$dir/grains.yaml"
 expect 'grains' 0 "$program" run "$dir/grains.yaml" -o "$dir/grains"
 cat >"$dir/read.py" <<'END_OF_PYTHON'
 import csv, os, sys, vtk
 import xml.etree.ElementTree as xml
 folder = sys.argv[1]
 def read(path):
-    reader = vtk.vtkXMLPolyDataReader()
+    reader = vtk.vtkXMLImageDataReader() if path.endswith(".vti") else vtk.vtkXMLPolyDataReader()
     problems = []
     reader.AddObserver("ErrorEvent", lambda *_: problems.append(path))
     reader.SetFileName(path)
@@ -85,10 +85,21 @@ snapshots = [n for n in os.listdir(folder + "/grains") if n.endswith(".csv")]
 table = next(list(csv.DictReader(open(folder + "/grains/" + n))) for n in sorted(snapshots)
              if open(folder + "/grains/" + n).readline().startswith("time,id,radius"))
 for time, name, path in series:
-    if name != "grains":
+    if name not in ("grains", "fields"):
         continue
     data = read(path)
     now = [r for r in table if abs(float(r["time"]) - time) < 1e-9]
+    if name == "fields":  # sums over the cells are those over the particles
+        assert data.GetDimensions() == (5, 6, 7) and data.GetOrigin() == (-9, -9, -9), data.GetOrigin()
+        cell = data.GetSpacing()[0] * data.GetSpacing()[1] * data.GetSpacing()[2]
+        assert abs(cell - 18 * 18 * 18.5 / 120) < 1e-12, cell
+        arrays = data.GetCellData()
+        assert arrays.GetArray("contact_stress").GetNumberOfComponents() == 6
+        solid = sum(arrays.GetArray("solid_fraction").GetValue(k) for k in range(120)) * cell
+        volumes = [4 / 3 * 3.141592653589793 * float(r["radius"]) ** 3 for r in now]
+        assert not now or abs(solid / sum(volumes) - 1) < 1e-6, (solid, sum(volumes))
+        checks += len(now) > 0
+        continue
     if now:
         assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(now), (time, len(now))
         for k in range(0, len(now), 7):

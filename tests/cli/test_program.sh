@@ -52,7 +52,7 @@ is "$(ls "$dir/results/pendulum" | tr '\n' ' ')" 'pendulum.csv scene.glb '
 
 expect 'parameters' 0 "$program" run "$models/pendulum_free.yaml" -o "$dir/f" \
     --set theta0=30*deg --set L=1 --step 0.01 --duration 0.055
-is "$(sed -n 2p "$dir/f/pendulum_free.csv" | cut -d, -f2)" 0.5235987755982987
+is "$(sed -n 2p "$dir/f/pendulum_free.csv" | cut -d, -f2)" 0.52359877559829882
 is "$(tail -1 "$dir/f/pendulum_free.csv" | cut -d, -f1)" 0.055
 expect 'a place of the document' 0 "$program" run "$models/fourbar.yaml" -o "$dir/s" -q \
     --set bodies.coupler.mass='2 kg' --set 'bodies[1].inertia=[1/10, 1e-3, 1/10]' \
@@ -88,6 +88,39 @@ expect 'no such kind' 2 "$program" new "$dir/other.yaml" --kind car
 has "$dir/err" 'the kind is `car`, must be pendulum, slider-crank or contact'
 expect 'no model' 2 "$program" new "$dir/other.txt"
 has "$dir/err" 'must end with .yaml or .yml'
+expect 'write prints the model' 0 "$program" write "$models/pendulum.yaml" --set L=3
+has "$dir/out" 'type: revolute'
+expect 'write a file with units' 1 "$program" write "$models/axle.yaml" -o "$dir/axle.yaml"
+has "$dir/err" 'cannot be written: analysis, output (of a file with units); `--partial` leaves it out'
+expect 'write' 0 "$program" write "$models/axle.yaml" --partial -o "$dir/axle.yaml"
+is "$(tail -1 "$dir/axle.yaml")" '# Left out: analysis, output (of a file with units)'
+expect 'what is written is a model' 0 "$program" write "$dir/axle.yaml" -o "$dir/again.yaml"
+sed '$d' "$dir/axle.yaml" >"$dir/whole.yaml"
+expect 'and is written as itself' 0 cmp "$dir/whole.yaml" "$dir/again.yaml"
+expect 'write over the model' 2 "$program" write "$dir/axle.yaml" -o "$dir/axle.yaml"
+has "$dir/err" 'comments and expressions would be lost'
+cp -R "$models/axle.yaml" "$models/parts" "$dir"
+ln -s axle.yaml "$dir/link.yaml"
+ln "$dir/parts/corner.yaml" "$dir/hard.yaml"
+for target in ./axle.yaml link.yaml parts/corner.yaml hard.yaml; do
+    expect "write over a source by $target" 2 "$program" write "$dir/axle.yaml" -o "$dir/$target"
+    has "$dir/err" "$target: is a file of the model itself"
+done
+is "$(cat "$dir/axle.yaml")" "$(cat "$models/axle.yaml")"
+is "$(cat "$dir/parts/corner.yaml")" "$(cat "$models/parts/corner.yaml")"
+mkfifo "$dir/pipe.yaml"
+expect 'write over a pipe' 1 "$program" write "$models/pendulum.yaml" -o "$dir/pipe.yaml"
+has "$dir/err" 'pipe.yaml: is no regular file'
+[ -p "$dir/pipe.yaml" ] || fail 'the pipe is gone'
+cp "$models/bracket.obj" "$dir"
+cat >"$dir/mirrored.yaml" <<'END_OF_YAML'
+se3d: 1
+parts: {half: {bodies: [{name: plate, mass: 1, inertia: [1, 1, 1], shapes: [{type: mesh, file: bracket.obj}]}]}}
+instances: [{part: half, prefix: right_, mirror: y}]
+END_OF_YAML
+expect 'print a mesh that is mirrored' 1 "$program" write "$dir/mirrored.yaml"
+has "$dir/err" 'a shape of body right_plate, file bracket.obj: a mesh that is mirrored has no file'
+expect 'write to nowhere' 1 "$program" write "$models/pendulum.yaml" -o /dev/null/axle.yaml
 expect 'import without a file' 2 "$program" import
 has "$dir/err" 'which model? Give a file'
 expect 'JSON, line by line' 0 "$program" run "$dir/pendulum.yaml" -o "$dir/pendulum" --json-lines

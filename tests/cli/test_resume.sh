@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # A run that is killed at random moments and resumed leaves the same files as one that is not, and
-# the same report; what does not fit is refused and stays as it is. SE3D_KILLS: how often (10).
+# the same report; what does not fit is refused and stays as it is. SE3D_KILLS: how often (3).
 # Run with SE3D_PROGRAM and SE3D_SOURCE_DIR set.
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
 
-kills=${SE3D_KILLS:-10}
+kills=${SE3D_KILLS:-3}
 seed=${SE3D_SEED:-$$}
 w=$dir/whole
 c=$dir/cut
@@ -52,45 +52,68 @@ output:
   - {file: p.pvd, every: 0.1}
 END
 
+sed 's/samples: 70/samples: 200/' "$source/examples/study/damper.yaml" >"$dir/sweep.yaml"
+
 # The report without what depends on the machine and the folder.
 report() { sed 's/"cpu_time": [^,]*,//g; s#"path": "[^"]*/\([^/"]*\)"#\1#g' "$1"; }
 
 random() { awk -v s="$1" 'BEGIN {srand(s); printf "0.%03d", 40 + int(460 * rand())}'; }
 
-# try_model MODEL: as often as asked, kill it and go on
-try_model() {
-    rm -rf "$w"
-    expect "$1 as a whole" 0 "$program" run "$dir/$1" -o "$w" --json
-    cp "$dir/out" "$dir/whole.json"
-    rm -rf "$c"
-    hit=0
-    tries=0
-    code=1
-    while [ $hit -lt "$kills" ] && [ $tries -lt $((3 * kills)) ]; do
+# go_on WORDS...: the command, killed at random moments until it ends by itself or all kills are done,
+# and then once more in peace. What it wrote at last is in $dir/out.
+go_on() {
+    code=137
+    while [ $hit -lt "$kills" ] && [ $code -eq 137 ]; do
         tries=$((tries + 1))
-        "$program" run "$dir/$1" -o "$c" --json --checkpoint 0.05 --resume \
-            >"$dir/out" 2>"$dir/err" &
+        "$@" >"$dir/out" 2>"$dir/err" &
         sleep "$(random $((seed + tries)))"
         kill -9 $! 2>/dev/null
         wait $!
         code=$?
-        [ $code -eq 137 ] || break
-        hit=$((hit + 1))
+        [ $code -ne 137 ] || hit=$((hit + 1))
     done 2>/dev/null
     if [ $code -eq 137 ]; then
-        expect "$1 at last" 0 "$program" run "$dir/$1" -o "$c" --json --checkpoint 1 --resume
+        expect "$1 at last" 0 "$@"
         code=0
     fi
     is "$code" 0
-    holds "$1 with seed $seed: not the same after $hit kills" diff -r "$w" "$c"
+}
+
+# try_model MODEL: killed as often as asked, it leaves the same files
+try_model() {
+    rm -rf "$w"
+    expect "$1 as a whole" 0 "$program" run "$dir/$1" -o "$w" --json
+    cp "$dir/out" "$dir/whole.json"
     report "$dir/whole.json" >"$dir/1"
-    report "$dir/out" >"$dir/2"
-    holds "$1 with seed $seed: another report after $hit kills" cmp "$dir/1" "$dir/2"
+    hit=0
+    tries=0
+    while [ $hit -lt "$kills" ] && [ $tries -lt $((4 * kills + 4)) ]; do
+        rm -rf "$c"
+        go_on "$program" run "$dir/$1" -o "$c" --json --checkpoint 0.05 --resume
+        holds "$1 with seed $seed: not the same after $hit kills" diff -r "$w" "$c"
+        report "$dir/out" >"$dir/2"
+        holds "$1 with seed $seed: another report after $hit kills" cmp "$dir/1" "$dir/2"
+    done
+    echo "$1: $hit kills"
+}
+
+# The same of a study, whose table has all its rows.
+try_study() {
+    rm -rf "$w"
+    expect "$1 as a whole" 0 "$program" study "$dir/$1" -o "$w" -q
+    hit=0
+    tries=0
+    while [ $hit -lt "$kills" ] && [ $tries -lt $((4 * kills + 4)) ]; do
+        rm -rf "$c"
+        go_on "$program" study "$dir/$1" -o "$c" -q --resume
+        holds "$1 with seed $seed: not the same after $hit kills" diff -r "$w" "$c"
+    done
     echo "$1: $hit kills"
 }
 
 try_model swing.yaml
 try_model heap.yaml
+try_study sweep.yaml
 
 # cut_short MODEL [OPTIONS]: leave a run that was killed, with a checkpoint
 cut_short() {

@@ -111,6 +111,23 @@ bad=$(grep -c '^[0-9]*,-1,.*,,,,,,,"fails.yaml:.*mass.*must be' "$dir/fails/stud
 is "$((good + bad))" 70
 holds "$good good" [ "$good" -gt 20 -a "$bad" -gt 20 ]
 
+# Derivatives.
+expect 'derivatives' 0 study --sensitivities -o "$dir/slopes"
+has "$dir/out" "wrote $dir/slopes/sensitivities.csv"
+has "$dir/err" 'study: derivatives by c, 3 of 3'
+is "$(grep -c . "$dir/slopes/sensitivities.csv")" 19
+is "$(sed -n 's/^force,k,\([^,]*,[^,]*,0.1000000\|[^,]*,[^,]*,0.0999999\).*/ok/p' "$dir/slopes/sensitivities.csv")" ok
+expect 'derivatives as JSON' 0 study --sensitivities -o "$dir/slopes" --json
+is "$(cat "$dir/out")" "{\"status\": \"done\", \"file\": \"$dir/slopes/sensitivities.csv\", \"measures\": 6, \"parameters\": 3}"
+expect 'derivatives in parts' 2 study --sensitivities --shard 1/2
+sed '/^  parameters:/,/^  seed/d; s/^study:/study:\n  sensitivities: [k]/; s/band: 2 mm/band: 1e-9/' "$model" >"$dir/only.yaml"
+expect 'a study of derivatives, with a measure that has no value' 1 "$program" study "$dir/only.yaml" -o "$dir/only"
+says '`settled` has not settled at the end'
+is "$(grep -c '^settled,k,,800,,,$' "$dir/only/sensitivities.csv")" 1
+is "$(grep -c '^crossing,k,.*,-0.55' "$dir/only/sensitivities.csv")" 1
+expect 'derivatives into a file' 1 study --sensitivities -o "$model/x"
+says 'cannot be written'
+
 # The server.
 printf '{"id": 1, "sample": 0}\n\n{"id": 2, "parameters": {"m": 2}}\nnonsense\n' >"$dir/requests"
 expect 'requests' 0 sh -c "'$program' study '$model' --server <'$dir/requests'"

@@ -165,16 +165,41 @@ static uint64_t run_forces(const row *r, int32_t threads)
     return hash;
 }
 
-/* Two balls, a box and a cylinder thrown onto a slope. */
-static uint64_t run_scene(const row *r, int32_t threads)
+static const double slope[3] = {0.2, 0.1, 1.0};
+
+static void lay_plane(scene *s)
 {
-    static const double slope[3] = {0.2, 0.1, 1.0}, size[3] = {0.2, 0.3, 0.1};
-    scene s = scene_begin(r->law, 0.4, 0.5, 1e5);
-    (void)threads;
-    se3d_shape_def plane = scene_shape(&s, scene_ground(&s));
+    se3d_shape_def def = scene_shape(s, scene_ground(s));
     se3d_shape shape;
-    memcpy(plane.normal, slope, sizeof slope);
-    CHECK(se3d_shape_create_plane(s.system, &plane, &shape) == SE3D_OK);
+    memcpy(def.normal, slope, sizeof slope);
+    CHECK(se3d_shape_create_plane(s->system, &def, &shape) == SE3D_OK);
+}
+
+/* The slope with waves, whose surface moves as a belt and turns. */
+static void lay_belt(scene *s)
+{
+    enum { LINES = 31 };
+    static double heights[LINES * LINES];
+    se3d_shape_def def = scene_shape(s, scene_ground(s));
+    se3d_shape shape;
+    for (int k = 0; k < LINES * LINES; ++k) {
+        const double x = 0.1 * (k % LINES - 15), y = 0.1 * (k / LINES - 15);
+        heights[k] = -slope[0] * x - slope[1] * y + 0.01 * (k % 3);
+    }
+    def.heights = heights;
+    def.row_count = def.column_count = LINES;
+    def.spacing[0] = def.spacing[1] = 0.1;
+    def.surface_velocity[0] = 0.5;
+    def.surface_spin[2] = -0.4;
+    CHECK(se3d_shape_create_heightfield(s->system, &def, &shape) == SE3D_OK);
+}
+
+/* Two balls and a box thrown onto the ground. */
+static uint64_t run_on(const row *r, void (*lay_ground)(scene *s))
+{
+    static const double size[3] = {0.2, 0.3, 0.1};
+    scene s = scene_begin(r->law, 0.4, 0.5, 1e5);
+    lay_ground(&s);
     for (int k = 0; k < 2; ++k) {
         const double at[3] = {0.15 * k, 0.05, 0.3 + 0.25 * k}, v[3] = {0.4, 0.1 * k, -1.0};
         (void)scene_ball(&s, 0.1, 2.0 + k, at, v);
@@ -187,6 +212,43 @@ static uint64_t run_scene(const row *r, int32_t threads)
     scene_solve(&s, r->method, r->formulation, r->method == SE3D_METHOD_DOP853 ? 0.02 : 5e-4, 0.0);
     (void)scene_run(&s, 0.25);
     uint64_t hash = se3d_system_hash(s.system);
+    scene_end(&s);
+    return hash;
+}
+
+static uint64_t run_scene(const row *r, int32_t threads)
+{
+    (void)threads;
+    return run_on(r, lay_plane);
+}
+
+static uint64_t run_belt(const row *r, int32_t threads)
+{
+    (void)threads;
+    return run_on(r, lay_belt);
+}
+
+/* Particles on the same ground. */
+static uint64_t run_carried(const row *r, int32_t threads)
+{
+    enum { COUNT = 20 };
+    const se3d_particles_def def = se3d_particles_def_default();
+    scene s = scene_begin(r->law, 0.4, 0.5, 1e5);
+    se3d_particles *set = NULL;
+    double x[3 * COUNT], radius[COUNT];
+    (void)threads;
+    for (int k = 0; k < COUNT; ++k) {
+        x[3 * k] = 0.2 * (k % 5) - 0.4;
+        x[3 * k + 1] = 0.2 * (k / 5) - 0.3;
+        x[3 * k + 2] = 0.06 - slope[0] * x[3 * k] - slope[1] * x[3 * k + 1];
+        radius[k] = 0.04 + 0.0005 * k;
+    }
+    lay_belt(&s);
+    CHECK(se3d_particles_create(s.system, &def, &set) == SE3D_OK);
+    CHECK(se3d_particles_add(set, s.material, COUNT, x, radius, NULL, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_particles_step(set, 400) == SE3D_OK);
+    CHECK(se3d_particles_count_contacts(set) > 0);
+    const uint64_t hash = se3d_particles_hash(set);
     scene_end(&s);
     return hash;
 }
@@ -284,6 +346,13 @@ static void fill_table(void)
     static const int32_t laws[] = {SE3D_CONTACT_LAW_HOOKE, SE3D_CONTACT_LAW_HERTZ_MINDLIN};
     for (int k = 0; k < 8; ++k) {
         add("contacts", laws[k % 2], methods[k / 2], k % 2)->run = run_scene;
+    }
+    for (int k = 0; k < 4; ++k) {
+        add("belt", laws[k % 2], k / 2 ? SE3D_METHOD_CONVEX : SE3D_METHOD_VERLET, k % 2)->run =
+            run_belt;
+    }
+    for (int k = 0; k < 2; ++k) {
+        add("carried", laws[k], 0, 0)->run = run_carried;
     }
     for (int k = 0; k < 4; ++k) {
         row *r = add(k / 2 ? "pushed-bed" : "bed", laws[k % 2], 0, k % 2);

@@ -130,6 +130,13 @@ static const char *const kinds[SE3DI_KIND_END] = {
     [SE3DI_KIND_PAIRS] = ITEMS("pair_of_numbers", "\"minItems\": 1"),
     [SE3DI_KIND_VECTORS] = ITEMS("vector", "\"minItems\": 3"),
     [SE3DI_KIND_NUMBERS] = ITEMS("number", "\"minItems\": 1"),
+    [SE3DI_KIND_HEIGHTS] = "\"anyOf\": [{" REFERENCE(
+        "number") "}, {\"type\": \"array\", "
+                  "\"minItems\": 2, \"items\": {\"type\": \"array\", \"minItems\": "
+                  "2, \"items\": {" REFERENCE("number") "}}}]",
+    [SE3DI_KIND_NAMES] = ITEMS("name", "\"minItems\": 1"),
+    [SE3DI_KIND_ROWS] =
+        "\"type\": \"array\", \"minItems\": 2, \"items\": {" ITEMS("number", "\"minItems\": 2") "}",
     [SE3DI_KIND_COLOR] = ITEMS("number", "\"minItems\": 3, \"maxItems\": 4"),
     [SE3DI_KIND_CHANNELS] =
         LIST("{\"anyOf\": [{\"type\": \"string\"}, {\"type\": \"object\", \"minProperties\": 1, "

@@ -322,6 +322,62 @@ static void lag_tyre(const world *w, se3d_tyre_def *def, double *c)
     c[SE3D_TYRE_PCFY1] = -0.1;
 }
 
+/* The road of the tyres that follow: 0 a plane of their own, 1 hills that move, 2 the same rolled
+ * over but standing still, 3 a grid, 4 a mesh, 5 a callback. */
+static int road_kind;
+
+/* 0.03 sin(5 x + 7 t) cos(4 y) */
+static se3d_status hill(void *ctx, const double *x, double jet[3], double *gradient)
+{
+    const double u = 5.0 * x[1] + 7.0 * x[0], v = 4.0 * x[2];
+    (void)ctx;
+    jet[0] = 0.03 * sin(u) * cos(v);
+    jet[1] = 0.21 * cos(u) * cos(v);
+    jet[2] = -1.47 * sin(u) * cos(v);
+    if (gradient) {
+        gradient[0] = jet[1];
+        gradient[1] = 0.15 * cos(u) * cos(v);
+        gradient[2] = -0.12 * sin(u) * sin(v);
+    }
+    return SE3D_OK;
+}
+
+static void lay_road(world *w, se3d_tyre_def *def)
+{
+    static const uint32_t triangles[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+    static const double points[15] = {-9.0, -8.0, 0.1, 9.0, -8.0, -0.2, 9.0, 8.0,
+                                      0.3,  -9.0, 8.0, 0.0, -7.0, -6.0, 0.2};
+    double heights[48];
+    se3d_road_def road = se3d_road_def_default();
+    se3d_function_def callback = se3d_function_def_default();
+    road.body = def->road;
+    memcpy(road.point, def->point, sizeof road.point);
+    memcpy(road.normal, def->normal, sizeof road.normal);
+    random_vector(road.forward, 3, 1.0);
+    def->envelope_length = road_kind == 2 ? 0.07 : 0.0;
+    if (road_kind == 1) {
+        road.height = make(w, "0.03*sin(5*x + 7*t)*cos(4*y)", "x", "y");
+    } else if (road_kind == 2) {
+        road.height = make(w, "0.03*sin(5*x)*cos(4*y) + 0*t", "x", "y");
+    } else if (road_kind == 5) {
+        callback.callback = hill;
+        callback.variable_count = 3;
+        CHECK(!se3d_function_create(w->system, &callback, &road.height));
+    }
+    for (int k = 0; road_kind == 3 && k < 48; ++k) {
+        heights[k] = 0.02 * check_random(&seed);
+        road.heights = heights;
+    }
+    road.column_count = 8;
+    road.row_count = 6;
+    road.spacing[0] = road.spacing[1] = 0.3;
+    road.triangles = road_kind == 4 ? triangles : NULL;
+    road.vertices = points;
+    road.vertex_count = 5;
+    road.triangle_count = 4;
+    CHECK(!se3d_road_create(w->system, &road, &def->surface));
+}
+
 /* A wheel somewhere in the road, inclined; its slip is what the random motion gives, made smaller
  * or larger by the speed below which it is regularised. */
 static void create_tyre(world *w, int32_t law, double low_speed, double mu)
@@ -366,6 +422,9 @@ static void create_tyre(world *w, int32_t law, double low_speed, double mu)
     def.coefficients = c;
     def.coefficient_count = SE3D_TYRE_COEFFICIENTS;
     lag_tyre(w, &def, c);
+    if (road_kind > 0) {
+        lay_road(w, &def);
+    }
     finish(w, se3d_force_create_tyre(w->system, &def, &force));
     for (size_t k = 3; k < w->model->body_slots.count; ++k) { /* slips that lag */
         w->model->frames[k].v[0] = 0.3 * check_random(&seed);
@@ -512,6 +571,13 @@ static void jacobians_of_every_element(void)
     }
 }
 
+static double lag_rate(const world *w, int direction)
+{
+    se3di_tyre_lag lag = {.wants_derivative = 0};
+    CHECK(!se3di_tyre_lag_eval(w->model, w->force, 0.3, direction, &lag));
+    return lag.rate;
+}
+
 /* The largest errors of the derivatives of a slip that lags, [0], and of what the wrench has of it,
  * [1], by central differences of step h. */
 static void lag_errors(world *w, int direction, const se3di_tyre_lag *exact, double h,
@@ -519,32 +585,42 @@ static void lag_errors(world *w, int direction, const se3di_tyre_lag *exact, dou
 {
     se3di_frame kept[5];
     double *z = &w->model->frames[w->force->tyre->carrier[direction]].v[0];
-    se3di_tyre_lag plus, minus;
+    double plus, minus;
     se3di_effect far = {.wants_derivative = 0}, near = {.wants_derivative = 0};
     worst[0] = worst[1] = 0.0;
     memcpy(kept, w->model->frames, sizeof kept);
     for (int k = 0; k < 24; ++k) {
         displace(w, k, h);
-        se3di_tyre_lag_eval(w->model, w->force, direction, 0, &plus);
+        plus = lag_rate(w, direction);
         memcpy(w->model->frames, kept, sizeof kept);
         displace(w, k, -h);
-        se3di_tyre_lag_eval(w->model, w->force, direction, 0, &minus);
+        minus = lag_rate(w, direction);
         memcpy(w->model->frames, kept, sizeof kept);
         const double given = (k < 12 ? exact->K : exact->D)[k % 12];
-        worst[0] = fmax(worst[0], fabs((plus.rate - minus.rate) / (2.0 * h) - given));
+        worst[0] = fmax(worst[0], fabs((plus - minus) / (2.0 * h) - given));
     }
     *z += h;
-    se3di_tyre_lag_eval(w->model, w->force, direction, 0, &plus);
+    plus = lag_rate(w, direction);
     CHECK(!se3di_force_eval(w->model, w->force, 0.3, &far));
     *z -= 2.0 * h;
-    se3di_tyre_lag_eval(w->model, w->force, direction, 0, &minus);
+    minus = lag_rate(w, direction);
     CHECK(!se3di_force_eval(w->model, w->force, 0.3, &near));
     *z += h;
-    worst[0] = fmax(worst[0], fabs((plus.rate - minus.rate) / (2.0 * h) - exact->own));
+    worst[0] = fmax(worst[0], fabs((plus - minus) / (2.0 * h) - exact->own));
     for (int k = 0; k < 12; ++k) {
         const double slope = (far.wrench[k] - near.wrench[k]) / (2.0 * h);
         worst[1] = fmax(worst[1], fabs(slope - exact->gain[k]));
     }
+}
+
+static void tyres_on_roads_agree_with_differences(void)
+{
+    static void (*const create[])(world *) = {create_sticking_brush, create_rolling_fiala,
+                                              create_mf61};
+    for (road_kind = 1; road_kind < 6; ++road_kind) {
+        jacobians_agree_with_differences(create[(road_kind + 1) % 3], road_kind < 5 ? 1e-8 : 1e-6);
+    }
+    road_kind = 0;
 }
 
 static void slips_that_lag_agree_with_differences(void)
@@ -553,14 +629,15 @@ static void slips_that_lag_agree_with_differences(void)
                                               create_mf52, create_mf61};
     for (int trial = 0; trial < 40; ++trial) {
         lag_kind = trial % 4 < 2 ? 1 : 2 + trial / 4 % 2;
+        road_kind = trial % 5 == 0; /* some on hills that move */
         world w = {0};
         build(&w);
         create[trial % 4](&w);
         CHECK(w.model->state_count == 2);
         for (int direction = 0; direction < 2; ++direction) {
-            se3di_tyre_lag exact;
+            se3di_tyre_lag exact = {.wants_derivative = 1};
             double coarse[2], fine[2];
-            se3di_tyre_lag_eval(w.model, w.force, direction, 1, &exact);
+            CHECK(!se3di_tyre_lag_eval(w.model, w.force, 0.3, direction, &exact));
             lag_errors(&w, direction, &exact, 1e-3, coarse);
             lag_errors(&w, direction, &exact, 2.5e-4, fine);
             for (int k = 0; k < 2; ++k) {
@@ -570,6 +647,7 @@ static void slips_that_lag_agree_with_differences(void)
         }
         se3d_system_destroy(w.system);
     }
+    road_kind = 0;
     for (size_t k = 0; k < 4; ++k) { /* the wrench by everything else */
         lag_kind = k < 2 ? 1 : 2;
         jacobians_agree_with_differences(create[k], 1e-8);
@@ -648,6 +726,20 @@ static void the_wrench_is_minus_the_gradient_of_the_potential(void)
     }
 }
 
+static void create_tyre_on_hills(world *w)
+{
+    road_kind = 1;
+    create_mf61(w);
+    road_kind = 0;
+}
+
+static void create_tyre_over_hills(world *w)
+{
+    road_kind = 2;
+    create_sticking_brush(w);
+    road_kind = 0;
+}
+
 /* wrench . u = -dV/dt - dissipated + actuator, for every element. */
 static void power_balances_for_every_element(void)
 {
@@ -669,6 +761,8 @@ static void power_balances_for_every_element(void)
                                        create_sliding_fiala,
                                        create_mf52,
                                        create_mf61,
+                                       create_tyre_on_hills,
+                                       create_tyre_over_hills,
                                        create_callback};
     for (size_t k = 0; k < sizeof create / sizeof create[0]; ++k) {
         for (int trial = 0; trial < 10; ++trial) {
@@ -697,7 +791,7 @@ static void power_balances_for_every_element(void)
                     se3di_quat_rotate(w.model->frames[b].p, turn, w.model->frames[b].p);
                     se3di_frame_update(&w.model->frames[b]);
                 }
-                CHECK(se3di_force_eval(w.model, w.force, 0.3, &moved) == SE3D_OK);
+                CHECK(se3di_force_eval(w.model, w.force, 0.3 + side * h, &moved) == SE3D_OK);
                 potential_rate += side * moved.potential / (2.0 * h);
                 memcpy(w.model->frames, kept, sizeof kept);
             }
@@ -751,6 +845,7 @@ int main(void)
 {
     RUN(the_load_of_friction_changes_with_the_reaction_as_told);
     RUN(jacobians_of_every_element);
+    RUN(tyres_on_roads_agree_with_differences);
     RUN(slips_that_lag_agree_with_differences);
     RUN(jacobians_of_every_element_of_the_list);
     RUN(a_callback_without_jacobian_is_differenced);

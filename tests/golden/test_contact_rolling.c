@@ -58,7 +58,7 @@ static void a_ball_on_a_turntable_goes_round_a_circle(void)
     }
 }
 
-#define STRIPS       720
+#define STRIPS       360
 #define MESH_CHOICES 3 /* one for each method */
 
 /* A gutter along y about the axis z = 0 of radius `radius`, from -turn to turn about the lowest

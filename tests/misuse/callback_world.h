@@ -30,6 +30,7 @@ typedef struct world {
     se3d_body ball, bar, kite;
     se3d_marker marker;
     se3d_wheel wheel;
+    se3d_road road;
     se3d_state state;
     se3d_constraint pin, motor, guide, rail;
     se3d_force push, load, spring, mount, turn, tyre;
@@ -175,6 +176,9 @@ static void world_add_bodies(world *w)
     wheel.chassis = ground;
     wheel.radius = 0.3;
     CHECK(!se3d_wheel_create(w->system, &wheel, &w->wheel));
+    se3d_road_def road = se3d_road_def_default();
+    road.body = ground;
+    CHECK(!se3d_road_create(w->system, &road, &w->road));
     se3d_state_def state = se3d_state_def_default();
     CHECK(!se3d_state_create(w->system, &state, &w->state));
 }
@@ -263,6 +267,7 @@ static void world_add_particles(world *w)
     se3d_fill_def fill = se3d_fill_def_default();
     se3d_particles_source_def source = se3d_particles_source_def_default();
     se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    se3d_flow_def flow = se3d_flow_def_default();
     CHECK(!se3d_particles_create(w->system, NULL, &w->particles));
     CHECK(!se3d_particles_add(w->particles, w->stuff, 3, r, radius, NULL, NULL, NULL));
     se3d_clump_def clump = se3d_clump_def_default();
@@ -281,6 +286,8 @@ static void world_add_particles(world *w)
     sink.upper[0] = sink.upper[1] = sink.upper[2] = -8.0;
     sink.lower[1] = sink.lower[2] = -9.0;
     CHECK(!se3d_particles_add_sink(w->particles, &sink, &w->ids[0]));
+    flow.normal[2] = 1.0;
+    CHECK(!se3d_particles_add_flow(w->particles, &flow, NULL));
     w->ids[0] = 0;
 }
 

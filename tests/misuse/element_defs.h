@@ -389,17 +389,22 @@ FILL(se3d_shape_def, shape)
     def->size[0] = def->size[1] = def->size[2] = 0.1;
     def->radius = 0.05;
     def->length = 0.1;
+    def->bottom_radius = 0.05;
+    def->top_radius = 0.03;
     def->vertices = corners;
     def->triangles = faces;
     def->vertex_count = def->triangle_count = 4;
+    def->heights = corners;
+    def->row_count = 3;
+    def->column_count = 4;
+    def->spacing[0] = def->spacing[1] = 0.1;
 }
-FIELDS(shape) = {NUMBERS(se3d_shape_def, position),
-                 NUMBERS(se3d_shape_def, orientation),
-                 NUMBERS(se3d_shape_def, normal),
-                 NUMBERS(se3d_shape_def, size),
-                 NUMBERS(se3d_shape_def, radius),
-                 NUMBERS(se3d_shape_def, length),
-                 FIELDS_END};
+FIELDS(shape) = {NUMBERS(se3d_shape_def, position),     NUMBERS(se3d_shape_def, orientation),
+                 NUMBERS(se3d_shape_def, normal),       NUMBERS(se3d_shape_def, size),
+                 NUMBERS(se3d_shape_def, radius),       NUMBERS(se3d_shape_def, length),
+                 NUMBERS(se3d_shape_def, spacing),      NUMBERS(se3d_shape_def, bottom_radius),
+                 NUMBERS(se3d_shape_def, top_radius),   NUMBERS(se3d_shape_def, surface_velocity),
+                 NUMBERS(se3d_shape_def, surface_spin), FIELDS_END};
 
 #define SHAPE_FILL(KIND, name, traits)                                                             \
     static inline void fill_##name(const site *at, void *storage)                                  \

@@ -5,166 +5,14 @@
 #define SE3D_TESTS_MISUSE_CALLS_H
 
 #include "misuse/misuse_batch.h"
+#include "misuse/misuse_definitions.h"
+#include "misuse/misuse_elements.h"
 #include "misuse/misuse_events.h"
 #include "misuse/misuse_fields.h"
 #include "misuse/misuse_inputs.h"
 #include "misuse/misuse_particles.h"
+#include "misuse/misuse_roads.h"
 #include "misuse/misuse_world.h"
-
-static void define_body(arguments *a)
-{
-    se3d_body_def def = body_def("new");
-    STORE(def);
-}
-static const field body_fields[] = {NAME(se3d_body_def),
-                                    NUMBERS(se3d_body_def, mass),
-                                    NUMBERS(se3d_body_def, inertia),
-                                    NUMBERS(se3d_body_def, position),
-                                    NUMBERS(se3d_body_def, orientation),
-                                    NUMBERS(se3d_body_def, velocity),
-                                    NUMBERS(se3d_body_def, angular_velocity),
-                                    FIELDS_END};
-
-static void define_marker(arguments *a)
-{
-    se3d_marker_def def = se3d_marker_def_default();
-    def.body = a->use.body;
-    STORE(def);
-}
-static const field marker_fields[] = {NAME(se3d_marker_def), BODY(se3d_marker_def, body),
-                                      NUMBERS(se3d_marker_def, position),
-                                      NUMBERS(se3d_marker_def, orientation), FIELDS_END};
-
-static void define_state(arguments *a)
-{
-    se3d_state_def def = se3d_state_def_default();
-    def.rate = a->use.function;
-    STORE(def);
-}
-static const field state_fields[] = {NAME(se3d_state_def),
-                                     FUNCTION(se3d_state_def, rate),
-                                     FUNCTION(se3d_state_def, output),
-                                     FUNCTION(se3d_state_def, input),
-                                     NUMBERS(se3d_state_def, initial),
-                                     NUMBERS(se3d_state_def, size),
-                                     FIELDS_END};
-
-static void define_wheel(arguments *a)
-{
-    se3d_wheel_def def = se3d_wheel_def_default();
-    def.body = a->use.body;
-    def.chassis = ground_of(a);
-    def.radius = 0.3;
-    def.travel = a->use.primitive;
-    def.steering = a->use.pin;
-    def.spring = a->use.force;
-    STORE(def);
-}
-static const field wheel_fields[] = {NAME(se3d_wheel_def),
-                                     BODY(se3d_wheel_def, body),
-                                     BODY(se3d_wheel_def, chassis),
-                                     NUMBERS(se3d_wheel_def, center),
-                                     NUMBERS(se3d_wheel_def, axis),
-                                     NUMBERS(se3d_wheel_def, forward),
-                                     NUMBERS(se3d_wheel_def, up),
-                                     NUMBERS(se3d_wheel_def, radius),
-                                     NUMBERS(se3d_wheel_def, width),
-                                     NUMBERS(se3d_wheel_def, steer_lower),
-                                     NUMBERS(se3d_wheel_def, steer_upper),
-                                     NUMBERS(se3d_wheel_def, wheelbase),
-                                     NUMBERS(se3d_wheel_def, cg_height),
-                                     NUMBERS(se3d_wheel_def, brake_share),
-                                     NUMBERS(se3d_wheel_def, drive_share),
-                                     FIELDS_END};
-
-static void define_primitive(arguments *a)
-{
-    se3d_primitive_def def = se3d_primitive_def_default();
-    def.type = SE3D_PRIMITIVE_CD;
-    def.body_i = ground_of(a);
-    def.body_j = a->use.body;
-    def.a_i[0] = def.a_j[1] = def.c[2] = 1.0;
-    def.function = a->use.function;
-    STORE(def);
-}
-static const field primitive_fields[] = {NAME(se3d_primitive_def),
-                                         BODY(se3d_primitive_def, body_i),
-                                         BODY(se3d_primitive_def, body_j),
-                                         NUMBERS(se3d_primitive_def, point_i),
-                                         NUMBERS(se3d_primitive_def, point_j),
-                                         NUMBERS(se3d_primitive_def, c),
-                                         FUNCTION(se3d_primitive_def, function),
-                                         FIELDS_END};
-
-static void define_driver(arguments *a)
-{
-    se3d_driver_def def = se3d_driver_def_default();
-    def.joint = a->use.pin;
-    STORE(def);
-}
-static const field driver_fields[] = {NAME(se3d_driver_def), JOINT(se3d_driver_def, joint),
-                                      NUMBERS(se3d_driver_def, value),
-                                      FUNCTION(se3d_driver_def, function), FIELDS_END};
-
-static void define_coupler(arguments *a)
-{
-    se3d_coupler_def def = se3d_coupler_def_default();
-    def.joint[0] = a->use.pin;
-    def.joint[1] = a->use.slide;
-    def.coordinate[1] = SE3D_JOINT_COORDINATE_DISPLACEMENT;
-    def.ratio[0] = def.ratio[1] = 1.0;
-    def.count = 2;
-    STORE(def);
-}
-static const field coupler_fields[] = {
-    NAME(se3d_coupler_def),
-    {"joint", offsetof(se3d_coupler_def, joint), sizeof(se3d_constraint), 1, 'c'},
-    {"ratio", offsetof(se3d_coupler_def, ratio), sizeof(double), 2, 'd'},
-    NUMBERS(se3d_coupler_def, value),
-    FUNCTION(se3d_coupler_def, function),
-    FIELDS_END};
-
-static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
-                               double *jacobian, double *nu, double *gamma)
-{
-    (void)ctx;
-    (void)t;
-    (void)bodies;
-    (void)phi;
-    (void)jacobian;
-    (void)nu;
-    (void)gamma;
-    return SE3D_OK;
-}
-
-static void define_user_constraint(arguments *a)
-{
-    se3d_user_constraint_def def = se3d_user_constraint_def_default();
-    def.bodies[0] = ground_of(a);
-    def.bodies[1] = a->use.body;
-    def.body_count = 2;
-    def.callback = no_equation;
-    STORE(def);
-}
-static const field user_constraint_fields[] = {
-    NAME(se3d_user_constraint_def), BODY(se3d_user_constraint_def, bodies[0]),
-    BODY(se3d_user_constraint_def, bodies[1]), FIELDS_END};
-
-static void define_function(arguments *a)
-{
-    se3d_function_def def = se3d_function_def_default();
-    STORE(def);
-}
-static const field function_fields[] = {NUMBERS(se3d_function_def, constant), FIELDS_END};
-
-static void define_solver(arguments *a)
-{
-    se3d_solver_def def = se3d_solver_def_default();
-    STORE(def);
-}
-static const field solver_fields[] = {
-    NUMBERS(se3d_solver_def, step), NUMBERS(se3d_solver_def, tolerance),
-    NUMBERS(se3d_solver_def, spectral_radius), NUMBERS(se3d_solver_def, alpha), FIELDS_END};
 
 static void define_summary(arguments *a)
 {
@@ -340,6 +188,11 @@ CALL(system_get_marker, a->system, a->index, a->out[0])
 CALL(system_get_constraint, a->system, a->index, a->out[0])
 CALL(system_get_force, a->system, a->index, a->out[0])
 CALL(system_get_wheel, a->system, a->index, a->out[0])
+CALL(system_get_road, a->system, a->index, a->out[0])
+CALL(road_create, a->system, a->def, a->out[0])
+CALL(road_destroy, a->system, a->use.road)
+CALL(road_get_name, a->system, a->use.road, a->out[0])
+CALL(road_get_height, a->system, a->use.road, a->number, 1.0, a->out[0])
 CALL(state_create, a->system, a->def, a->out[0])
 CALL(state_destroy, a->system, a->use.state)
 CALL(state_find, a->system, a->text ? "taken state" : NULL, a->out[0])
@@ -547,6 +400,7 @@ static se3d_status counting_null_gives_zero(arguments *a)
     CHECK(se3d_system_count_forces(NULL) == 0 && se3d_system_count_forces(a->system) == 1);
     CHECK(se3d_system_count_states(NULL) == 0 && se3d_system_count_states(a->system) == 1);
     CHECK(se3d_system_count_wheels(NULL) == 0 && se3d_system_count_wheels(a->system) == 1);
+    CHECK(se3d_system_count_roads(NULL) == 0 && se3d_system_count_roads(a->system) == 1);
     CHECK(se3d_check_count_messages(NULL) == 0 && se3d_check_count_messages(a->check) > 0);
     CHECK(se3d_system_hash(NULL) == 0 && se3d_system_hash(a->system) != 0);
     CHECK(se3d_expression_is_constant(NULL) == 0);
@@ -617,6 +471,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(body);
     CHECK_INIT(marker);
     CHECK_INIT(wheel);
+    CHECK_INIT(road);
     CHECK_INIT(state);
     CHECK_INIT(primitive);
     CHECK_INIT(user_constraint);
@@ -631,6 +486,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(particles);
     CHECK_INIT(particles_source);
     CHECK_INIT(particles_sink);
+    CHECK_INIT(flow);
     CHECK_INIT(clump);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
@@ -747,6 +603,12 @@ static const row rows[] = {
     {"se3d_system_get_constraint", call_system_get_constraint, "sxh0", NULL, NULL},
     {"se3d_system_get_force", call_system_get_force, "sxh0", NULL, NULL},
     {"se3d_system_get_wheel", call_system_get_wheel, "sxh0", NULL, NULL},
+    {"se3d_system_get_road", call_system_get_road, "sxh0", NULL, NULL},
+    {"se3d_road_create", call_road_create, "SDh0", define_road, road_fields},
+    {"se3d_road_create", roads_reject_misuse, "", NULL, NULL},
+    {"se3d_road_destroy", call_road_destroy, "Sr", NULL, NULL},
+    {"se3d_road_get_name", call_road_get_name, "sro0", NULL, NULL},
+    {"se3d_road_get_height", call_road_get_height, "srno0", NULL, NULL},
     {"se3d_state_create", call_state_create, "SDh0", define_state, state_fields},
     {"se3d_state_destroy", call_state_destroy, "Sz", NULL, NULL},
     {"se3d_state_find", call_state_find, "sth0", NULL, NULL},
@@ -779,6 +641,36 @@ static const row rows[] = {
     {"se3d_force_set_parameter", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_get_parameter", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_set_bushing", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_marker_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_joint_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_coupler_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_driver_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_primitive_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_tsda", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_rsda", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_load", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_bushing_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_friction", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_stop", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_effort", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_armature", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_tyre", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_get_callback", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_function_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_function_get_signal", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_state_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_state_get_name", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_state", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_wheel_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_gravity_function", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_material_get_pair", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_count_materials", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_material", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_type", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_count_shapes", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_shape", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_expression_write", expressions_are_written_again, "", NULL, NULL},
     {"se3d_force_get_bushing", setters_reject_misuse, "", NULL, NULL},
     {"se3d_effort_set", setters_reject_misuse, "", NULL, NULL},
     {"se3d_tyre_coefficients_init", setters_reject_misuse, "", NULL, NULL},
@@ -802,6 +694,7 @@ static const row rows[] = {
     {"se3d_system_count_constraints", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_forces", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_states", counting_null_gives_zero, "", NULL, NULL},
+    {"se3d_system_count_roads", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_count_wheels", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_check_count_messages", counting_null_gives_zero, "", NULL, NULL},
     {"se3d_system_hash", counting_null_gives_zero, "", NULL, NULL},
@@ -822,6 +715,7 @@ static const row rows[] = {
     {"se3d_body_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_marker_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_state_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_road_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_wheel_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_primitive_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_user_constraint_def_init", definitions_are_never_overrun, "", NULL, NULL},
@@ -927,6 +821,8 @@ static const row rows[] = {
     {"se3d_shape_get_name", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_body", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_wrench", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_set_surface_motion", shapes_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_get_surface_motion", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_shape_get_nearest", shapes_reject_misuse, "", NULL, NULL},
     {"se3d_system_count_contacts", contacts_reject_misuse, "", NULL, NULL},
     {"se3d_system_count_passing_meshes", contacts_reject_misuse, "", NULL, NULL},
@@ -959,6 +855,11 @@ static const row rows[] = {
     {"se3d_particles_get_clump_forces", clumps_reject_misuse, "", NULL, NULL},
     {"se3d_clump_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_source_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_field_grid_init", fields_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_fields", fields_reject_misuse, "", NULL, NULL},
+    {"se3d_flow_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_particles_add_flow", passages_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_flow", passages_reject_misuse, "", NULL, NULL},
     {"se3d_particles_sink_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_fill_lattice", fills_reject_misuse, "", NULL, NULL},
     {"se3d_particles_fill_random", fills_reject_misuse, "", NULL, NULL},

@@ -358,10 +358,14 @@ static se3d_status shapes_reject_misuse(arguments *a)
         def.name = "pad";
         def.body = a->use.body;
         def.radius = def.length = def.size[0] = def.size[1] = def.size[2] = 1.0;
+        def.top_radius = 1.0;
         def.vertices = corners;
         def.vertex_count = 4;
         def.triangles = faces;
         def.triangle_count = 2;
+        def.heights = corners;
+        def.row_count = def.column_count = 3;
+        def.spacing[0] = def.spacing[1] = 0.5;
         CHECK(create[k](NULL, &def, &shape) == SE3D_ERR_NULL);
         REJECTED(create[k](a->system, NULL, &shape), SE3D_ERR_NULL);
         REJECTED(create[k](a->system, &def, NULL), SE3D_ERR_NULL);
@@ -376,9 +380,10 @@ static se3d_status shapes_reject_misuse(arguments *a)
         bad.material.index1 = 77;
         REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_STALE_HANDLE);
         bad = def;
-        bad.radius = bad.size[2] = bad.normal[0] = (double)INFINITY;
+        bad.radius = bad.size[2] = bad.normal[0] = bad.top_radius = (double)INFINITY;
         bad.vertices = flat;
         bad.triangles = beyond;
+        bad.spacing[1] = (double)NAN;
         REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_INVALID_ARGUMENT);
         CHECK(shape.index1 == 0);
         CHECK(!create[k](a->system, &def, &shape));
@@ -392,10 +397,23 @@ static se3d_status shapes_reject_misuse(arguments *a)
         CHECK(!se3d_shape_get_name(a->system, shape, &name) && strcmp(name, "pad") == 0);
         CHECK(!se3d_shape_get_body(a->system, shape, &body) && body.index1 == def.body.index1);
         CHECK(!se3d_shape_get_wrench(a->system, shape, x, x + 3) && !(fabs(x[0]) > 0.0));
+        CHECK(!se3d_shape_set_surface_motion(a->system, shape, corners, corners + 3));
+        CHECK(!se3d_shape_get_surface_motion(a->system, shape, x + 3, x) && x[0] > 0.5);
+        CHECK(se3d_shape_get_surface_motion(a->system, shape, x, NULL) == SE3D_ERR_NULL);
+        REJECTED(se3d_shape_set_surface_motion(a->system, shape, corners, NULL), SE3D_ERR_NULL);
+        REJECTED(se3d_shape_set_surface_motion(a->system, shape, NULL, corners), SE3D_ERR_NULL);
+        x[2] = (double)NAN;
+        REJECTED(se3d_shape_set_surface_motion(a->system, shape, corners, x),
+                 SE3D_ERR_INVALID_ARGUMENT);
         CHECK(!se3d_shape_destroy(a->system, shape));
+        REJECTED(se3d_shape_set_surface_motion(a->system, shape, corners, corners),
+                 SE3D_ERR_STALE_HANDLE);
         REJECTED(se3d_shape_destroy(a->system, shape), SE3D_ERR_STALE_HANDLE);
     }
     CHECK(se3d_shape_destroy(NULL, shape) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_set_surface_motion(NULL, shape, corners, corners) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_get_surface_motion(NULL, shape, x, x + 3) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_get_surface_motion(a->system, shape, x, x + 3) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_shape_find(NULL, "pad", &shape) == SE3D_ERR_NULL);
     CHECK(se3d_shape_find(a->system, "pad", &shape) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_shape_get_name(NULL, shape, &name) == SE3D_ERR_NULL);
@@ -457,6 +475,82 @@ static se3d_status averages_reject_misuse(arguments *a)
     CHECK(se3d_particles_get_average(p, low, high, -2, &average) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_particles_get_average(p, low, high, 256, &average) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(!se3d_particles_get_average(p, low, high, 0, &average) && average.count == 1);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+static se3d_status fields_reject_misuse(arguments *a)
+{
+    enum { NUMBERS_OF = 8 * SE3D_FIELD_VALUES };
+    double values[NUMBERS_OF];
+    se3d_material material;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_field_grid good = se3d_field_grid_default();
+    for (int k = 0; k < 3; ++k) {
+        good.upper[k] = 1.0;
+        good.cells[k] = 2;
+    }
+    good.width = 0.3;
+    se3d_field_grid bad[8] = {good, good, good, good, good, good, good, good};
+    bad[0].width = 0.0;
+    bad[1].width = (double)NAN;
+    bad[2].cells[1] = 0;
+    bad[3].cells[1] = -2;
+    bad[4].upper[2] = 0.0;
+    bad[5].lower[0] = (double)NAN;
+    bad[6].tag = 256;
+    bad[7].struct_size = 4 * sizeof good;
+    CHECK(se3d_particles_get_fields(NULL, &good, NUMBERS_OF, values) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_fields(p, NULL, NUMBERS_OF, values) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_fields(p, &good, NUMBERS_OF, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_fields(p, &good, 8, values) == SE3D_ERR_INVALID_ARGUMENT);
+    for (int k = 0; k < 8; ++k) {
+        CHECK(se3d_particles_get_fields(p, &bad[k], NUMBERS_OF, values) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+    }
+    CHECK(!se3d_particles_get_fields(p, &good, NUMBERS_OF, values) && values[0] > 0.0);
+    se3d_field_grid_init(NULL, sizeof good);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
+static se3d_status passages_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    se3d_flow_stats stats;
+    uint32_t flow = 7;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_flow_def def = se3d_flow_def_default();
+    CHECK(se3d_particles_add_flow(NULL, &def, &flow) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_flow(p, NULL, &flow), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "normal = (0, 0, 0)");
+    def.normal[2] = 1.0;
+    def.size[0] = 1.0;
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    def.size[1] = 2.0;
+    def.along[2] = -4.0;
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "along = (0, 0, -4)");
+    def.along[1] = 1.0;
+    def.radius = 0.5;
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    def.radius = 0.0;
+    def.window = 0.0;
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    def.window = 0.1;
+    def.tag = -2;
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    def.tag = 255;
+    CHECK(flow == 7);
+    for (uint32_t k = 0; k < SE3D_PARTICLES_FLOWS; ++k) {
+        CHECK(!se3d_particles_add_flow(p, &def, &flow) && flow == k);
+    }
+    REJECTED(se3d_particles_add_flow(p, &def, &flow), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_flow(NULL, 0, &stats) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_flow(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_flow(p, 32, &stats) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_flow(p, 31, &stats) && stats.forward == 0);
     se3d_particles_destroy(p);
     return SE3D_OK;
 }

@@ -105,6 +105,78 @@ static void study_runs(const world *w)
     close_study(&s);
 }
 
+static void study_sensitivities(const world *w)
+{
+    study_world s = open_study(w);
+    double h = 4.0, z = 0.0, slope = 0.0, error = 0.0;
+    CHECK(se3d_study_count_sensitivities(NULL) == 0);
+    CHECK(se3d_study_count_sensitivities(s.study) == 1);
+    CHECK(!se3d_study_get_sensitivity_name(NULL, 0)[0]);
+    CHECK(!se3d_study_get_sensitivity_name(s.study, 1)[0]);
+    CHECK(strcmp(se3d_study_get_sensitivity_name(s.study, 0), "h") == 0);
+    IS(se3d_study_eval_nominal(NULL, &z, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_nominal(s.study, NULL, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_nominal(s.study, &z, NULL), SE3D_OK);
+    CHECK_NEAR(z, 1.0, 0.0);
+    IS(se3d_study_eval_sensitivity(NULL, 0, &h, &slope, &error, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_sensitivity(s.study, 0, NULL, &slope, &error, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_sensitivity(s.study, 0, &h, NULL, &error, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_sensitivity(s.study, 1, &h, &slope, &error, NULL),
+       SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_eval_sensitivity(s.study, 0, &h, &slope, NULL, NULL), SE3D_OK);
+    CHECK_NEAR(h, 1.0, 0.0);
+    CHECK_NEAR(slope, 1.0, 1e-12);
+    close_study(&s);
+}
+
+static const char study_search[] =
+    "se3d: 1\nparameters: {h: 1}\n"
+    "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
+    "analysis: {type: assembly}\n"
+    "study: {measures: {z: {final: block.position.z}}, optimize: {minimize: z, "
+    "parameters: {h: {from: 0, to: 2}}, constraints: {z: {from: 0.5}}}}\n";
+
+static void study_goals(const world *w)
+{
+    study_world s = open_study_of(w, study_search), none = open_study(w);
+    double h = 4.0, z = 0.0, bounds[2];
+    char written[100];
+    size_t measure = 0;
+    se3d_study_goal goal;
+    IS(se3d_study_get_goal(NULL, &goal), SE3D_ERR_NULL);
+    IS(se3d_study_get_goal(s.study, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_get_goal(none.study, &goal), SE3D_ERR_STATE);
+    IS(se3d_study_get_goal_sized(s.study, &goal, 0), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_get_goal(s.study, &goal), SE3D_OK);
+    CHECK(se3d_study_count_unknowns(NULL) + se3d_study_count_unknowns(none.study) == 0);
+    CHECK(se3d_study_count_limits(NULL) + se3d_study_count_limits(none.study) == 0);
+    CHECK(!se3d_study_get_unknown_name(NULL, 0)[0]);
+    CHECK(!se3d_study_get_unknown_name(s.study, 1)[0]);
+    IS(se3d_study_get_unknown(NULL, 0, bounds, &h), SE3D_ERR_NULL);
+    IS(se3d_study_get_unknown(s.study, 0, NULL, &h), SE3D_ERR_NULL);
+    IS(se3d_study_get_unknown(s.study, 0, bounds, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_get_unknown(s.study, 1, bounds, &h), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_write_unknown(NULL, 0, 1.0, written, sizeof written), SE3D_ERR_NULL);
+    IS(se3d_study_write_unknown(s.study, 0, 1.0, NULL, sizeof text), SE3D_ERR_NULL);
+    IS(se3d_study_write_unknown(s.study, 1, 1.0, written, sizeof written),
+       SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_write_unknown(s.study, 0, 1.0, written, 99), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_get_limit(NULL, 0, &measure, bounds), SE3D_ERR_NULL);
+    IS(se3d_study_get_limit(s.study, 0, NULL, bounds), SE3D_ERR_NULL);
+    IS(se3d_study_get_limit(s.study, 0, &measure, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_get_limit(s.study, 1, &measure, bounds), SE3D_ERR_INVALID_ARGUMENT);
+    IS(se3d_study_eval_unknowns(NULL, &h, &z, NULL, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_unknowns(s.study, NULL, &z, NULL, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_unknowns(s.study, &h, NULL, NULL, NULL), SE3D_ERR_NULL);
+    IS(se3d_study_eval_unknowns(none.study, &h, &z, NULL, NULL), SE3D_ERR_STATE);
+    IS(se3d_study_eval_unknowns(s.study, &h, &z, NULL, NULL), SE3D_OK);
+    CHECK_NEAR(z, 4.0, 0.0);
+    h = (double)NAN;
+    IS(se3d_study_eval_unknowns(s.study, &h, &z, NULL, NULL), SE3D_ERR_INVALID_ARGUMENT);
+    close_study(&s);
+    close_study(&none);
+}
+
 static const char study_motion[] =
     "se3d: 1\nparameters: {h: 1}\n"
     "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
@@ -123,6 +195,8 @@ static int meddle_with_study(void *ctx)
     CHECK_CONTAINS(error.message, "is being run");
     IS(se3d_study_run_sample(study, 0, &line), SE3D_ERR_STATE);
     IS(se3d_study_answer(study, "{\"sample\": 0}", 13, &line), SE3D_ERR_STATE);
+    IS(se3d_study_eval_nominal(study, &z, &error), SE3D_ERR_STATE);
+    IS(se3d_study_eval_sensitivity(study, 0, &h, &z, NULL, &error), SE3D_ERR_STATE);
     se3d_study_destroy(study);
     ++study_meddled;
     return 0;

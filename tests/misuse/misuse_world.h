@@ -16,6 +16,7 @@ typedef struct handles {
     se3d_function function;
     se3d_force force;
     se3d_wheel wheel;
+    se3d_road road;
     se3d_state state;
 } handles;
 
@@ -92,6 +93,10 @@ static void add_elements(se3d_system *system, handles *h, const char *name)
     wheel.chassis = ground;
     wheel.radius = 0.3;
     CHECK(!se3d_wheel_create(system, &wheel, &h->wheel));
+    se3d_road_def road = se3d_road_def_default();
+    road.name = name;
+    road.body = h->body;
+    CHECK(!se3d_road_create(system, &road, &h->road));
     se3d_state_def state = se3d_state_def_default();
     char text[32];
     snprintf(text, sizeof text, "%s state", name); /* forces and states have names of one kind */
@@ -102,6 +107,7 @@ static void add_elements(se3d_system *system, handles *h, const char *name)
 static void remove_elements(se3d_system *system, const handles *h)
 {
     CHECK(!se3d_state_destroy(system, h->state));
+    CHECK(!se3d_road_destroy(system, h->road));
     CHECK(!se3d_wheel_destroy(system, h->wheel));
     CHECK(!se3d_force_destroy(system, h->force));
     CHECK(!se3d_constraint_destroy(system, h->primitive));

@@ -3,8 +3,9 @@
  *
  * The letters of `needs` say which arguments a case spoils, one at a time:
  *     S s  the system: NULL. S: not const, so that every failure records a message
- *     b m c d f F w z
- *                  a handle (body, marker, joint, second joint, function, force, wheel, state):
+ *     b m c d f F w r z
+ *                  a handle (body, marker, joint, second joint, function, force, wheel, road,
+ *                  state):
  *                  null, stale and of another system
  *     i<n> a vector of n numbers: NULL; NaN and infinity in every place
  *     j    a pointer to numbers that may hold anything: NULL     n  a number: NaN, infinity
@@ -144,6 +145,9 @@ static void spoil_handle(arguments *a, const misuse_world *w, const spoiled *s)
     case 'w':
         a->use.wheel = bad->wheel;
         break;
+    case 'r':
+        a->use.road = bad->road;
+        break;
     case 'z':
         a->use.state = bad->state;
         break;
@@ -224,6 +228,7 @@ static se3d_status spoil(arguments *a, const misuse_world *w, const spoiled *s)
     case 'b':
     case 'm':
     case 'w':
+    case 'r':
     case 'z':
     case 'c':
     case 'd':
@@ -339,7 +344,7 @@ static void run_row(const misuse_world *w, const row *r)
         }
         if (*n == 'D') {
             run_def_cases(w, r);
-        } else if (strchr("bmcdfFwzn", *n)) {
+        } else if (strchr("bmcdfFwrzn", *n)) {
             run_variants(w, r, s, 3);
         } else {
             run_case(w, r, &s);

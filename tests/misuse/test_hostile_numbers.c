@@ -88,6 +88,19 @@ static const field wheel_fields[] = {
     NUMBERS(se3d_wheel_def, radius),    NUMBERS(se3d_wheel_def, steer_upper),
     NUMBERS(se3d_wheel_def, wheelbase), FIELDS_END};
 
+FILL_IN(se3d_road_def, road)
+{
+    static const double heights[4] = {0.0, 0.1, 0.2, 0.1};
+    def->body = w->ground;
+    def->heights = heights;
+    def->column_count = def->row_count = 2;
+    def->spacing[0] = def->spacing[1] = 0.5;
+}
+CREATE(se3d_road_def, road_create, se3d_road)
+static const field road_fields[] = {NUMBERS(se3d_road_def, point), NUMBERS(se3d_road_def, normal),
+                                    NUMBERS(se3d_road_def, forward),
+                                    NUMBERS(se3d_road_def, spacing), FIELDS_END};
+
 #define PRIMITIVE(what, TYPE)                                                                      \
     FILL_IN(se3d_primitive_def, what)                                                              \
     {                                                                                              \
@@ -281,6 +294,22 @@ static const field sink_fields[] = {NUMBERS(se3d_particles_sink_def, lower),
                                     NUMBERS(se3d_particles_sink_def, normal),
                                     FIELDS_END};
 
+FILL_IN(se3d_flow_def, flow)
+{
+    (void)w;
+    def->normal[2] = def->along[0] = 1.0;
+    def->size[0] = def->size[1] = 1.0;
+}
+static se3d_status create_flow(world *w, const void *def)
+{
+    uint32_t flow;
+    return se3d_particles_add_flow(w->set, def, &flow);
+}
+static const field flow_fields[] = {NUMBERS(se3d_flow_def, point),  NUMBERS(se3d_flow_def, normal),
+                                    NUMBERS(se3d_flow_def, radius), NUMBERS(se3d_flow_def, size),
+                                    NUMBERS(se3d_flow_def, along),  NUMBERS(se3d_flow_def, window),
+                                    INTEGER(se3d_flow_def, tag),    FIELDS_END};
+
 static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
 {
     double r[3];
@@ -347,6 +376,7 @@ static const subject subjects[] = {
     {"marker", marker_fields, fill_in_marker, create_marker_create, 0},
     {"state", state_fields, fill_in_state, create_state_create, 0},
     {"wheel", wheel_fields, fill_in_wheel, create_wheel_create, 0},
+    {"road", road_fields, fill_in_road, create_road_create, 0},
     {"dp1", primitive_fields, fill_in_dp1, create_primitive_create, 0},
     {"dp2", primitive_fields, fill_in_dp2, create_primitive_create, 0},
     {"d", primitive_fields, fill_in_d, create_primitive_create, 0},
@@ -361,6 +391,7 @@ static const subject subjects[] = {
     {"random filling", region_fields, fill_in_region, create_random, 1},
     {"source", source_fields, fill_in_source, create_source, 1},
     {"sink", sink_fields, fill_in_sink, create_sink, 1},
+    {"flow", flow_fields, fill_in_flow, create_flow, 1},
     {"event", event_fields, fill_in_event, create_event, 0},
     {"function", function_fields, fill_in_function, create_function_create, 0},
 };

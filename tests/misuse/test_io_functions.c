@@ -168,6 +168,14 @@ static void model_get_parameter(const world *w)
     IS(se3d_model_get_parameter(w->model, "m", NULL), SE3D_ERR_NULL);
     IS(se3d_model_get_parameter(w->model, "n", &value), SE3D_ERR_INVALID_ARGUMENT);
     IS(se3d_model_get_parameter(w->model, "m", &value), SE3D_OK);
+    const size_t count = se3d_model_count_parameters(w->model);
+    CHECK(count > 0 && se3d_model_count_parameters(NULL) == 0);
+    CHECK(!se3d_model_get_parameter_name(NULL, 0)[0]);
+    CHECK(!se3d_model_get_parameter_name(w->model, count)[0]);
+    CHECK(!se3d_model_get_parameter_text(NULL, 0)[0]);
+    CHECK(!se3d_model_get_parameter_text(w->model, SIZE_MAX)[0]);
+    CHECK(se3d_model_get_parameter_name(w->model, 0)[0] &&
+          se3d_model_get_parameter_text(w->model, 0)[0]);
     CHECK_NEAR(value, 2.0, 0.0);
 }
 
@@ -259,6 +267,37 @@ static void model_get_channel(const world *w)
     IS(se3d_model_get_channel(w->model, 0, 1, &name), SE3D_ERR_INVALID_ARGUMENT);
     IS(se3d_model_get_channel(w->model, 0, 0, &name), SE3D_OK);
     CHECK_CONTAINS(name, "block.position");
+}
+
+static void model_write(const world *w)
+{
+    se3d_write_options options = se3d_write_options_default();
+    se3d_write_options larger[4];
+    se3d_model_error error;
+    se3d_system *system = se3d_model_get_system(w->model);
+    char small[8];
+    size_t length = 9;
+    se3d_write_options_init(NULL, sizeof options);
+    se3d_write_options_init(&options, 1);
+    IS(se3d_model_write(NULL, "a.yaml", NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_model_write(w->model, NULL, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_model_write(w->model, "/dev/null/a.yaml", NULL, &error), SE3D_ERR_IO);
+    CHECK(error.message[0]);
+    IS(se3d_model_write(w->model, "/dev/null/a.yaml", NULL, NULL), SE3D_ERR_IO);
+    IS(se3d_system_write(NULL, "a.yaml", NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_system_write(system, NULL, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_system_write(system, "/dev/null/a.yaml", NULL, NULL), SE3D_ERR_IO);
+    IS(se3d_model_write_text(NULL, NULL, small, sizeof small, &length, &error), SE3D_ERR_NULL);
+    CHECK(length == 0);
+    IS(se3d_model_write_text(w->model, NULL, small, sizeof small, NULL, &error), SE3D_ERR_NULL);
+    IS(se3d_model_write_text(w->model, NULL, small, sizeof small, &length, &error),
+       SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(length > sizeof small);
+    IS(se3d_model_write_text(w->model, NULL, NULL, 0, &length, NULL), SE3D_OK);
+    memset(larger, 1, sizeof larger);
+    larger[0].struct_size = sizeof larger;
+    IS(se3d_model_write_text(w->model, larger, NULL, 0, &length, &error),
+       SE3D_ERR_INVALID_ARGUMENT);
 }
 
 static void model_list_channels(const world *w)
@@ -403,6 +442,8 @@ static const struct {
      "se3d_model_import_get_text se3d_model_import_get_format se3d_model_import_get_note "
      "se3d_model_import_destroy ",
      model_import_nothing},
+    {" se3d_model_write se3d_model_write_text se3d_system_write se3d_write_options_init ",
+     model_write},
     {" se3d_model_options_init ", model_options_init},
     {" se3d_run_options_init ", run_options_init},
     {" se3d_model_destroy se3d_run_destroy se3d_scene_destroy ", destroyers},
@@ -411,7 +452,9 @@ static const struct {
      "se3d_model_count_shapes se3d_run_count_analyses se3d_run_count_files se3d_run_count_events "
      "se3d_run_count_particles se3d_run_count_summaries ",
      counters},
-    {" se3d_model_get_parameter ", model_get_parameter},
+    {" se3d_model_get_parameter se3d_model_count_parameters se3d_model_get_parameter_name "
+     "se3d_model_get_parameter_text ",
+     model_get_parameter},
     {" se3d_model_get_analysis ", check_model_get_analysis},
     {" se3d_model_get_output ", check_model_get_output},
     {" se3d_model_get_picture ", check_model_get_picture},
@@ -436,6 +479,14 @@ static const struct {
      study_getters},
     {" se3d_study_eval se3d_study_run_sample se3d_study_answer se3d_study_set_interrupt ",
      study_runs},
+    {" se3d_study_count_sensitivities se3d_study_get_sensitivity_name se3d_study_eval_nominal "
+     "se3d_study_eval_sensitivity ",
+     study_sensitivities},
+    {" se3d_study_get_goal se3d_study_get_goal_sized se3d_study_count_unknowns "
+     "se3d_study_get_unknown_name "
+     "se3d_study_get_unknown se3d_study_write_unknown se3d_study_count_limits "
+     "se3d_study_get_limit se3d_study_eval_unknowns ",
+     study_goals},
     {" se3d_study_table_def_init se3d_study_table_open ", study_table_definitions},
     {" se3d_study_table_append se3d_study_table_has se3d_study_table_count_failed "
      "se3d_study_table_close ",

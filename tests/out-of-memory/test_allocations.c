@@ -325,6 +325,54 @@ static se3d_status make_clone(workshop *w)
     return status;
 }
 
+/* A grid, a mesh, a tyre on it whose slip lags, and copies of them. */
+static se3d_status make_road(workshop *w)
+{
+    static const double corners[9] = {-9.0, -9.0, 0.0, 9.0, -9.0, 0.0, 0.0, 9.0, 0.0};
+    static const uint32_t triangle[3] = {0, 1, 2};
+    se3d_road_def def = se3d_road_def_default();
+    se3d_tyre_def tyre = se3d_tyre_def_default();
+    se3d_road grid, mesh;
+    se3d_force force;
+    def.name = "field";
+    def.body = w->ground;
+    def.heights = corners;
+    def.column_count = 3;
+    def.row_count = 3;
+    def.spacing[0] = def.spacing[1] = 1.0;
+    se3d_status status = se3d_road_create(w->system, &def, &grid);
+    if (status < 0) {
+        return status;
+    }
+    def.name = "kerb";
+    def.heights = NULL;
+    def.vertices = corners;
+    def.vertex_count = 3;
+    def.triangles = triangle;
+    def.triangle_count = 1;
+    status = se3d_road_create(w->system, &def, &mesh);
+    tyre.wheel = w->body[0];
+    tyre.surface = mesh;
+    tyre.relaxation_x = tyre.radius = tyre.k = tyre.mu = tyre.slip_stiffness = 1.0;
+    tyre.cornering_stiffness = 1.0;
+    if (status >= 0) {
+        status = se3d_force_create_tyre(w->system, &tyre, &force);
+        if (status >= 0) {
+            status = make_clone(w);
+            if (status < 0) {
+                CHECK(!se3d_force_destroy(w->system, force));
+            }
+        }
+        if (status < 0) {
+            CHECK(!se3d_road_destroy(w->system, mesh));
+        }
+    }
+    if (status < 0) {
+        CHECK(!se3d_road_destroy(w->system, grid));
+    }
+    return status;
+}
+
 static se3d_status make_snapshot(workshop *w)
 {
     se3d_snapshot *snapshot = NULL;
@@ -390,7 +438,9 @@ static se3d_status make_source_and_sink(workshop *w)
     se3d_fill_def fill = se3d_fill_def_default();
     se3d_particles_source_def source = se3d_particles_source_def_default();
     se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    se3d_flow_def flow = se3d_flow_def_default();
     se3d_particles_source_stats stats;
+    se3d_flow_stats passed;
     uint64_t count;
     stuff.density = 2500.0;
     stuff.stiffness = 1e4;
@@ -411,6 +461,11 @@ static se3d_status make_source_and_sink(workshop *w)
         sink.normal[2] = 1.0;
         status = se3d_particles_add_sink(set, &sink, NULL);
         CHECK((status >= 0) == (se3d_particles_get_sink_count(set, 0, &count) == SE3D_OK));
+    }
+    if (status >= 0) {
+        flow.normal[2] = 1.0;
+        status = se3d_particles_add_flow(set, &flow, NULL);
+        CHECK((status >= 0) == (se3d_particles_get_flow(set, 0, &passed) == SE3D_OK));
     }
     status = status < 0 ? status : make_clone(w);
     status = status < 0 ? status : make_snapshot(w);
@@ -509,6 +564,7 @@ static const operation_row operations[] = {
     {"marker", make_marker},
     {"state", make_state},
     {"wheel", make_wheel},
+    {"road", make_road},
     {"dp1", make_dp1},
     {"dp2", make_dp2},
     {"d", make_d},

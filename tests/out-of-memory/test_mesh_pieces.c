@@ -80,8 +80,37 @@ static void a_mesh_is_taken_apart_whole_or_not_at_all(void)
     }
 }
 
+static void heights_are_taken_whole_or_not_at_all(void)
+{
+    const double heights[12] = {0.0, 0.1, 0.2, 0.1, 0.3, 0.1, 0.0, 0.2, 0.1, 0.2, 0.0, 0.1};
+    support_counting counting = {0};
+    se3d_allocator allocator = support_counting_allocator(&counting);
+    const double at[3] = {0.0, 0.0, 2.5};
+    se3d_shape_def def;
+    se3d_shape shape;
+    se3d_system *system = create(&allocator, at, &def);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    size_t tries = 0;
+    def.heights = heights;
+    def.row_count = 3;
+    def.column_count = 4;
+    def.spacing[0] = def.spacing[1] = 0.5;
+    for (; status == SE3D_ERR_NO_MEMORY && tries < 100; ++tries) {
+        const size_t live = counting.live;
+        counting.calls = 0;
+        counting.fail_at = tries + 1;
+        status = se3d_shape_create_heightfield(system, &def, &shape);
+        CHECK(status < 0 ? shape.index1 == 0 : shape.index1 != 0);
+        CHECK(status >= 0 || counting.live <= live + 2); /* room for more shapes may stay */
+    }
+    CHECK(status == SE3D_OK && tries > 5);
+    se3d_system_destroy(system);
+    CHECK(counting.live == 0 && counting.wrong == 0);
+}
+
 int main(void)
 {
+    RUN(heights_are_taken_whole_or_not_at_all);
     RUN(a_mesh_is_taken_apart_whole_or_not_at_all);
     return check_finish();
 }

@@ -136,6 +136,13 @@ static attempt try_once(const char *text, size_t k, int for_ever)
     if (a.status >= 0) {
         a.status = draw(model, folder, &scene, &error);
     }
+    if (a.status >= 0) {
+        size_t length = 0;
+        se3d_write_options partial = se3d_write_options_default();
+        partial.partial = 1; /* a mesh that is mirrored has no file */
+        snprintf(error.message, sizeof error.message, "not written");
+        a.status = se3d_model_write_text(model, &partial, NULL, 0, &length, &error);
+    }
     a.reached = counting.failed > 0;
     if (a.status < 0) {
         CHECK(error.message[0] != '\0');

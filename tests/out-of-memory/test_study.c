@@ -126,8 +126,51 @@ static void a_study_survives_every_failed_allocation(void)
     }
 }
 
+static const char still[] =
+    "se3d: 1\nparameters: {h: 1}\n"
+    "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
+    "analysis: {type: assembly}\n"
+    "study: {sensitivities: [h], measures: {z: {final: block.position.z}}}\n";
+
+static attempt differentiate_once(size_t k, int for_ever)
+{
+    support_counting counting = {.fail_at = k, .for_ever = for_ever};
+    const se3d_allocator allocator = support_counting_allocator(&counting);
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_study *study = NULL;
+    se3d_model_error error = {0, 0, ""};
+    attempt a = {SE3D_OK, 0, ""};
+    double value = 0.0, slope = 0.0;
+    options.allocator = &allocator;
+    a.status = se3d_model_read_text(still, strlen(still), "m.yaml", &options, &model, &error);
+    a.status = a.status < 0 ? a.status : se3d_study_create(model, &study, &error);
+    if (a.status >= 0) {
+        a.status = se3d_study_eval_sensitivity(study, 0, &value, &slope, NULL, &error);
+    }
+    a.failed = counting.failed;
+    CHECK(a.status >= 0 ? fabs(slope - 1.0) < 1e-12 : error.message[0] != '\0');
+    se3d_study_destroy(study);
+    se3d_model_destroy(model);
+    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    return a;
+}
+
+static void derivatives_survive_failed_allocations(void)
+{
+    for (int for_ever = 0; for_ever < 2; ++for_ever) {
+        size_t k = 1;
+        for (attempt a = {.failed = 1}; k < 5000 && a.failed > 0; k += k < 200 ? 1 : 7) {
+            a = differentiate_once(k, for_ever);
+            CHECK(a.status == SE3D_ERR_NO_MEMORY || (a.status >= 0 && a.failed == 0));
+        }
+        CHECK(k > 200 && k < 5000);
+    }
+}
+
 int main(void)
 {
+    RUN(derivatives_survive_failed_allocations);
     RUN(a_study_survives_every_failed_allocation);
     return check_finish();
 }

@@ -7,6 +7,7 @@
 #include "assembly/loads.h"
 #include "nonlinear/equations.h"
 #include "tree/core.h"
+#include "tree/loop_core.h"
 #include "tree/loops.h"
 #include "tree/recursion.h"
 
@@ -59,11 +60,13 @@ typedef struct case_of {
     se3di_model *model;
     se3di_tree tree;
     double q[NUMBERS], qdot[NUMBERS];
+    int loops, clear; /* it has some; their rows were clear of each other */
 } case_of;
 
 static void begin_closed(case_of *c, uint64_t seed, int loops)
 {
     tree_world_init(&c->world, seed, 1 + (int)(seed % TREE_BODIES_MAX), loops);
+    c->loops = c->clear = 0;
     c->model = &c->world.system->model;
     CHECK(!se3di_tree_init(&c->tree, c->model, 1, NULL));
     shake(&c->world, &c->tree, c->q, c->qdot);
@@ -275,6 +278,32 @@ static void gravity_needs_neither_wrenches_nor_frames(void)
     }
 }
 
+/* The equations of the loops without regularisation, at both instruction levels, and by the KKT
+ * solver: the same accelerations. */
+static void compare_systems(case_of *c, se3di_tree_loops *loops)
+{
+    const se3di_loop_core *const avx2 = se3di_loop_core_avx2();
+    double other[6 * TREE_BODIES_MAX];
+    if (!loops->is_clear) {
+        return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        loops->system.core = k > 0 && avx2 ? avx2 : se3di_loop_core_portable();
+        CHECK(se3di_tree_loops_factor(loops) == SE3D_OK && loops->is_clear);
+        CHECK(!se3di_tree_loops_accelerate(loops, other));
+        CHECK(memcmp(other, c->tree.qddot, c->tree.v_count * sizeof *other) == 0);
+    }
+    loops->system.is_there = 0;
+    CHECK(se3di_tree_loops_factor(loops) >= 0 && !loops->is_clear);
+    CHECK(se3di_tree_loops_accelerate(loops, other) >= 0);
+    CHECK_NEAR(difference(other, c->tree.qddot, c->tree.v_count) /
+                   (1.0 + largest(other, c->tree.v_count)),
+               0.0, 1e-10);
+    loops->system.is_there = 1;
+    CHECK(se3di_tree_loops_factor(loops) == SE3D_OK);
+    CHECK(!se3di_tree_loops_accelerate(loops, other));
+}
+
 /* The same state, both ways: the largest difference of accelerations, and that of multipliers, both
  * relative to the largest. Returns 0 where the constraints depend on each other. */
 static int compare_closed(case_of *c, double time, double *accelerations, double *multipliers)
@@ -300,6 +329,9 @@ static int compare_closed(case_of *c, double time, double *accelerations, double
     se3di_tree_get_accelerations(&c->tree, c->model->frames, acceleration);
     *accelerations = difference(acceleration, c->model->acceleration, count) /
                      (1.0 + largest(c->model->acceleration, count));
+    c->clear += loops.is_clear;
+    c->loops += loops.row_count > 0;
+    compare_systems(c, &loops);
     se3di_tree_loops_add_wrenches(&loops, loops.lambda, c->tree.wrench);
     c->tree.core->transmit(&c->tree, c->tree.wrench, joint);
     memcpy(lambda, loops.lambda, rows * sizeof *lambda);
@@ -314,7 +346,7 @@ static int compare_closed(case_of *c, double time, double *accelerations, double
 static void loops_and_reactions_are_those_of_the_maximal_equations(void)
 {
     double worst[2] = {0.0, 0.0};
-    int tried = 0;
+    int tried = 0, closed = 0, clear = 0;
     for (uint64_t seed = 0; seed < 3 * MECHANISMS; ++seed) {
         case_of c;
         double off[2];
@@ -330,10 +362,13 @@ static void loops_and_reactions_are_those_of_the_maximal_equations(void)
             worst[0] = fmax(worst[0], off[0]);
             worst[1] = fmax(worst[1], off[1]);
             ++tried;
+            closed += c.loops;
+            clear += c.clear;
         }
         end(&c);
     }
     CHECK(tried > MECHANISMS);
+    CHECK(clear > closed * 3 / 4 && closed > MECHANISMS / 2);
     printf("%d mechanisms, largest difference of accelerations %.2g, of multipliers %.2g\n", tried,
            worst[0], worst[1]);
 }
@@ -457,6 +492,76 @@ static void redundant_loops_and_singular_positions_give_the_same_accelerations(v
     }
 }
 
+/* Rows of the loops times x, those that are kept. */
+static void rows_mul(const se3di_tree_loops *loops, const double *x, double *c)
+{
+    const size_t columns = loops->tree->v_count;
+    double G[6 * TREE_BODIES_MAX];
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
+            memset(G, 0, columns * sizeof *G);
+            se3di_tree_loops_row(loops, k, (size_t)loops->kept[loops->row_begin[k] + (uint32_t)r],
+                                 G);
+            *c = 0.0;
+            for (size_t v = 0; v < columns; ++v) {
+                *c += G[v] * x[v];
+            }
+            ++c;
+        }
+    }
+}
+
+/* dq changes the rows by c, and no motion within the constraints has anything to do with it: x with
+ * G x = 0 has x^T M dq = 0. By both ways of solving. */
+static void corrections_are_the_least_ones(void)
+{
+    int tried[2] = {0, 0};
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        se3di_equations e;
+        se3di_tree_loops loops;
+        double dq[6 * TREE_BODIES_MAX], x[6 * TREE_BODIES_MAX], Mx[6 * TREE_BODIES_MAX];
+        double wanted[16 * TREE_BODIES_MAX], got[16 * TREE_BODIES_MAX];
+        begin_closed(&c, seed, 1 + (int)(seed % 3));
+        CHECK(!se3di_equations_init(&e, c.model, &se3di_formulation_romega, 1, NULL));
+        CHECK(!se3di_tree_loops_init(&loops, &c.tree, &e.assembly, NULL));
+        const size_t n = c.tree.v_count;
+        for (int way = 0; way < 2 && loops.row_count + 3 <= n; ++way) {
+            loops.system.is_there &= way == 0;
+            CHECK(!se3di_tree_factor(&c.tree, NULL));
+            if (se3di_tree_loops_factor(&loops) != SE3D_OK ||
+                se3di_tree_loops_count_dependent(&loops) > 0) {
+                continue;
+            }
+            for (size_t k = 0; k < n; ++k) {
+                x[k] = sin(1.0 + (double)k + (double)seed);
+            }
+            rows_mul(&loops, x, wanted);
+            CHECK(se3di_tree_loops_correct(&loops, wanted, dq) >= 0);
+            rows_mul(&loops, dq, got);
+            const size_t rows = loops.count > 0 ? (size_t)loops.kept_begin[loops.count - 1] +
+                                                      (size_t)loops.kept_count[loops.count - 1]
+                                                : 0;
+            CHECK_NEAR(difference(wanted, got, rows) / (1.0 + largest(wanted, rows)), 0.0, 1e-9);
+            double along = 0.0, size = 1.0;
+            for (size_t k = 0; k < n; ++k) {
+                x[k] -= dq[k];
+            }
+            se3di_tree_mul(&c.tree, x, Mx);
+            for (size_t k = 0; k < n; ++k) {
+                along += Mx[k] * dq[k];
+                size += fabs(Mx[k] * dq[k]);
+            }
+            CHECK_NEAR(along / size, 0.0, 1e-9);
+            tried[way] += loops.row_count > 0;
+        }
+        se3di_tree_loops_destroy(&loops);
+        se3di_equations_destroy(&e);
+        end(&c);
+    }
+    CHECK(tried[0] > MECHANISMS / 4 && tried[1] > MECHANISMS / 4);
+}
+
 static void all_instruction_levels_give_the_same_bits(void)
 {
     const se3di_tree_core *cores[3] = {se3di_tree_core_portable(), se3di_tree_core_avx2(),
@@ -490,6 +595,7 @@ int main(void)
     RUN(loops_and_reactions_are_those_of_the_maximal_equations);
     RUN(prescribed_coordinates_move_as_their_drivers_say);
     RUN(redundant_loops_and_singular_positions_give_the_same_accelerations);
+    RUN(corrections_are_the_least_ones);
     RUN(all_instruction_levels_give_the_same_bits);
     return check_finish();
 }

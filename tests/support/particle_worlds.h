@@ -14,11 +14,12 @@ enum {
     PARTICLES_BODY,
     PARTICLES_TWO_SETS,
     PARTICLES_CLUMPS,
+    PARTICLES_FUNNEL,
     PARTICLES_WORLDS
 };
 
-static const char *const particle_world_names[PARTICLES_WORLDS] = {"heap", "mesh",     "period",
-                                                                   "body", "two sets", "clumps"};
+static const char *const particle_world_names[PARTICLES_WORLDS] = {
+    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel"};
 
 static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
 {
@@ -58,6 +59,20 @@ static inline void particle_mesh(se3d_system *system, se3d_material material)
     CHECK(!se3d_shape_create_mesh(system, &def, &shape));
 }
 
+/* Its mouth lets few through at a time, one after the other stays in it; the lower end is above a
+ * plane. */
+static inline void particle_funnel(se3d_system *system, se3d_material material)
+{
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape shape;
+    def.material = material;
+    def.bottom_radius = 0.012;
+    def.top_radius = 0.14;
+    def.length = 0.13;
+    def.position[2] = 0.11;
+    CHECK(!se3d_shape_create_funnel(system, &def, &shape));
+}
+
 static inline se3d_particles *particle_set(se3d_system *system, int32_t threads, int periodic)
 {
     se3d_particles_def def = se3d_particles_def_default();
@@ -86,6 +101,19 @@ static inline se3d_fill_def particle_fill(se3d_material material, double low, do
     fill.velocity[0] = 0.3;
     fill.velocity[2] = -0.5;
     return fill;
+}
+
+static inline void particle_passage(se3d_particles *set, double height)
+{
+    se3d_flow_def def = se3d_flow_def_default();
+    def.point[2] = height;
+    def.normal[2] = 1.0;
+    def.normal[0] = 0.3;
+    def.window = 0.007;
+    CHECK(!se3d_particles_add_flow(set, &def, NULL));
+    def.radius = 0.05;
+    def.tag = 0;
+    CHECK(!se3d_particles_add_flow(set, &def, NULL));
 }
 
 static inline void particle_flow(se3d_particles *set, se3d_material material)
@@ -185,23 +213,29 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     law.law = kind == PARTICLES_HEAP ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     CHECK(!se3d_system_set_contact(system, &law));
     const se3d_material floor = particle_material(system, 0.0, 0.0);
+    const int rolls = kind == PARTICLES_HEAP || kind == PARTICLES_MESH || kind == PARTICLES_FUNNEL;
     const se3d_material stone =
-        particle_material(system, kind == PARTICLES_HEAP || kind == PARTICLES_MESH ? 0.1 : 0.0,
-                          kind == PARTICLES_PERIOD ? 1e3 : 0.0);
+        particle_material(system, rolls ? 0.1 : 0.0, kind == PARTICLES_PERIOD ? 1e3 : 0.0);
+    if (kind == PARTICLES_FUNNEL) {
+        particle_funnel(system, floor);
+    }
     if (kind == PARTICLES_MESH) {
         particle_mesh(system, floor);
     } else {
         particle_plane(system, floor);
     }
     se3d_particles *set = particle_set(system, threads, kind == PARTICLES_PERIOD);
-    se3d_fill_def fill = particle_fill(stone, kind == PARTICLES_MESH ? 0.11 : 0.0,
-                                       kind == PARTICLES_MESH ? 0.18 : 0.1);
+    const double low = kind == PARTICLES_MESH ? 0.11 : kind == PARTICLES_FUNNEL ? 0.2 : 0.0;
+    const double high = kind == PARTICLES_MESH ? 0.18 : kind == PARTICLES_FUNNEL ? 0.28 : 0.1;
+    se3d_fill_def fill = particle_fill(stone, low, high);
     CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
     if (kind == PARTICLES_MESH) {
         particle_flow(set, stone);
+        particle_passage(set, 0.12);
     }
     if (kind == PARTICLES_CLUMPS) {
         particle_clumps(set, stone);
+        particle_passage(set, 0.1);
     }
     if (kind == PARTICLES_BODY) {
         particle_bodies(system, floor);

@@ -840,6 +840,93 @@ static void failed_texts_leak_nothing(void)
     CHECK(state.calls > 0 && state.live_bytes == 0);
 }
 
+static void derivatives_exist_for_as_many_variables_as_are_allowed(void)
+{
+    static const char *const many[] = {"t",  "x1", "x2", "x3", "x4", "x5", "x6", "x7",
+                                       "x8", "x9", "xa", "xb", "xc", "xd", "xe", "xf"};
+    se3d_expression_def def = se3d_expression_def_default();
+    se3d_expression *expression = NULL;
+    double x[16], gradient[16], value = 0.0;
+    def.text = "t*x1 + x2*x3 + x4*x5 + x6*x7 + x8*x9 + xa*xb + hypot(xc, 0)*xd + sin(xe)*xf^2";
+    def.variables = many;
+    def.variable_count = 16;
+    for (int k = 0; k < 16; ++k) {
+        x[k] = 0.5 + 0.1 * k;
+    }
+    CHECK(!se3d_expression_create(&def, &expression, NULL));
+    CHECK(!se3d_expression_eval_gradient(expression, x, &value, gradient));
+    for (int k = 0; k < 14; ++k) {
+        CHECK_NEAR(gradient[k], x[k % 2 == 0 ? k + 1 : k - 1], 1e-15);
+    }
+    CHECK_NEAR(gradient[14], cos(x[14]) * x[15] * x[15], 1e-15);
+    CHECK_NEAR(gradient[15], 2.0 * sin(x[14]) * x[15], 1e-15);
+    se3d_expression_destroy(expression);
+}
+
+/* A text in standard form, and that of what is compiled from it. */
+static void check_written(const char *text, const char *want)
+{
+    char first[512], second[512];
+    size_t length = 0;
+    const double x[3] = {0.75, 0.5, -0.25};
+    double before[4], after[4];
+    se3d_expression *expression = compile(text);
+    CHECK(!se3d_expression_write(expression, variables, first, sizeof first, &length));
+    CHECK(strlen(first) == length);
+    se3d_expression *again = compile(first);
+    CHECK(!se3d_expression_write(again, variables, second, sizeof second, &length));
+    if (want && strcmp(first, want) != 0) {
+        fprintf(stderr, "    %s is written as %s\n", text, first);
+    }
+    CHECK(!want || strcmp(first, want) == 0);
+    CHECK(strcmp(first, second) == 0);
+    CHECK(!se3d_expression_eval_gradient(expression, x, before, before + 1));
+    CHECK(!se3d_expression_eval_gradient(again, x, after, after + 1));
+    CHECK(memcmp(before, after, sizeof before) == 0);
+    CHECK(!se3d_expression_eval_time(expression, x, before));
+    CHECK(!se3d_expression_eval_time(again, x, after));
+    CHECK(memcmp(before, after, 3 * sizeof *before) == 0);
+    se3d_expression_destroy(expression);
+    se3d_expression_destroy(again);
+}
+
+static void what_is_written_is_compiled_to_the_same(void)
+{
+    check_written("0.1", "0.1");
+    check_written("-3", "-3");
+    check_written("3e-300", "3e-300");
+    check_written("123456789012345678", "1.2345678901234568e17");
+    check_written("pi*L", "6.283185307179586");
+    check_written("t", "t");
+    check_written("L*t", "2*t");
+    check_written("t*-L", "-2*t");
+    check_written("-(t + l)", "-(t + l)");
+    check_written("-t^2", "-t^2");
+    check_written("(-t)^2", "(-t)^2");
+    check_written("t^-2", "t^(-2)");
+    check_written("2^t^l", "2^(t^l)");
+    check_written("(2^t)^l", "(2^t)^l");
+    check_written("t - (l - ld)", "t - (l - ld)");
+    check_written("t - l - ld", "t - l - ld");
+    check_written("t/(l*ld)", "t/(l*ld)");
+    check_written("t/l*ld", "t/l*ld");
+    check_written("t*(l/ld)", "t*(l/ld)");
+    check_written("1 - t", "1 - t");
+    check_written("t - 1", "t - 1");
+    check_written("3/t/2", "3/t/2");
+    check_written("2*(3*t)", "2*(3*t)");
+    check_written("3*(t*l)", "3*(t*l)");
+    check_written("t + -3*l", "t + -3*l");
+    check_written("-(-t)", "-(-t)");
+    check_written("l - -t", "l - -t");
+    check_written("min(t, l, ld, 3)", NULL);
+    check_written("max(0, step(t, 0, 0, 1, 1)) + atan2(l, t)", NULL);
+    check_written("if(t > 0.5, l^2, if(l <= 1, ld, -ld)) * 2", NULL);
+    check_written("(t < l) + (t != 3)*l", NULL);
+    check_written("sin(2*pi*t)*exp(-t/2) + abs(ld)^1.5", NULL);
+    check_written("mod(t, 0.3) + hypot(l, ld) - sign(t)*floor(l)", NULL);
+}
+
 int main(void)
 {
     RUN(operators_bind_as_in_mathematics);
@@ -867,5 +954,7 @@ int main(void)
     RUN(null_and_non_finite_arguments_are_rejected);
     RUN(every_failing_allocation_is_reported_and_nothing_leaks);
     RUN(failed_texts_leak_nothing);
+    RUN(derivatives_exist_for_as_many_variables_as_are_allowed);
+    RUN(what_is_written_is_compiled_to_the_same);
     return check_finish();
 }

@@ -54,6 +54,39 @@ static void an_empty_folder_of_that_name_stays(void)
     CHECK(rmdir(path) == 0);
 }
 
+/* What stands under the name of a file to be is replaced only if it is a file, or a link. */
+static void pipes_are_not_replaced(void)
+{
+    char link[300];
+    snprintf(link, sizeof link, "%s/link", folder);
+    CHECK(mkfifo(path, 0600) == 0 && symlink(path, link) == 0);
+    CHECK(se3di_partial_open(path) == NULL && errno == EINVAL);
+    CHECK(se3di_partial_open(link) == NULL && errno == EINVAL);
+    CHECK_CONTAINS(se3di_file_get_text(EINVAL), "is no regular file");
+    CHECK(unlink(path) == 0);
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && mkfifo(path, 0600) == 0);
+    CHECK(file && !se3di_partial_close(file, path) && errno == EINVAL);
+    CHECK(!exists(partial) && unlink(path) == 0);
+    file = se3di_partial_open(link); /* it leads to nothing */
+    CHECK(file && se3di_partial_close(file, link) && !exists(path));
+    CHECK(unlink(link) == 0);
+}
+
+static void two_paths_of_one_file_are_known(void)
+{
+    char link[300];
+    char other[300];
+    snprintf(link, sizeof link, "%s/link", folder);
+    snprintf(other, sizeof other, "%s/./a.csv", folder);
+    CHECK(!se3di_file_is_same(path, path)); /* it is not there */
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && se3di_partial_close(file, path) && symlink("a.csv", link) == 0);
+    CHECK(se3di_file_is_same(path, other) && se3di_file_is_same(path, link));
+    CHECK(!se3di_file_is_same(path, folder));
+    CHECK(unlink(path) == 0 && unlink(link) == 0);
+}
+
 /* Opening a pipe that nobody writes to must not wait. */
 static void only_regular_files_are_opened_for_reading(void)
 {
@@ -76,6 +109,8 @@ int main(void)
     RUN(a_file_has_its_name_only_when_it_is_complete);
     RUN(what_stood_under_the_temporary_name_goes_but_is_not_followed);
     RUN(an_empty_folder_of_that_name_stays);
+    RUN(pipes_are_not_replaced);
+    RUN(two_paths_of_one_file_are_known);
     RUN(only_regular_files_are_opened_for_reading);
     rmdir(folder);
     return check_finish();

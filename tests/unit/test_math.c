@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include "math/inertia.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/symmetric.h"
 #include "math/vec3.h"
@@ -566,6 +567,22 @@ static void absolute_values_of_symmetric_matrices(void)
     CHECK_NEAR(scaled[1], 1e150, 1e136);
 }
 
+/* Wherever it stands among the numbers of which the largest is wanted. */
+static void the_larger_one_keeps_what_is_not_a_number(void)
+{
+    for (int place = 0; place < 4; ++place) {
+        double largest = 0.0;
+        for (int k = 0; k < 4; ++k) {
+            largest = se3di_larger(largest, k == place ? (double)NAN : 3.0 - k);
+        }
+        CHECK(isnan(largest));
+    }
+    CHECK_NEAR(se3di_larger(1.0, 2.0), 2.0, 0.0);
+    CHECK_NEAR(se3di_larger(2.0, 1.0), 2.0, 0.0);
+    CHECK(isinf(se3di_larger(HUGE_VAL, 1.0)));
+    CHECK(isnan(se3di_larger(HUGE_VAL, (double)NAN)) && isnan(se3di_larger((double)NAN, HUGE_VAL)));
+}
+
 int main(void)
 {
     RUN(a_quarter_turn_about_z_maps_x_to_y);
@@ -589,5 +606,6 @@ int main(void)
     RUN(inertia_is_classified);
     RUN(inertia_that_is_not_finite_is_not_physical);
     RUN(absolute_values_of_symmetric_matrices);
+    RUN(the_larger_one_keeps_what_is_not_a_number);
     return check_finish();
 }

@@ -295,6 +295,8 @@ static void layouts_fill_their_strata(void)
 
 /* ---- what is refused -------------------------------------------------------------------------*/
 
+#define SEEK(what) "study: {measures: {a: 1, b: 2}, optimize: {" what "}}"
+
 static const struct {
     const char *study;
     const char *message;
@@ -364,6 +366,57 @@ static const struct {
      "did you mean `low`"},
     {"study: {parameters: {h: [1]}, measures: {a: {settling: block.position.z}}}",
      "band: is missing"},
+    {"study: {parameters: {h: [1]}, measures: {a: {frequency: 0}}}", "modes are counted from 1"},
+    {"study: {parameters: {h: [1]}, measures: {a: {frequency: 1}}}", "must be of type modes"},
+    {"study: {parameters: {h: [1]}, measures: {a: {damping: 1, time: 1}}}",
+     "belongs to `at`, not to `damping`"},
+
+    {"study: {measures: {a: 1}, optimize: 3}", "optimize: is a single value"},
+    {SEEK("minimize: a"), "parameters: is missing: which are sought"},
+    {SEEK("minimize: a, parameters: {}"), "is empty, must be a map of 1 to 200"},
+    {SEEK("minimize: a, parameters: {H: {from: 1, to: 9}}"), "did you mean `h`?"},
+    {SEEK("minimize: a, parameters: {h: {from: 1}}"), "to: is missing"},
+    {SEEK("minimize: a, parameters: {h: {from: 9, to: 1}}"), "goes from 9 to 1"},
+    {SEEK("minimize: a, parameters: {h: {from: 6, to: 9}}"), "start: is 5, must be from 6 to 9"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9, start: 10}}"), "start: is 10, must be"},
+    {SEEK("minimize: a, parameters: {m: {from: 1 kg, to: 9 m}}"), "mass"},
+    {SEEK("parameters: {h: {from: 1, to: 9}}"), "`minimize` or `maximize`"},
+    {SEEK("minimize: a, maximize: b, parameters: {h: {from: 1, to: 9}}"), "one of them"},
+    {SEEK("minimize: c, parameters: {h: {from: 1, to: 9}}"), "no measure is named `c`"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, method: simplex"), "slsqp"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, evaluations: 0"), "at least 1"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, tolerance: 0"), "tolerance: is 0"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {c: {to: 1}}"),
+     "no measure is named `c`"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {b: {}}"), "or `equal`"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {b: {to: 1, equal: 1}}"),
+     "or `equal`"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {b: {from: 2, to: 1}}"),
+     "goes from 2 to 1"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {b: {to: 1}}, "
+          "method: crs"),
+     "crs has no constraints"},
+    {SEEK("minimize: a, parameters: {h: {from: 1, to: 9}}, constraints: {b: {equal: 1}}, "
+          "method: mma"),
+     "mma has no constraints with `equal`"},
+    {"study: {sensitivities: h, measures: {a: 1}}", "must be a list of parameters"},
+    {"study: {sensitivities: [], measures: {a: 1}}", "is empty, must be a list of parameters"},
+    {"study: {sensitivities: [h, h], measures: {a: 1}}", "`h` is there twice"},
+    {"study: {sensitivities: [H], measures: {a: 1}}", "no parameter `H`, did you mean `h`?"},
+    {"study: {sensitivities: [h], samples: 3, measures: {a: 1}}", "there are none"},
+    {"study: {parameters: {h: [1]}, measures: {a: {misfit: block.position.z}}}",
+     "curve: is missing"},
+    {"study: {parameters: {h: [1]}, measures: {a: {misfit: block.position.z, curve: 3}}}",
+     "must be {linear: [[x, y], ...]}"},
+    {"study: {parameters: {h: [1]}, measures: {a: {misfit: block.position.z, "
+     "curve: {linear: [[1, 2], [1, 3]]}}}}",
+     "must increase"},
+    {"study: {parameters: {h: [1]}, measures: {a: {misfit: block.position.z, along: blok.x.y, "
+     "curve: {linear: [[1, 2], [2, 3]]}}}}",
+     "blok"},
+    {"study: {parameters: {h: [1]}, measures: {a: {rms: block.position.z, "
+     "curve: {linear: [[1, 2], [2, 3]]}}}}",
+     "belongs to `misfit`, not to `rms`"},
     {"study: {parameters: {h: [1]}, measures: {h: 1}}", "needs a name of its own"},
     {"study: {parameters: {h: [1]}, measures: {sin: 1}}", "the name is not allowed"},
     {"study: {parameters: {h: [1]}, measures: {status: 1}}", "the name is not allowed"},
@@ -372,6 +425,71 @@ static const struct {
     {"study: {parameters: {h: [1]}, measures: {a: 1, a: 2}}", "a"},
     {"study: {parameters: {h: [1]}, mesures: {a: 1}}", "did you mean `measures`"},
 };
+
+/* z = h + v t - g t^2 / 2 is off v t by h - g t^2 / 2; vz = v - g t is a line over t. */
+static void misfits_are_what_is_left_of_curves(void)
+{
+    const opened s = open_study(
+        BLOCK "study:\n  parameters: {h: [5, 6]}\n  measures:\n"
+              "    a: {misfit: block.position.z, curve: {linear: [[0, 0], [1, 3], [2, 6]]}}\n"
+              "    b: {misfit: block.velocity.z, curve: {linear: [[0, 3], [1, -7]]}}\n"
+              "    c: {misfit: block.position.z, along: block.velocity.z,\n"
+              "      curve: {linear: [[-17, 0], [3, 20]]}}\n");
+    double y[3];
+    const double h = 5.0, g = 10.0, T = 2.0;
+    const double mean = h * h - h * g * T * T / 3.0 + g * g * pow(T, 4.0) / 20.0;
+    CHECK(se3d_study_eval(s.study, &h, y, NULL) == SE3D_OK);
+    CHECK_NEAR(y[0], sqrt(mean), 1e-4);
+    CHECK_NEAR(y[1], 0.0, 1e-8); /* straight beyond its last point */
+    double sum = 0.0;            /* z - (v_z + 17): Simpson */
+    for (int k = 0; k <= 2000; ++k) {
+        const double t = T * k / 2000.0, off = h + 3.0 * t - 5.0 * t * t - (20.0 - g * t);
+        sum += (k == 0 || k == 2000 ? 1.0 : k % 2 ? 4.0 : 2.0) * off * off / 6000.0;
+    }
+    CHECK_NEAR(y[2], sqrt(sum), 1e-4);
+    close_study(s);
+}
+
+/* Derivatives of fourth order at any values of what is sought, in the units of the study. */
+static void what_is_sought_is_measured_with_its_derivatives(void)
+{
+    const opened s = open_study(
+        BLOCK "study:\n  measures: {z: {initial: block.position.z}, c: \"z^3 + w\"}\n"
+              "  seed: 7\n"
+              "  optimize: {maximize: c, method: slsqp, evaluations: 50, tolerance: 0.01,\n"
+              "    parameters: {h: {from: 1, to: 9}, m: {from: 1, to: 3000 g, start: 1500 g}},\n"
+              "    constraints: {z: {to: 7}, c: {equal: 4}}}\n");
+    const double at[2] = {3.0, 2.0};
+    double bounds[2], start, y[2], slopes[4];
+    char text[100];
+    size_t measure = 9;
+    se3d_study_goal goal;
+    CHECK(se3d_study_get_goal(s.study, &goal) == SE3D_OK);
+    CHECK(strcmp(goal.method, "slsqp") == 0 && goal.maximizes && goal.measure == 1);
+    CHECK(goal.evaluations == 50 && goal.seed == 7 && goal.tolerance > 0.009);
+    CHECK(se3d_study_count_unknowns(s.study) == 2 && se3d_study_count_limits(s.study) == 2);
+    CHECK(strcmp(se3d_study_get_unknown_name(s.study, 1), "m") == 0);
+    CHECK(se3d_study_get_unknown(s.study, 0, bounds, &start) == SE3D_OK);
+    CHECK_NEAR(start, 5.0, 0.0);
+    CHECK(se3d_study_get_unknown(s.study, 1, bounds, &start) == SE3D_OK);
+    CHECK_NEAR(bounds[1], 3.0, 1e-15);
+    CHECK_NEAR(start, 1.5, 1e-15);
+    CHECK(se3d_study_write_unknown(s.study, 1, 0.5, text, sizeof text) == SE3D_OK);
+    CHECK(strcmp(text, "0.5 kg") == 0);
+    CHECK(se3d_study_write_unknown(s.study, 0, 0.5, text, sizeof text) == SE3D_OK);
+    CHECK(strcmp(text, "0.5") == 0);
+    CHECK(se3d_study_get_limit(s.study, 0, &measure, bounds) == SE3D_OK && measure == 0);
+    CHECK(isinf(bounds[0]) && bounds[1] > 6.9);
+    CHECK(se3d_study_get_limit(s.study, 1, &measure, bounds) == SE3D_OK && measure == 1);
+    CHECK(!(bounds[0] < bounds[1]));
+    CHECK(se3d_study_eval_unknowns(s.study, at, y, slopes, NULL) == SE3D_OK);
+    CHECK_NEAR(y[1], 27.0 + 9.0, 1e-12);
+    CHECK_NEAR(slopes[0], 1.0, 1e-12);
+    CHECK_NEAR(slopes[1], 27.0 + 3.0, 1e-9); /* exact: a cubic */
+    CHECK(fabs(slopes[2]) < 1e-12 && fabs(slopes[3]) < 1e-9);
+    CHECK(se3d_study_count_sensitivities(s.study) == 2);
+    close_study(s);
+}
 
 static void mistakes_are_refused_with_what_is_allowed(void)
 {
@@ -493,6 +611,8 @@ int main(void)
     RUN(a_measure_without_a_value_is_told);
     RUN(a_sample_depends_on_the_seed_and_its_number_only);
     RUN(layouts_fill_their_strata);
+    RUN(misfits_are_what_is_left_of_curves);
+    RUN(what_is_sought_is_measured_with_its_derivatives);
     RUN(mistakes_are_refused_with_what_is_allowed);
     RUN(tables_have_a_row_for_each_sample);
     RUN(requests_are_answered);

@@ -7,6 +7,7 @@
 //     node page.js PAGE beads                     that a third of the grains is seen
 //     node page.js PAGE modes CSV                 shapes of the modes in CSV, of two bodies on springs
 //     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
+//     node page.js PAGE playground                the playground: edits, runs, plots, asks nobody
 // With SE3D_BRIEF in the environment without keys and mouse.
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), { spawn } = require("child_process");
@@ -18,7 +19,7 @@ const chromium = spawn(process.env.SE3D_CHROMIUM || "chromium", ["--headless", "
   "--remote-debugging-pipe", "about:blank"],
   { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"], env: { ...process.env, TMPDIR: profile }, detached: true });
 const end = () => { try { process.kill(-chromium.pid, "SIGKILL"); } catch (e) { /* it has ended */ } }; // with all it started
-const waiting = new Map(), problems = [];
+const waiting = new Map(), problems = [], asked = [];
 let number = 0, rest = "", checks = 0, failures = 0;
 chromium.stdio[4].on("data", (chunk) => {
   const parts = (rest + chunk).split("\0");
@@ -27,6 +28,7 @@ chromium.stdio[4].on("data", (chunk) => {
     const m = JSON.parse(part);
     if (m.id && waiting.has(m.id)) { waiting.get(m.id)(m.result || m); waiting.delete(m.id); }
     if (m.method === "Runtime.exceptionThrown") problems.push(JSON.stringify(m.params.exceptionDetails).slice(0, 600));
+    if (m.method === "Network.requestWillBeSent" && !/^(file|blob|data|about):/.test(m.params.request.url)) asked.push(m.params.request.url);
     if (m.method === "Log.entryAdded" && m.params.entry.level === "error") problems.push(m.params.entry.text);
     if (m.method === "Runtime.consoleAPICalled" && m.params.type === "error") problems.push(JSON.stringify(m.params.args));
   }
@@ -305,9 +307,44 @@ const checkLive = async (model) => {
   fs.writeFileSync(model, text);
   await until("!document.getElementById('trouble').textContent && document.title !== 'Saved <b>'");
 };
+// The text of a model is edited, what it does is seen.
+const checkPlayground = async () => {
+  const inside = "document.getElementById('page').contentWindow", text = "document.getElementById('text')";
+  const write = (words) => evaluate(`(() => { ${text}.value = ${JSON.stringify(words)}; ${text}.dispatchEvent(new Event("input")); })()`);
+  const title = `${inside}.document.title`, trouble = "document.getElementById('trouble').textContent";
+  await until(`${inside}.se3dLive && ${inside}.se3dLive.state && ${inside}.se3dLive.state.t > 0.05`);
+  const model = (stiffness, type) => `se3d: 1\ntitle: spring ${stiffness}\nparameters: {free: 0.1}\ngravity: [0, 0, 0]\nbodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0.3, 0, 0]}]\n` +
+    `joints: [{name: rail, type: ${type}, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, 0]}]\n` +
+    `forces: [{name: spring, type: rsda_or_tsda, body_i: ground, body_j: block, k: ${stiffness}, l0: free}]\n`.replace("rsda_or_", "") +
+    "analysis: {type: dynamics, duration: 10}\noutput: [{file: x.csv, channels: [block.position.x], every: 0.01}]\n";
+  await write(model(50, "prismatic"));
+  await until(`${title} === "spring 50"`);
+  await until(`${inside}.se3dLive.state.t > 0.05 && ${inside}.se3d.position("block")[0] < 0.299`);
+  check((await evaluate(`${inside}.document.getElementById("channel").options.length`)) > 0, "there is something to plot");
+  await until(`${inside}.se3d.state.time > 0.2`);
+  check((await evaluate(`(() => { const c = ${inside}.document.getElementById("plot"); return new Set(c.getContext("2d").getImageData(0, 0, c.width, c.height).data).size; })()`)) > 2, "something is plotted");
+  await evaluate(`(() => { const r = ${inside}.document.querySelector("#sliders input[type=range]"); r.value = 0.15; r.dispatchEvent(new Event("input")); })()`);
+  await until(`Math.abs(${inside}.se3dLive.state.numbers[0] - 0.15) < 1e-3`);
+  await write(model(70, "prismatik"));
+  await until(`/^6:\\d+: .*prismatik/.test(${trouble})`);
+  check((await evaluate(title)) === "spring 50", "a wrong text leaves the old picture");
+  await evaluate("document.querySelector('#trouble a').click()");
+  check((await evaluate(`${text}.value.slice(0, ${text}.selectionStart).split("\\n").length`)) === 6, "the message leads to the line");
+  await write(model(80, "prismatic"));
+  await until(`${title} === "spring 80" && ${trouble} === ""`);
+  await click("link");
+  await until("location.hash.startsWith('#m=')");
+  await call("Page.reload");
+  await wait(300);
+  await until(`${inside} && ${inside}.document.title === "spring 80" && !!${inside}.se3dLive.state`);
+  await choose("models", "fourbar.yaml");
+  await until(`${title} !== "spring 80" && !!${inside}.se3dLive.state && ${inside}.se3dLive.state.running`);
+  check(asked.length === 0, `nothing is asked of a network: ${asked}`);
+};
 const start = async () => {
   let ready = false;
-  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate("!!window.se3d"); }
+  const shown = csv === "playground" ? "!!document.getElementById('page').contentWindow.se3d" : "!!window.se3d";
+  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate(shown); }
   check(ready, "the page starts");
 };
 
@@ -315,7 +352,7 @@ const start = async () => {
   const { targetInfos } = await call("Target.getTargets");
   const attached = await call("Target.attachToTarget", { targetId: targetInfos.find((t) => t.type === "page").targetId, flatten: true });
   session = attached.sessionId;
-  for (const domain of ["Page", "Runtime", "Log"]) await call(domain + ".enable");
+  for (const domain of ["Page", "Runtime", "Log", "Network"]) await call(domain + ".enable");
   await call("Page.navigate", { url: page.startsWith("http:") ? page : "file://" + path.resolve(page) });
   await start();
   if (csv === "joints") {
@@ -324,6 +361,8 @@ const start = async () => {
     await checkModes(read(body));
   } else if (csv === "live") {
     await checkLive(body);
+  } else if (csv === "playground") {
+    await checkPlayground();
   } else if (csv === "beads") {
     await checkBeads();
   } else if (body === "grains") {
@@ -339,7 +378,7 @@ const start = async () => {
       await checkPicks();
     }
   }
-  if (csv !== "live") await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
+  if (csv !== "live" && csv !== "playground") await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
   if (picture) {
     const shot = await call("Page.captureScreenshot", { format: "png" });
     fs.writeFileSync(picture, Buffer.from(shot.data, "base64"));

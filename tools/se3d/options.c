@@ -91,8 +91,20 @@ static int *flag_target(options *o, const char *name)
     if (strcmp(name, "--merge") == 0) {
         return &o->merge;
     }
+    if (strcmp(name, "--list") == 0) {
+        return &o->list;
+    }
+    if (strcmp(name, "--unchecked") == 0) {
+        return &o->unchecked;
+    }
     if (strcmp(name, "--server") == 0) {
         return &o->server;
+    }
+    if (strcmp(name, "--sensitivities") == 0) {
+        return &o->sensitivities;
+    }
+    if (strcmp(name, "--optimize") == 0) {
+        return &o->optimize;
     }
     return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
 }

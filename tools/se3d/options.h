@@ -46,6 +46,10 @@ typedef struct options {
     int strict;
     int merge;
     int server;
+    int sensitivities;
+    int optimize;
+    int list;
+    int unchecked;
     int help; /* it was printed */
 } options;
 

@@ -13,7 +13,9 @@
 #include "interrupt.h"
 #include "options.h"
 #include "se3d/study.h"
+#include "study_derive.h"
 #include "study_jobs.h"
+#include "study_optimize.h"
 #include "text.h"
 
 enum { PATH_SIZE = 4200, JOBS_MAX = 1024 };
@@ -380,7 +382,16 @@ static int run_job(job *j, se3d_model *model)
         report_failure(j->o, "", j->error.message);
         return EXIT_USAGE;
     }
-    code = j->o->server ? serve(j) : j->o->merge ? merge(j) : run_study(j);
+    const options *o = j->o;
+    const int asked = o->server || o->merge || o->sensitivities || o->optimize;
+    const int has_samples = asked || se3d_study_count_samples(j->study) > 0;
+    if (o->optimize || (!has_samples && se3d_study_count_unknowns(j->study) > 0)) {
+        code = study_optimize(o, j->study, j->folder);
+    } else if (o->sensitivities || !has_samples) {
+        code = study_derive(o, j->study, j->folder);
+    } else {
+        code = o->server ? serve(j) : o->merge ? merge(j) : run_study(j);
+    }
     se3d_study_destroy(j->study);
     return code;
 }
@@ -396,9 +407,10 @@ static int command_study(int count, char *const *words)
     }
     memset(&j, 0, sizeof j);
     j.o = &o;
-    if (o.merge + o.server > 1 || ((o.merge || o.server) && (o.shard || o.jobs || o.resume))) {
-        fputs("se3d study: --merge and --server go with none of each other, --shard, --jobs, "
-              "--resume\n",
+    const int others = o.merge + o.server + o.sensitivities + o.optimize;
+    if (others > 1 || (others > 0 && (o.shard || o.jobs || o.resume))) {
+        fputs("se3d study: --merge, --server, --sensitivities and --optimize go with none of each "
+              "other, --shard, --jobs, --resume\n",
               stderr);
         return EXIT_USAGE;
     }
@@ -442,6 +454,12 @@ const command_entry study_entry = {
             {"--merge", NULL, NULL, "make study.csv of the parts; tell what is missing"},
             {"--partial", NULL, NULL, "with --merge: also if samples are missing"},
             {"--server", NULL, NULL, "answer requests, one a line"},
+            {"--sensitivities", NULL, NULL,
+             "in place of samples: derivatives of the measures with respect to the parameters, "
+             "where these are as in the model, with their estimated errors: sensitivities.csv"},
+            {"--optimize", NULL, NULL,
+             "in place of samples: seek the parameters under `optimize`; each evaluation is a line "
+             "of optimize.csv"},
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}"},
             COMMAND_OPTIONS_OF_SOLVERS,
@@ -453,6 +471,8 @@ const command_entry study_entry = {
             {"study damper.yaml --jobs all", "all samples, table in results/damper/study.csv"},
             {"study damper.yaml --shard 2/7 --resume", "the second of seven parts, or its rest"},
             {"study damper.yaml --merge", "one table of all parts"},
+            {"study gears.yaml --optimize", "the best parameters, and how to run them"},
+            {"study damper.yaml --sensitivities", "what each parameter does to each measure"},
             {0}},
     .exits = "0 done; 1 samples failed (their rows say why), not all were run, or parts are "
              "missing; 2 bad usage or model.",

@@ -6,6 +6,8 @@
   document.body.classList.add("living");
   $("speed").add(new Option("as fast as it goes", "0"));
 
+  // Who answers: the program, or what holds this page (the playground).
+  const ask = window.se3dAsk || ((path, how) => fetch(path, how));
   const pause = (ms) => new Promise((done) => setTimeout(done, ms));
   // Words to the program, one after the other; of the same kind the last one counts.
   const waiting = new Map();
@@ -19,7 +21,7 @@
       const [first, body] = waiting.entries().next().value;
       waiting.delete(first);
       try {
-        const answer = await fetch("do", { method: "POST", headers: { "Content-Type": "text/plain" }, body });
+        const answer = await ask("do", { method: "POST", headers: { "Content-Type": "text/plain" }, body });
         if (answer.status === 503) { // too many words wait: once more, unless there are later ones of the kind
           if (!waiting.has(first)) waiting.set(first, body);
           await pause(100);
@@ -35,8 +37,8 @@
   const show = (text) => { $("trouble").textContent = text; $("trouble").style.display = text ? "block" : "none"; };
   const digits = (v) => String(Number(v.toPrecision(6)));
   const units = { "kg.m.s-2": "N", "kg.m2.s-2": "N m", "kg.s-2": "N/m", "kg.s-1": "N s/m", "m.s-1": "m/s", "rad.s-1": "rad/s", "s-1": "1/s" };
-  const makeSliders = (list) => {
-    sliders = list.map(({ name, unit, start }, k) => {
+  const makeSliders = (entries) => {
+    sliders = entries.map(({ name, unit, start }, k) => {
       const label = document.createElement("label"), range = document.createElement("input"), number = document.createElement("input");
       const width = Math.abs(start) || 1;
       range.type = "range"; number.type = "number"; number.step = "any";
@@ -61,7 +63,7 @@
   });
 
   const open = async () => {
-    const scene = await (await fetch("scene")).json();
+    const scene = await (await ask("scene")).json();
     if (viewer) { viewer.share(); viewer.close(); }
     viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
@@ -72,7 +74,7 @@
     let sequence = 0;
     for (;;) {
       try {
-        const answer = await fetch(`state?after=${sequence}`);
+        const answer = await ask(`state?after=${sequence}`);
         if (!answer.ok) throw new Error(answer.statusText);
         const state = await answer.json();
         sequence = state.sequence;

@@ -41,6 +41,7 @@ static const se3di_body_contact *find_memory(const se3di_body_contacts *contacts
 
 typedef struct visit {
     const se3di_model *model;
+    double elapsed; /* since the state of what is remembered */
     se3di_contact_visitor visitor;
     void *ctx;
 } visit;
@@ -63,6 +64,7 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
         se3di_encounter *e = &points[k];
         *e = (se3di_encounter){
             .model = model, .at = &manifold.points[k], .shape_i = i, .shape_j = j};
+        e->elapsed = v->elapsed;
         e->memory = find_memory(&model->contacts, memory, i, j, manifold.points[k].feature);
         se3di_encounter_place(e);
     }
@@ -74,9 +76,10 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
     return SE3D_OK;
 }
 
-se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor visitor, void *ctx)
+se3d_status se3di_contacts_visit(const se3di_model *model, double t, se3di_contact_visitor visitor,
+                                 void *ctx)
 {
-    visit v = {model, visitor, ctx};
+    visit v = {model, t - model->contacts.time, visitor, ctx};
     return se3di_broad_visit(model, visit_pair, &v);
 }
 
@@ -113,7 +116,7 @@ static void add_stepped_wrench(const se3di_model *model, const se3di_body_contac
     }
 }
 
-void se3di_contacts_add_wrenches(const se3di_model *model, double *wrench)
+void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench)
 {
     if (are_stepped(model)) {
         for (size_t k = 0; k < model->contacts.count; ++k) {
@@ -121,7 +124,7 @@ void se3di_contacts_add_wrenches(const se3di_model *model, double *wrench)
         }
         return;
     }
-    (void)se3di_contacts_visit(model, add_wrench, wrench);
+    (void)se3di_contacts_visit(model, t, add_wrench, wrench);
 }
 
 static se3d_status add_energy(void *ctx, const se3di_encounter *e)
@@ -130,7 +133,7 @@ static se3d_status add_energy(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
-double se3di_contacts_potential(const se3di_model *model)
+double se3di_contacts_potential(const se3di_model *model, double t)
 {
     double sum = 0.0;
     if (are_stepped(model)) {
@@ -139,24 +142,26 @@ double se3di_contacts_potential(const se3di_model *model)
         }
         return sum;
     }
-    (void)se3di_contacts_visit(model, add_energy, &sum);
+    (void)se3di_contacts_visit(model, t, add_energy, &sum);
     return sum;
 }
 
 static se3d_status add_power(void *ctx, const se3di_encounter *e)
 {
-    *(double *)ctx += se3di_encounter_power(e);
+    double *sum = ctx;
+    sum[0] += se3di_encounter_power(e);
+    sum[1] += se3di_encounter_fed(e);
     return SE3D_OK;
 }
 
-double se3di_contacts_power(const se3di_model *model)
+void se3di_contacts_power(const se3di_model *model, double t, double *power, double *fed)
 {
-    double sum = 0.0;
-    if (are_stepped(model)) { /* the step has counted what its impulses did */
-        return sum;
+    double sum[2] = {0.0, 0.0};
+    if (!are_stepped(model)) { /* else the step has counted what its impulses did */
+        (void)se3di_contacts_visit(model, t, add_power, sum);
     }
-    (void)se3di_contacts_visit(model, add_power, &sum);
-    return sum;
+    *power = sum[0];
+    *fed = sum[1];
 }
 
 void se3di_contacts_begin(se3di_model *model, double h, double weight, int jumps)
@@ -248,7 +253,8 @@ static se3d_status note_all(se3di_model *model, double t, double overlap_limit, 
     preparation p = {model, t, overlap_limit, error};
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
-    return model->shape_slots.count < 2 ? SE3D_OK : se3di_contacts_visit(model, note, &p);
+    model->contacts.next_time = t;
+    return model->shape_slots.count < 2 ? SE3D_OK : se3di_contacts_visit(model, t, note, &p);
 }
 
 static se3d_status prepare(se3di_model *model, double t, double overlap_limit, se3di_error *error)
@@ -300,7 +306,10 @@ static void swap_lists(se3di_model *model)
     se3di_body_contacts *c = &model->contacts;
     se3di_body_contact *list = c->list;
     const size_t count = c->count, capacity = c->capacity;
+    const double time = c->time;
     c->list = c->next;
+    c->time = c->next_time;
+    c->next_time = time;
     c->count = c->next_count;
     c->capacity = c->next_capacity;
     c->next = list;
@@ -333,7 +342,7 @@ static se3d_status renew_force(void *ctx, const se3di_encounter *e)
 void se3di_contacts_renew_forces(se3di_model *model)
 {
     if (model->contacts.count > 0) {
-        (void)se3di_contacts_visit(model, renew_force, &model->contacts);
+        (void)se3di_contacts_visit(model, model->contacts.time, renew_force, &model->contacts);
         sum_shapes(model);
     }
 }

@@ -10,9 +10,10 @@
 
 #include "contact/bodies/encounter.h"
 
-/* Called for every point of contact, in an order that depends on the model only. */
+/* Called for every point of contact of the model's state, which is that at t, in an order that
+ * depends on the model only. */
 typedef se3d_status (*se3di_contact_visitor)(void *ctx, const se3di_encounter *encounter);
-se3d_status se3di_contacts_visit(const se3di_model *model, se3di_contact_visitor visitor,
+se3d_status se3di_contacts_visit(const se3di_model *model, double t, se3di_contact_visitor visitor,
                                  void *ctx);
 
 /* Whether two shapes may touch at all: materials, groups and masks, not of one body, not joined
@@ -24,11 +25,12 @@ int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b);
 const char *se3di_shape_describe(const se3di_model *model, uint32_t shape);
 
 /* Add the wrenches of all contacts, [bodies * 6] as those of force elements. */
-void se3di_contacts_add_wrenches(const se3di_model *model, double *wrench);
+void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench);
 /* Energy of their springs [J]. */
-double se3di_contacts_potential(const se3di_model *model);
-/* Power that goes into them [W]: into springs, and lost. */
-double se3di_contacts_power(const se3di_model *model);
+double se3di_contacts_potential(const se3di_model *model, double t);
+/* Power that goes into them [W]: into springs, and lost; of that what the drives of surfaces that
+ * move on their bodies give. */
+void se3di_contacts_power(const se3di_model *model, double t, double *power, double *fed);
 
 /* Memory that the state at t will need, if it does not have many more contacts than the last one:
  * for methods that cannot go back once they have moved something. */

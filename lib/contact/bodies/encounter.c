@@ -113,6 +113,8 @@ static void eval_velocity(se3di_encounter *e)
         se3di_add(frame->v, at[k], at[k]);
     }
     se3di_sub(at[1], at[0], e->v);
+    se3di_encounter_drift(e);
+    se3di_add(e->v, e->drift, e->v);
     e->vn = se3di_dot(e->v, n);
     se3di_copy(e->v, e->vt);
     se3di_add_scaled(-e->vn, n, e->vt);
@@ -131,13 +133,19 @@ static void project(const double n[3], double x[3])
     se3di_add_scaled(-se3di_dot(n, x), n, x);
 }
 
-static void eval_anchors(const se3di_encounter *e, int k, double out[3])
+void se3di_encounter_anchor(const se3di_encounter *e, int k, double out[3])
 {
+    const se3di_shape *s = &e->model->shapes[k ? e->shape_j : e->shape_i];
     const double *anchor = k ? e->memory->anchor_j : e->memory->anchor_i;
+    double carried[3];
+    if (se3di_surface_moves(s)) {
+        se3di_surface_carry(s, e->elapsed, anchor, carried);
+        anchor = carried;
+    }
     se3di_mul(e->model->frames[e->body[k]].A, anchor, out);
 }
 
-/* The rotation of j relative to i since the last accepted state, ground frame. */
+/* The rotation of surface j relative to i since the last accepted state, ground frame. */
 static void eval_turn(const se3di_encounter *e, double out[3])
 {
     const double *pi = e->model->frames[e->body[0]].p;
@@ -151,6 +159,8 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     double angle = 2.0 * se3di_atan2(turn[0] < 0.0 ? -size : size, fabs(turn[0]));
     se3di_scale(size > 0.0 ? angle / size : 2.0, turn + 1, local);
     se3di_mul(e->model->frames[e->body[0]].A, local, out);
+    se3di_add_scaled(e->elapsed, e->surface_w[1], out);
+    se3di_add_scaled(-e->elapsed, e->surface_w[0], out);
 }
 
 /* The marks stay behind where contact moves on. If one body spins on the other about the normal,
@@ -205,7 +215,7 @@ static void eval_memory(se3di_encounter *e)
     }
     double x[2][3];
     for (int k = 0; k < 2; ++k) {
-        eval_anchors(e, k, x[k]);
+        se3di_encounter_anchor(e, k, x[k]);
         se3di_add(e->model->frames[e->body[k]].r, x[k], x[k]);
     }
     se3di_sub(x[1], x[0], e->xi);
@@ -239,7 +249,7 @@ static void eval_rolling(se3di_encounter *e)
     }
     double k = e->pair.kt * e->s;
     double c = e->pair.dr * e->root_mass * e->root;
-    se3di_sub(e->w[1], e->w[0], spin);
+    se3di_encounter_spin(e, spin);
     double turn = se3di_dot(spin, n);
     project(n, spin);
     se3di_add_scaled(-k, e->rho, e->bend);
@@ -370,7 +380,7 @@ double se3di_encounter_energy(const se3di_encounter *e)
 double se3di_encounter_power(const se3di_encounter *e)
 {
     double spin[3];
-    se3di_sub(e->w[1], e->w[0], spin);
+    se3di_encounter_spin(e, spin);
     return -se3di_dot(e->force, e->v) - se3di_dot(e->moment, spin);
 }
 

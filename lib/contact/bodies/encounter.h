@@ -17,7 +17,10 @@ typedef struct se3di_encounter {
     double radius;              /* R* */
     double arm[2][3];           /* from the bodies' centres to the point */
     double w[2][3];             /* of the bodies, ground frame */
-    double v[3], vn, vt[3];     /* of j relative to i at the point */
+    double v[3], vn, vt[3];     /* of surface j relative to i at the point */
+    double drift[3];            /* of that what surfaces move on their bodies, */
+    double surface_w[2][3];     /* and how they turn there, ground frame */
+    double elapsed;             /* since the state of what is remembered [s] */
     double lever[2][3];         /* arm x normal */
     double turned[2][3];        /* J^-1 lever, ground frame */
     double alone;               /* 1/m* of this point alone */
@@ -71,9 +74,23 @@ typedef struct se3di_encounter_rates {
 } se3di_encounter_rates;
 void se3di_encounter_call_rate(const se3di_encounter *e, const se3di_encounter_rates *d,
                                double force[3], double moment[3]);
-/* Energy in its springs; power that goes into it. */
+/* Energy in its springs; power that goes into it, to springs and lost; of that the part that what
+ * moves the surfaces gives. */
 double se3di_encounter_energy(const se3di_encounter *e);
 double se3di_encounter_power(const se3di_encounter *e);
+double se3di_encounter_fed(const se3di_encounter *e);
+/* The place of a remembered mark from the centre of its body, ground frame. */
+void se3di_encounter_anchor(const se3di_encounter *e, int k, double out[3]);
+/* How surface j turns relative to i. */
+void se3di_encounter_spin(const se3di_encounter *e, double spin[3]);
+/* encounter_surface.c: the place to which one of a surface is carried in a time, body frame. */
+void se3di_surface_carry(const se3di_shape *shape, double time, const double from[3], double to[3]);
+/* Set e->drift and surface_w; d e->drift, tangential, and of the relative turning, along a change
+ * of the point by `dp` and the normal by `dn`. */
+void se3di_encounter_drift(se3di_encounter *e);
+void se3di_encounter_drift_rate(const se3di_encounter *e, const se3di_encounter_change *change,
+                                const double dp[3], const double dn[3], double drift[3],
+                                double spin[3]);
 /* J^-1 a of a body, ground frame; zero if it has no inertia. */
 void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
                              double out[3]);

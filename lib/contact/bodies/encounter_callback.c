@@ -32,7 +32,7 @@ static void input_of(const se3di_encounter *e, se3d_contact_input *in)
     se3di_copy(e->at->normal, in->normal);
     se3di_copy(e->vt, in->slip);
     se3di_copy(e->xi, in->spring);
-    se3di_sub(e->w[1], e->w[0], in->spin);
+    se3di_encounter_spin(e, in->spin);
 }
 
 /* Force, moment and spring on j; returns 0 if the law fails. */

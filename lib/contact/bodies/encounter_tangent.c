@@ -112,6 +112,7 @@ static void add_mul(const double A[9], const double x[3], double out[3])
 typedef struct rates {
     double n[3], p[3], delta;
     double arm[2][3], w[2][3], v[3], vn, vt[3];
+    double surface_spin[3];
     double inverse_mass, root_mass, s, root, onset, xi[3], rho[3], twist, normal;
     double force[3], moment[3];
 } rates;
@@ -154,6 +155,8 @@ static void move_velocity(const se3di_encounter *e, const se3di_encounter_change
         se3di_add(at[k], c->v[k], at[k]);
     }
     se3di_sub(at[1], at[0], d->v);
+    se3di_encounter_drift_rate(e, c, d->p, d->n, x, d->surface_spin);
+    se3di_add(d->v, x, d->v);
     d->vn = se3di_dot(d->n, e->v) + se3di_dot(n, d->v);
     se3di_copy(d->v, d->vt);
     se3di_add_scaled(-d->vn, n, d->vt);
@@ -239,7 +242,7 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
         const se3di_frame *frame = &e->model->frames[e->body[k]];
         double x[3], dx[3];
         double sign = k ? 1.0 : -1.0;
-        se3di_mul(frame->A, k ? e->memory->anchor_j : e->memory->anchor_i, x);
+        se3di_encounter_anchor(e, k, x);
         se3di_cross(c->turn[k], x, dx);
         se3di_add(dx, c->r[k], dx);
         se3di_add(x, frame->r, x);
@@ -250,6 +253,7 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
     }
     project_rate(n, d->n, raw, moved, d->xi);
     se3di_sub(c->turn[1], c->turn[0], turn);
+    se3di_add_scaled(e->elapsed, d->surface_spin, turn);
     add_wander_rate(e, turn, marks, dmarks, d);
     d->twist = e->radius * (se3di_dot(turn, n) + se3di_dot(e->turn, d->n));
     se3di_scale(e->radius, turn, turn);
@@ -280,8 +284,9 @@ static void move_rolling(const se3di_encounter *e, rates *d)
     double c = e->pair.dr * e->root_mass * e->root * e->radius;
     double dk = e->pair.kt * d->s;
     double dc = e->pair.dr * e->radius * (d->root_mass * e->root + e->root_mass * d->root);
-    se3di_sub(e->w[1], e->w[0], raw);
+    se3di_encounter_spin(e, raw);
     se3di_sub(d->w[1], d->w[0], dspin);
+    se3di_add(dspin, d->surface_spin, dspin);
     double turn = se3di_dot(raw, n);
     double dturn = se3di_dot(dspin, n) + se3di_dot(raw, d->n);
     project_rate(n, d->n, raw, dspin, dspin);
@@ -339,6 +344,7 @@ static void call_rate(const se3di_encounter *e, rates *d)
     se3di_copy(d->vt, seen.vt);
     se3di_copy(d->xi, seen.xi);
     se3di_sub(d->w[1], d->w[0], seen.spin);
+    se3di_add(seen.spin, d->surface_spin, seen.spin);
     se3di_encounter_call_rate(e, &seen, d->force, d->moment);
 }
 

@@ -186,7 +186,7 @@ double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, cons
 {
     ordered two;
     put_in_order(&two, i, at_i, j, at_j);
-    const measurer measure = pair_of(&two)->gap;
+    const measurer measure = se3di_narrow_is_known(i, j) ? pair_of(&two)->gap : NULL;
     double gap = 0.0;
     memset(normal, 0, 3 * sizeof *normal);
     if (measure) {

@@ -8,6 +8,8 @@
  * as there are faces, on a convex edge or vertex one.                      docs/theory/shapes.md */
 #include "contact/shape/mesh.h"
 
+#include "contact/shape/grid.h"
+#include "contact/shape/mesh_tree.h"
 #include "contact/shape/pieces.h"
 #include "contact/shape/triangles.h"
 #include "math/vec3.h"
@@ -15,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAF_SIZE       4
+#define LEAF_SIZE       SE3DI_MESH_LEAF
 #define STACK_SIZE      64    /* median splits: the depth is at most 32 */
 #define CANDIDATES      128   /* triangles within reach of one sphere that are told apart */
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
@@ -23,11 +25,7 @@
 #define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
 #define NEARLY_COPLANAR 0.999 /* cosine of the angle of normals that are one contact */
 
-typedef struct mesh_node {
-    double low[3], high[3];
-    uint32_t begin, count; /* triangles of a leaf; count 0: its children are the next node and */
-    uint32_t right, reserved;
-} mesh_node;
+typedef se3di_mesh_node mesh_node;
 
 /* A triangle a, b, c as the foot of a perpendicular needs it, behind the nodes in shape->tree. */
 typedef struct facet {
@@ -249,11 +247,33 @@ static double triangle_distance(const se3di_shape *s, uint32_t triangle, const d
     return se3di_triangle_nearest(corner, p, point, NULL);
 }
 
+/* The same of a heightfield, whose triangles are too many to keep more of them. */
+static int cell_reaches(const se3di_shape *s, uint32_t triangle, const double p[3], double reach,
+                        double point[3], double *square)
+{
+    const double *corner[3];
+    double d[3], ab[3], ac[3], n[3];
+    se3di_triangle_corners(s, triangle, corner);
+    se3di_sub(corner[1], corner[0], ab);
+    se3di_sub(corner[2], corner[0], ac);
+    se3di_sub(p, corner[0], d);
+    se3di_cross(ab, ac, n);
+    const double height = se3di_dot(d, n);
+    if (height * height > (1.0 + 1e-9) * reach * se3di_dot(n, n)) {
+        return 0;
+    }
+    *square = se3di_triangle_nearest((const double *const *)corner, p, point, NULL);
+    return *square < reach;
+}
+
 /* Whether a triangle is within reach, with its point and squared distance; of most its plane tells
  * it for a few operations, or the foot of the perpendicular is in it. */
 static int reaches(const se3di_shape *s, uint32_t triangle, const double p[3], double reach,
                    double point[3], double *square)
 {
+    if (s->rows > 0) {
+        return cell_reaches(s, triangle, p, reach, point, square);
+    }
     const facet *f = facets_of(s) + triangle;
     double d[3];
     se3di_sub(p, f->a, d);
@@ -362,6 +382,28 @@ static size_t insert(candidate *list, size_t count, const candidate *new)
     return count < CANDIDATES ? count + 1 : count;
 }
 
+/* In the order of the grid. */
+static void visit_cells(const se3di_shape *s, const double local[3], double radius,
+                        void (*visitor)(void *ctx, uint32_t triangle), void *ctx)
+{
+    se3di_grid_cells near;
+    se3di_grid_find_cells(s, local, radius, &near);
+    for (uint32_t i = near.row[0]; i < near.row[1]; ++i) {
+        for (uint32_t j = near.column[0]; j < near.column[1]; ++j) {
+            const uint32_t first = 2 * (i * (s->columns - 1) + j);
+            if (se3di_grid_misses(s, i, j, local[2], radius)) {
+                continue;
+            }
+            for (uint32_t k = first; k < first + 2; ++k) {
+                double point[3], square;
+                if (cell_reaches(s, k, local, radius * radius, point, &square)) {
+                    visitor(ctx, k);
+                }
+            }
+        }
+    }
+}
+
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx)
 {
@@ -369,6 +411,10 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
     uint32_t stack[STACK_SIZE] = {0};
     int depth = 1;
     double reach = radius * radius;
+    if (shape->rows > 0) {
+        visit_cells(shape, local, radius, visitor, ctx);
+        return;
+    }
     while (depth > 0) {
         uint32_t at = stack[--depth];
         const mesh_node *node = &nodes[at];
@@ -700,8 +746,8 @@ static se3d_status define_mesh(const se3d_shape_def *def, const se3d_allocator *
     return status < 0 ? se3di_error_set(error, status, "no memory for a mesh") : SE3D_OK;
 }
 
-static void nearest_mesh(const se3di_shape *s, const double local[3], double point[3],
-                         double normal[3], double *distance)
+void se3di_mesh_nearest_point(const se3di_shape *s, const double local[3], double point[3],
+                              double normal[3], double *distance)
 {
     size_t triangle = se3di_mesh_nearest(s, local, point, distance);
     if (*distance > 0.0) {
@@ -719,6 +765,6 @@ const se3di_shape_class se3di_shape_class_mesh = {
     .define = define_mesh,
     .bound = se3di_vertices_bound,
     .size = se3di_vertices_size,
-    .nearest = nearest_mesh,
+    .nearest = se3di_mesh_nearest_point,
     .support = se3di_vertices_support,
 };

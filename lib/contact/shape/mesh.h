@@ -23,6 +23,10 @@ se3d_status se3di_mesh_build(const se3d_allocator *allocator, const double *vert
 size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],
                           double *distance);
 
+/* The same as se3di_shape_nearest. */
+void se3di_mesh_nearest_point(const se3di_shape *shape, const double local[3], double point[3],
+                              double normal[3], double *distance);
+
 /* All separate contacts of a sphere, the nearest first, at most `capacity`: one where neighbours
  * are in a plane or nearly so, also on their common edge. Returns their number. */
 size_t se3di_mesh_contacts(const se3di_shape *shape, const double local[3], double radius,

@@ -31,6 +31,7 @@ static se3d_status define_plane(const se3d_shape_def *def, const se3d_allocator 
         double normal[3];
         SE3DI_TRY(se3di_direction_read("normal", def->normal, normal, error));
         frame_about(normal, shape->A);
+        memset(shape->p, 0, sizeof shape->p); /* the normal says it */
     }
     return SE3D_OK;
 }

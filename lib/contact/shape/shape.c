@@ -67,6 +67,31 @@ void se3di_shape_place(const se3di_shape *shape, const se3di_frame *frame, se3di
     se3di_copy(frame->v, pose->v);
     se3di_mul(frame->A, frame->w, pose->w);
     se3di_copy(frame->r, pose->c);
+    memset(pose->u, 0, sizeof pose->u);
+    memset(pose->spin, 0, sizeof pose->spin);
+    pose->moves = se3di_surface_moves(shape);
+    if (pose->moves) {
+        const double centre[3] = {0.0, 0.0, 0.0};
+        se3di_surface_velocity(shape, frame->A, centre, pose->u, pose->spin);
+    }
+}
+
+int se3di_surface_moves(const se3di_shape *s)
+{
+    return se3di_dot(s->surface_velocity, s->surface_velocity) > 0.0 ||
+           se3di_dot(s->surface_spin, s->surface_spin) > 0.0;
+}
+
+void se3di_surface_velocity(const se3di_shape *s, const double A[9], const double r[3],
+                            double velocity[3], double spin[3])
+{
+    double origin[3], arm[3], turned[3];
+    se3di_mul(A, s->surface_spin, spin);
+    se3di_mul(A, s->surface_velocity, velocity);
+    se3di_mul(A, s->x, origin);
+    se3di_sub(r, origin, arm);
+    se3di_cross(spin, arm, turned);
+    se3di_add(velocity, turned, velocity);
 }
 
 void se3di_solid_to_ground(const se3di_solid *solid, const double local[3], double out[3])

@@ -11,8 +11,12 @@
 
 /* Pose and velocity of a shape, ground frame. */
 typedef struct se3di_shape_pose {
-    double x[3], R[9];       /* origin; shape -> ground */
-    double v[3], w[3], c[3]; /* of its body: velocity, angular velocity; centre of mass */
+    double x[3], R[9]; /* origin; shape -> ground */
+    double c[3];       /* centre of mass of its body */
+    double v[3], w[3]; /* of its body: velocity at c, angular velocity */
+    double u[3];       /* velocity of its surface on the body at c, */
+    double spin[3];    /* and angular velocity; 0 if that is at rest */
+    int moves;         /* whether it is not */
 } se3di_shape_pose;
 
 /* A shape where it is. */
@@ -93,6 +97,11 @@ const se3di_shape_class *se3di_shape_class_of(const se3di_shape *shape);
 se3d_status se3di_shape_define(const se3d_shape_def *def, const se3d_allocator *allocator,
                                se3di_shape *shape, se3di_error *error);
 
+/* Whether its surface moves on its body. */
+int se3di_surface_moves(const se3di_shape *shape);
+/* Its velocity on its body at a point `r` from the body's centre, ground frame, and its spin. */
+void se3di_surface_velocity(const se3di_shape *shape, const double A[9], const double r[3],
+                            double velocity[3], double spin[3]);
 void se3di_shape_place(const se3di_shape *shape, const se3di_frame *frame, se3di_shape_pose *pose);
 void se3di_solid_to_ground(const se3di_solid *solid, const double local[3], double out[3]);
 /* Its axis a in the ground frame. */

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Safe reading and writing, on POSIX systems and on Windows. */
 #if !defined(_WIN32)
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #endif
 
 #include "io/base/file.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/hash.h"
@@ -16,10 +17,24 @@ enum { PATH_SIZE = 4300 };
 #if defined(_WIN32)
 #include <direct.h>
 #include <io.h>
-static bool is_folder(const char *path)
+static int forbid(const char *path)
 {
     (void)path;
-    return false; /* opening it fails there */
+    return 0; /* opening it fails there */
+}
+
+bool se3di_file_is_same(const char *a, const char *b)
+{
+    char whole_a[PATH_SIZE];
+    char whole_b[PATH_SIZE];
+    return _fullpath(whole_a, a, sizeof whole_a) && _fullpath(whole_b, b, sizeof whole_b) &&
+           _stricmp(whole_a, whole_b) == 0;
+}
+
+/* In memory of malloc. */
+static char *find_whole(const char *path)
+{
+    return _fullpath(NULL, path, 0);
 }
 
 static FILE *open_new(const char *path)
@@ -68,6 +83,12 @@ static int make_folder(const char *path)
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* In memory of malloc. */
+static char *find_whole(const char *path)
+{
+    return realpath(path, NULL);
+}
+
 static FILE *open_new(const char *path)
 {
     const int number = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
@@ -104,10 +125,22 @@ static void take_away(const char *path)
     unlink(path);
 }
 
-static bool is_folder(const char *path)
+/* Why a file must not take this name; 0: it may. A link is replaced, not what it leads to. */
+static int forbid(const char *path)
 {
     struct stat about;
-    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+    if (stat(path, &about) != 0) {
+        return 0;
+    }
+    return S_ISDIR(about.st_mode) ? EISDIR : S_ISREG(about.st_mode) ? 0 : EINVAL;
+}
+
+bool se3di_file_is_same(const char *a, const char *b)
+{
+    struct stat of_a;
+    struct stat of_b;
+    return stat(a, &of_a) == 0 && stat(b, &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+           of_a.st_ino == of_b.st_ino;
 }
 
 FILE *se3di_file_continue(const char *path)
@@ -151,6 +184,11 @@ static int make_folder(const char *path)
     return mkdir(path, 0777);
 }
 #endif
+
+const char *se3di_file_get_text(int why)
+{
+    return why == EINVAL ? "is no regular file" : strerror(why);
+}
 
 static bool is_separator(char c)
 {
@@ -207,6 +245,23 @@ bool se3di_file_join(const char *folder, const char *file, char *path, size_t si
     return true;
 }
 
+bool se3di_file_find_folder(const char *folder, char *path, size_t size)
+{
+    char *whole = find_whole(folder[0] ? folder : ".");
+    if (!whole) {
+        return false;
+    }
+    const size_t used = strlen(whole);
+    const char *end = used > 0 && is_separator(whole[used - 1]) ? "" : "/";
+    const int length = snprintf(path, size, "%s%s", whole, end);
+    free(whole);
+    for (char *c = path; *c; ++c) {
+        *c = is_separator(*c) ? '/' : *c;
+    }
+    errno = ENAMETOOLONG;
+    return length >= 0 && (size_t)length < size;
+}
+
 /* The path at which a file is written before it has its name. @return false: it is too long. */
 static bool format_partial(const char *path, char partial[PATH_SIZE])
 {
@@ -221,8 +276,9 @@ FILE *se3di_partial_open(const char *path)
         errno = ENAMETOOLONG;
         return NULL;
     }
-    if (is_folder(path)) { /* known before the work, not after it */
-        errno = EISDIR;
+    const int why = forbid(path); /* known before the work, not after it */
+    if (why != 0) {
+        errno = why;
         return NULL;
     }
     take_away(partial); /* of a run that was ended; or a link, which must not be followed */
@@ -319,6 +375,11 @@ bool se3di_file_cut(FILE *file, uint64_t size)
 /* The file takes its name, in place of one that has it. */
 static bool replace(const char *partial, const char *path)
 {
+    const int why = forbid(path); /* what came there meanwhile */
+    if (why != 0) {
+        errno = why;
+        return false;
+    }
 #if defined(_WIN32)
     remove(path); /* rename does not replace there */
 #endif

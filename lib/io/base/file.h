@@ -19,10 +19,18 @@ FILE *se3di_file_open(const char *path);
 /* Open a regular file, made if it is not there, for reading and writing, and lock it: if another
  * program has it open in this way it is EAGAIN. @return NULL: errno says why. */
 FILE *se3di_file_continue(const char *path);
+/* What errno says after one of these functions. */
+const char *se3di_file_get_text(int why);
+/* Whether both paths are there and lead to one file. */
+bool se3di_file_is_same(const char *a, const char *b);
+/* The whole path of a folder ("": the present one), without links, that ends with '/'. @return
+ * false: errno says why. */
+bool se3di_file_find_folder(const char *folder, char *path, size_t size);
 /* Cut an open file to its first `size` bytes and go on there. */
 bool se3di_file_cut(FILE *file, uint64_t size);
-/* Open a file under a temporary name; complete it and give it its name. @return NULL, false: errno
- * says why, and nothing is left. */
+/* Open a file under a temporary name; complete it and give it its name, which a regular file may
+ * have or a link, both are replaced: a folder is EISDIR, a pipe or device EINVAL. @return NULL,
+ * false: errno says why, and nothing is left. */
 FILE *se3di_partial_open(const char *path);
 bool se3di_partial_close(FILE *file, const char *path);
 /* Go on with a file that se3di_partial_open had begun, after its first `size` bytes: with the one

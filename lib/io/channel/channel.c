@@ -112,7 +112,8 @@ static const quantity_name wheel_names[] = {
     {"wheel_rate", SE3DI_WHEEL_RATE},
     {"roll_rate", SE3DI_WHEEL_ROLL_RATE},
     {NULL, SE3DI_STEPS}};
-static const quantity_name state_names[] = {{"value", SE3DI_STATE_VALUE}, {NULL, SE3DI_STEPS}};
+static const quantity_name state_names[] = {
+    {"value", SE3DI_STATE_VALUE}, {"state", SE3DI_STATE_ITSELF}, {NULL, SE3DI_STEPS}};
 static const quantity_name input_names[] = {{"input", SE3DI_STATE_INPUT}, {NULL, SE3DI_STEPS}};
 static const quantity_name rate_names[] = {{"rate", SE3DI_STATE_RATE}, {NULL, SE3DI_STEPS}};
 static const struct {
@@ -167,6 +168,16 @@ static const quantity_name region_names[] = {{"count", SE3DI_REGION_COUNT},
                                              {"stress", SE3DI_REGION_STRESS},
                                              {"shear", SE3DI_REGION_SHEAR},
                                              {NULL, SE3DI_STEPS}};
+
+static const quantity_name flow_names[] = {{"count", SE3DI_FLOW_COUNT},
+                                           {"forward", SE3DI_FLOW_FORWARD},
+                                           {"backward", SE3DI_FLOW_BACKWARD},
+                                           {"mass", SE3DI_FLOW_MASS},
+                                           {"momentum", SE3DI_FLOW_MOMENTUM},
+                                           {"count_rate", SE3DI_FLOW_COUNT_RATE},
+                                           {"mass_rate", SE3DI_FLOW_MASS_RATE},
+                                           {"momentum_rate", SE3DI_FLOW_MOMENTUM_RATE},
+                                           {NULL, SE3DI_STEPS}};
 
 enum { QUANTITIES_MAX = 32 };
 
@@ -242,7 +253,7 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
         break;
     case SE3DI_ELEMENT_STATE:
         offer_names(o, state_names);
-        if (strcmp(text, "ode") != 0) {
+        if (se3di_node_get(entry->node, "input")) {
             offer_names(o, input_names);
         }
         if (se3di_keys_contain(" ode integrator lag ", text)) {
@@ -413,20 +424,27 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
     return true;
 }
 
-/* A set of particles, a sink or a region; returns whether there is one of that name. */
+/* A set of particles, a sink, a region or a flow; returns whether there is one of that name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
-    const size_t set = se3di_tagged_find_set(model->particles, head);
-    const size_t sink = se3di_tagged_find_sink(model->particles, head);
-    const size_t region = se3di_tagged_find_region(model->particles, head);
-    if (set == SIZE_MAX && sink == SIZE_MAX && region == SIZE_MAX) {
-        return false;
+    const struct {
+        size_t (*find)(const se3di_tagged *particles, const char *name);
+        const quantity_name *names;
+    } kinds[] = {{se3di_tagged_find_set, set_names},
+                 {se3di_tagged_find_sink, sink_names},
+                 {se3di_tagged_find_region, region_names},
+                 {se3di_tagged_find_flow, flow_names}};
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        const size_t index = kinds[k].find(model->particles, head);
+        if (index != SIZE_MAX) {
+            channel->tagged = model->particles;
+            channel->particles = model->particles->set;
+            channel->index = (uint32_t)index;
+            offer_names(o, kinds[k].names);
+            return true;
+        }
     }
-    channel->tagged = model->particles;
-    channel->particles = model->particles->set;
-    channel->index = (uint32_t)(set != SIZE_MAX ? set : sink != SIZE_MAX ? sink : region);
-    offer_names(o, set != SIZE_MAX ? set_names : sink != SIZE_MAX ? sink_names : region_names);
-    return true;
+    return false;
 }
 
 /* What a coordinate of the element is. */

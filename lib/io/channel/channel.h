@@ -45,6 +45,7 @@
     X(STATE_VALUE, 1, STATE_VALUE, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_INPUT, 1, STATE_INPUT, 0, MOTION, 0, 0, 0, 0)                                          \
     X(STATE_RATE, 1, STATE_RATE, 0, MOTION, 0, 1, 0, 0)                                            \
+    X(STATE_ITSELF, 1, STATE_ITSELF, 0, MOTION, 0, 0, 0, 0)                                        \
     X(WHEEL_CAMBER, 1, WHEEL_POSE, 0, MOTION, 0, 0, 0, 0)                                          \
     X(WHEEL_INCLINATION, 1, WHEEL_POSE, 1, MOTION, 0, 0, 0, 0)                                     \
     X(WHEEL_STEER, 1, WHEEL_POSE, 2, MOTION, 0, 0, 0, 0)                                           \
@@ -124,6 +125,14 @@
     X(REGION_MASS_FLUX, 3, AVERAGE, 8, JUMPS, -2, 1, 1, 0)                                         \
     X(REGION_STRESS, 3, AVERAGE, 11, JUMPS, -1, 2, 1, 0)                                           \
     X(REGION_SHEAR, 3, AVERAGE, 14, JUMPS, -1, 2, 1, 0)                                            \
+    X(FLOW_COUNT, 1, PASSED, 0, JUMPS, 0, 0, 0, 0)                                                 \
+    X(FLOW_FORWARD, 1, PASSED, 1, JUMPS, 0, 0, 0, 0)                                               \
+    X(FLOW_BACKWARD, 1, PASSED, 2, JUMPS, 0, 0, 0, 0)                                              \
+    X(FLOW_MASS, 1, PASSED, 3, JUMPS, 0, 0, 1, 0)                                                  \
+    X(FLOW_MOMENTUM, 3, PASSED, 4, JUMPS, 1, 1, 1, 0)                                              \
+    X(FLOW_COUNT_RATE, 1, PASSED, 7, JUMPS, 0, 1, 0, 0)                                            \
+    X(FLOW_MASS_RATE, 1, PASSED, 8, JUMPS, 0, 1, 1, 0)                                             \
+    X(FLOW_MOMENTUM_RATE, 3, PASSED, 9, JUMPS, 1, 2, 1, 0)                                         \
     X(STEPS, 1, SOLVER, 0, JUMPS, 0, 0, 0, 0)                                                      \
     X(ITERATIONS, 1, SOLVER, 1, JUMPS, 0, 0, 0, 0)
 /* clang-format on */
@@ -149,6 +158,7 @@ typedef enum se3di_question {
     SE3DI_ASK_STATE_VALUE,
     SE3DI_ASK_STATE_INPUT,
     SE3DI_ASK_STATE_RATE,
+    SE3DI_ASK_STATE_ITSELF,
     SE3DI_ASK_WHEEL_POSE, /* the groups of se3d_wheel_measure */
     SE3DI_ASK_WHEEL_AXIS,
     SE3DI_ASK_WHEEL_RIDE,
@@ -164,6 +174,7 @@ typedef enum se3di_question {
     SE3DI_ASK_SOURCES, /* of a set */
     SE3DI_ASK_SINK,
     SE3DI_ASK_AVERAGE, /* of a region */
+    SE3DI_ASK_PASSED,  /* of a flow */
     SE3DI_ASK_SOLVER,
     SE3DI_QUESTION_COUNT
 } se3di_question;
@@ -201,7 +212,7 @@ typedef struct se3di_channel {
     se3d_state state;
     const se3d_particles *particles;
     const struct se3di_tagged *tagged; /* of sets and sinks */
-    uint32_t index;                    /* tag of a set, number of a sink */
+    uint32_t index;                    /* tag of a set, number of a sink, region or flow */
     se3di_motion motion;               /* of the coordinate of an element */
     double point[3];                   /* of `body`, where a wrench acts */
     se3di_reference reference;         /* of a motion */

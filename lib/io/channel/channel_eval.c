@@ -117,6 +117,8 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return ask_wrench(c, system, numbers);
     case SE3DI_ASK_STATE_VALUE:
         return se3d_state_get_value(system, c->state, SE3D_STATE_OUTPUT, numbers);
+    case SE3DI_ASK_STATE_ITSELF:
+        return se3d_state_get_value(system, c->state, SE3D_STATE_VALUE, numbers);
     case SE3DI_ASK_STATE_INPUT:
         return se3d_state_get_value(system, c->state, SE3D_STATE_INPUT, numbers);
     case SE3DI_ASK_STATE_RATE:
@@ -262,6 +264,8 @@ static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sa
         return se3di_tagged_ask_sink(c, numbers);
     case SE3DI_ASK_AVERAGE:
         return se3di_tagged_ask_average(c, numbers);
+    case SE3DI_ASK_PASSED:
+        return se3di_tagged_ask_passed(c, numbers);
     case SE3DI_ASK_SOLVER:
         return ask_solver(sample->stats, numbers);
     default:
@@ -279,6 +283,7 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_TYRE:
         return c->force.index1;
     case SE3DI_ASK_STATE_VALUE:
+    case SE3DI_ASK_STATE_ITSELF:
     case SE3DI_ASK_STATE_INPUT:
     case SE3DI_ASK_STATE_RATE:
         return c->state.index1;

@@ -5,6 +5,7 @@
 #include "io/channel/channel.h"
 #include "io/model/tagged.h"
 #include "se3d/average.h"
+#include "se3d/flow.h"
 
 /* What the sources of the set have done. */
 se3d_status se3di_tagged_ask_sources(const se3di_channel *c, double numbers[3])
@@ -67,6 +68,25 @@ se3d_status se3di_tagged_ask_average(const se3di_channel *c, double numbers[17])
         }
         for (int k = 0; k < 6; ++k) {
             numbers[11 + k] = average.kinetic_stress[order[k]] + average.contact_stress[order[k]];
+        }
+    }
+    return status;
+}
+
+se3d_status se3di_tagged_ask_passed(const se3di_channel *c, double numbers[12])
+{
+    se3d_flow_stats stats;
+    const se3d_status status = se3d_particles_get_flow(c->particles, c->index, &stats);
+    if (status >= 0) {
+        numbers[0] = (double)stats.forward - (double)stats.backward;
+        numbers[1] = (double)stats.forward;
+        numbers[2] = (double)stats.backward;
+        numbers[3] = stats.mass;
+        numbers[7] = stats.count_rate;
+        numbers[8] = stats.mass_rate;
+        for (int k = 0; k < 3; ++k) {
+            numbers[4 + k] = stats.momentum[k];
+            numbers[9 + k] = stats.momentum_rate[k];
         }
     }
     return status;

@@ -43,6 +43,7 @@ static bool take_signal(const se3d_model *model, const se3di_channel *channel, s
         {SE3DI_FORCE_RATE, SE3D_SIGNAL_FORCE_RATE, 0},
         {SE3DI_STATE_VALUE, SE3D_SIGNAL_STATE, SE3D_STATE_OUTPUT},
         {SE3DI_STATE_INPUT, SE3D_SIGNAL_STATE, SE3D_STATE_INPUT},
+        {SE3DI_STATE_ITSELF, SE3D_SIGNAL_STATE, SE3D_STATE_VALUE},
         {SE3DI_BODY_POSITION, SE3D_SIGNAL_POINT_POSITION, -1},
         {SE3DI_BODY_VELOCITY, SE3D_SIGNAL_POINT_VELOCITY, -1},
         {SE3DI_BODY_ANGULAR_VELOCITY, SE3D_SIGNAL_ANGULAR_VELOCITY, -1},
@@ -70,7 +71,8 @@ static bool take_signal(const se3d_model *model, const se3di_channel *channel, s
 /* What the part of another side would say with a sign. */
 static bool is_same_mirrored(const se3di_channel *channel)
 {
-    if (channel->quantity == SE3DI_STATE_VALUE || channel->quantity == SE3DI_STATE_INPUT) {
+    if (channel->quantity == SE3DI_STATE_VALUE || channel->quantity == SE3DI_STATE_INPUT ||
+        channel->quantity == SE3DI_STATE_ITSELF) {
         return true; /* what it is fed by is checked where it is */
     }
     return (channel->quantity == SE3DI_FORCE_COORDINATE || channel->quantity == SE3DI_FORCE_RATE) &&

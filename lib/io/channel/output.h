@@ -5,15 +5,17 @@
 
 #include "io/channel/channel.h"
 #include "io/model/model.h"
+#include "se3d/field.h"
 
 typedef struct se3di_output_entry {
     const char *file;
-    bool particles; /* snapshots of them, no channels */
-    bool contacts;  /* lists of them, no channels */
-    int32_t set;    /* of whose particles; -1: all */
-    bool vtk;       /* a series for ParaView, no channels */
-    bool summary;   /* of the channels over the run, in place of rows */
-    double every;   /* 0: the analysis's step */
+    bool particles;              /* snapshots of them, no channels */
+    bool contacts;               /* lists of them, no channels */
+    int32_t set;                 /* of whose particles; -1: all */
+    bool vtk;                    /* a series for ParaView, no channels */
+    bool summary;                /* of the channels over the run, in place of rows */
+    const se3d_field_grid *grid; /* of a series: fields of the particles; NULL: none */
+    double every;                /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;
     const se3di_node *node; /* NULL: the default output */

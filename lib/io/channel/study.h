@@ -51,16 +51,23 @@ typedef enum se3di_reduction {
     SE3DI_REDUCE_AT = 8,         /* at a time or an event */
     SE3DI_REDUCE_SETTLING = 9,   /* time until it stays within a band */
     SE3DI_REDUCE_TIME_OF = 10,   /* time of an event */
-    SE3DI_REDUCE_EXPRESSION = 11 /* of measures above it, and parameters */
+    SE3DI_REDUCE_FREQUENCY = 11, /* of a mode */
+    SE3DI_REDUCE_DAMPING = 12,
+    SE3DI_REDUCE_MISFIT = 13,    /* from a curve */
+    SE3DI_REDUCE_EXPRESSION = 14 /* of measures above it, and parameters */
 } se3di_reduction;
 
 typedef struct se3di_study_measure {
     const char *name;
     const se3di_node *node; /* of the expression */
     se3di_reduction reduction;
-    size_t source;       /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
-    const char *event;   /* NULL: none */
-    double time;         /* AT: since the beginning of the analysis [s] */
+    size_t source;     /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
+    const char *event; /* NULL: none */
+    double time;       /* AT: since the beginning of the analysis [s] */
+    size_t along;      /* MISFIT: as `source`, of x; SE3DI_STUDY_NO_SOURCE: the time */
+    double *x, *y;     /* MISFIT: [point_count] of the curve, x ascending */
+    size_t point_count;
+    double mode;         /* FREQUENCY, DAMPING: its number, from 1 */
     double band, target; /* SETTLING, in the unit of the channel */
     bool has_target;     /* else its last value */
 } se3di_study_measure;
@@ -73,6 +80,30 @@ typedef struct se3di_study_channel {
     size_t component;
 } se3di_study_channel;
 
+/* One parameter that is sought. */
+typedef struct se3di_study_unknown {
+    const char *name;
+    double from, to, start;
+    se3di_amount shape; /* the unit of its values, if they have one */
+} se3di_study_unknown;
+
+/* What a measure may be: from..to; one value if they are equal. */
+typedef struct se3di_study_limit {
+    size_t measure;
+    double from, to; /* infinite: none */
+} se3di_study_limit;
+
+typedef struct se3di_study_goal {
+    int32_t method;   /* index among se3di_study_goal_methods */
+    int32_t greatest; /* not 0: the measure is to be the greatest, else the least */
+    size_t measure;
+    double evaluations, tolerance;
+    se3di_study_unknown *unknowns;
+    size_t unknown_count;
+    se3di_study_limit *limits;
+    size_t limit_count;
+} se3di_study_goal;
+
 typedef struct se3di_study_entry {
     int32_t method; /* se3di_study_method */
     int32_t reserved;
@@ -81,8 +112,11 @@ typedef struct se3di_study_entry {
     double every;    /* time between rows [s]; 0: the step */
     double analysis; /* that is measured, from 1; 0: the last */
     const char *table;
-    se3di_study_variable *variables;
+    se3di_study_variable *variables; /* of samples; none: there are no samples */
     size_t variable_count;
+    const char **sensitivities; /* parameters of which derivatives are taken */
+    size_t sensitivity_count;
+    se3di_study_goal *goal; /* NULL: nothing is sought */
     se3di_study_measure *measures;
     size_t measure_count;
     const se3di_node **sources; /* channels and expressions of them, each once */

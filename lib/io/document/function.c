@@ -57,22 +57,13 @@ static bool read_number(se3di_reader *reader, const se3di_node *node, const char
     return se3di_check_number(reader, node, SE3DI_ANY, *value);
 }
 
-/* *value, or the kind of a function in `def`, and the function. */
-static bool read_any(se3di_reader *reader, const se3di_node *node, const char *const *variables,
-                     se3d_function_def *def, double *value, se3d_function *function)
+bool se3di_read_expression(se3di_reader *reader, const se3di_node *node,
+                           const char *const *variables, double *value,
+                           se3d_expression **expression)
 {
     se3d_expression_def text = se3d_expression_def_default();
-    se3d_expression *expression = NULL;
     se3di_node plain;
-    if (node->kind == SE3DI_NODE_MAP) {
-        return read_table(reader, node, variables[0], def, function);
-    }
-    if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
-        return se3di_reader_fail(reader, node,
-                                 "is %s, must be a number, an expression in %s or {spline: [[%s, "
-                                 "value], ...]}",
-                                 se3di_node_describe(node), variables[0], variables[0]);
-    }
+    *expression = NULL;
     text.variables = variables;
     while (variables[text.variable_count]) {
         ++text.variable_count;
@@ -83,15 +74,44 @@ static bool read_any(se3di_reader *reader, const se3di_node *node, const char *c
     if (!plain.text) {
         return true;
     }
-    if (!se3di_read_compile(reader, &plain, &text, &expression)) {
+    if (!se3di_read_compile(reader, &plain, &text, expression)) {
         return false;
     }
+    if (!se3d_expression_is_constant(*expression)) {
+        return true;
+    }
+    const bool good = se3di_read_constant(reader, &plain, *expression, value) &&
+                      se3di_check_number(reader, &plain, SE3DI_ANY, *value);
+    se3d_expression_destroy(*expression);
+    *expression = NULL;
+    return good;
+}
+
+/* *value, or the kind of a function in `def`, and the function. */
+static bool read_any(se3di_reader *reader, const se3di_node *node, const char *const *variables,
+                     se3d_function_def *def, double *value, se3d_function *function)
+{
+    se3d_expression *expression = NULL;
+    if (node->kind == SE3DI_NODE_MAP) {
+        return read_table(reader, node, variables[0], def, function);
+    }
+    if (node->kind != SE3DI_NODE_SCALAR || se3di_node_is_null(node)) {
+        return se3di_reader_fail(reader, node,
+                                 "is %s, must be a number, an expression in %s or {spline: [[%s, "
+                                 "value], ...]}",
+                                 se3di_node_describe(node), variables[0], variables[0]);
+    }
+    if (!se3di_read_expression(reader, node, variables, value, &expression)) {
+        return false;
+    }
+    if (!expression) {
+        return true;
+    }
     def->compiled = expression;
-    def->variable_count = text.variable_count;
-    const bool good = se3d_expression_is_constant(expression)
-                          ? se3di_read_constant(reader, &plain, expression, value) &&
-                                se3di_check_number(reader, &plain, SE3DI_ANY, *value)
-                          : create(reader, &plain, def, function);
+    while (variables[def->variable_count]) {
+        ++def->variable_count;
+    }
+    const bool good = create(reader, node, def, function);
     se3d_expression_destroy(expression);
     def->compiled = NULL;
     return good;

@@ -49,6 +49,9 @@ typedef enum se3di_kind {
     SE3DI_KIND_PAIRS,    /* a list of one pair of numbers or more */
     SE3DI_KIND_VECTORS,  /* a list of three vectors or more */
     SE3DI_KIND_NUMBERS,  /* a list of one number or more */
+    SE3DI_KIND_HEIGHTS,  /* a list of two rows of numbers or more, or an expression */
+    SE3DI_KIND_NAMES,    /* a list of one name or more */
+    SE3DI_KIND_ROWS,     /* a list of two rows or more, each of two numbers or more */
     SE3DI_KIND_COLOR,    /* 3 numbers or 4 */
     SE3DI_KIND_CHANNELS,
     SE3DI_KIND_SNAPSHOTS, /* true, or the name of a set */

@@ -12,6 +12,7 @@
 #include "io/document/document.h"
 #include "io/document/guess.h"
 #include "io/document/reader.h"
+#include "math/vec3.h"
 
 /* Beyond these the squares and products of mechanics leave what doubles hold. */
 #define LARGEST  1e40
@@ -165,6 +166,7 @@ static bool read_plain(se3di_reader *reader, const se3di_node *node, double *val
     const bool good = se3di_read_constant(reader, node, expression, value);
     se3d_expression_destroy(expression);
     if (good && is_literal(node->text)) {
+        *value = *value == 0.0 && node->text[0] == '-' ? -0.0 : *value; /* as it was written */
         keep_number(node, *value);
     }
     return good;
@@ -425,7 +427,8 @@ static bool read_euler_parameters(se3di_reader *reader, const se3di_node *node, 
         return se3di_reader_fail(
             reader, node, "has the length %.9g, must be unit Euler parameters (to 1e-6)", length);
     }
-    for (int k = 0; k < 4; ++k) {
+    const bool is_unit = se3di_is_unit(p, 4);
+    for (int k = 0; k < 4 && !is_unit; ++k) {
         p[k] /= length;
     }
     return true;

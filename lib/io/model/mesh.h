@@ -8,8 +8,9 @@
 
 typedef struct se3di_mesh {
     const char *file;
-    const char *model; /* the file that names it */
-    int mirror;        /* the axis that is turned round; -1: none */
+    const char *model;               /* the file that names it */
+    int mirror;                      /* the axis that is turned round; -1: none */
+    const struct se3di_mesh *source; /* that it mirrors; NULL: it mirrors none */
     double scale;
     struct se3di_mesh *next; /* of the model */
     double *points;          /* [3 * point_count], scaled */
@@ -17,6 +18,10 @@ typedef struct se3di_mesh {
     uint32_t *triangles; /* [3 * triangle_count] */
     size_t triangle_count, triangle_capacity;
     double low[3], high[3]; /* the box around all points */
+    const void *of;         /* heightfield: the node that says it; NULL: none */
+    const double *heights;  /* [row_count * column_count]; NULL: none, or mirrored */
+    size_t row_count, column_count;
+    double spacing[2]; /* along x, along y */
 } se3di_mesh;
 
 #endif

@@ -46,6 +46,36 @@ se3d_status se3d_model_get_parameter(const se3d_model *model, const char *name, 
     return SE3D_ERR_INVALID_ARGUMENT;
 }
 
+size_t se3d_model_count_parameters(const se3d_model *model)
+{
+    const se3di_node *map = model ? se3di_node_get(model->root, "parameters") : NULL;
+    return map && map->kind == SE3DI_NODE_MAP ? map->count : 0;
+}
+
+static const se3di_node *get_parameter_node(const se3d_model *model, size_t index)
+{
+    if (index >= se3d_model_count_parameters(model)) {
+        return NULL;
+    }
+    const se3di_node *node = se3di_node_get(model->root, "parameters")->first;
+    while (index-- > 0) {
+        node = node->next;
+    }
+    return node;
+}
+
+const char *se3d_model_get_parameter_name(const se3d_model *model, size_t index)
+{
+    const se3di_node *node = get_parameter_node(model, index);
+    return node && node->key ? node->key : "";
+}
+
+const char *se3d_model_get_parameter_text(const se3d_model *model, size_t index)
+{
+    const se3di_node *node = get_parameter_node(model, index);
+    return node && node->text ? node->text : "";
+}
+
 size_t se3d_model_count_analyses(const se3d_model *model)
 {
     return model ? model->analysis_count : 0;

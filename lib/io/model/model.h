@@ -31,10 +31,11 @@ typedef enum se3di_element_kind {
     SE3DI_ELEMENT_FORCE = 3,
     SE3DI_ELEMENT_WHEEL = 4,
     SE3DI_ELEMENT_STATE = 5,
-    SE3DI_ELEMENT_KINDS = 6
+    SE3DI_ELEMENT_ROAD = 6,
+    SE3DI_ELEMENT_KINDS = 7
 } se3di_element_kind;
 
-/* A joint, constraint, driver, force, wheel or state: their names are unique together. */
+/* A joint, constraint, driver, force, wheel, state or road: their names are unique together. */
 typedef struct se3di_element_entry {
     const char *name;
     const se3di_node *node;
@@ -42,9 +43,10 @@ typedef struct se3di_element_entry {
     se3d_constraint constraint;
     se3d_force force;
     se3d_wheel wheel;
+    se3d_road road;
     se3d_state *states; /* [order], the first with input and output */
     size_t order;
-    const se3di_component *part; /* of a state */
+    const se3di_component *part; /* that has it */
     se3d_body body;              /* bushing, force, torque: the body acted on, */
     double point[3];             /* where */
     /* How it is drawn: a pair with points (1), also with an axis (2), a spring (3); 0: not. */
@@ -105,6 +107,7 @@ typedef struct se3di_shape_entry {
     int32_t convex;              /* mesh: its hull touches */
     int32_t style;               /* se3di_style */
     double opacity;
+    se3d_shape made; /* of the system; null: nothing touches it */
 } se3di_shape_entry;
 
 struct se3d_model {

@@ -25,6 +25,11 @@ size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name)
     return particles ? find_name(particles->sinks, particles->sink_count, name) : SIZE_MAX;
 }
 
+size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name)
+{
+    return particles ? find_name(particles->flows, particles->flow_count, name) : SIZE_MAX;
+}
+
 size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name)
 {
     return particles ? find_name(particles->clumps, particles->clump_count, name) : SIZE_MAX;

@@ -27,6 +27,8 @@ typedef struct se3di_tagged {
     size_t sink_count;
     se3di_region_entry *regions;
     size_t region_count;
+    const char **flows;
+    size_t flow_count;
     const char **clumps; /* names of the templates of clumps */
     size_t clump_count;
 } se3di_tagged;
@@ -34,6 +36,7 @@ typedef struct se3di_tagged {
 /* The index of a name, SIZE_MAX: none. */
 size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
+size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name);
 

@@ -37,8 +37,8 @@ static const se3di_key analysis_keys[] = {
     {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "auto",
      .text = "what describes the motion: angular velocities, Euler parameters, or coordinates of "
          "joints (dop853, gauss, rk45, rk4; elsewhere as romega); auto: joint where a method above "
-         "integrates an open tree of joints in which nothing is prescribed and no friction needs "
-         "the load of a joint, else romega"},
+         "integrates joints, no friction needs the load of one and loops leave a freedom, else "
+         "romega"},
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; convex: for many bodies that touch, at steps of 0.001 to 0.005; "
          "gauss: smooth motions, to tight tolerances; "

@@ -147,6 +147,8 @@ static bool read_shape_keys(se3di_reader *reader, const se3di_node *node, se3d_s
     double mask = 4294967295.0;
     if (!se3di_read_key(reader, node, shape, NULL, "name", (void *)&def->name) ||
         !se3di_read_key_material(reader, node, "material", &def->material) ||
+        !se3di_read_key(reader, node, shape, NULL, "surface_velocity", def->surface_velocity) ||
+        !se3di_read_key(reader, node, shape, NULL, "surface_spin", def->surface_spin) ||
         !se3di_read_key(reader, node, shape, NULL, "group", &group) ||
         !se3di_read_key(reader, node, shape, NULL, "mask", &mask)) {
         return false;
@@ -156,20 +158,30 @@ static bool read_shape_keys(se3di_reader *reader, const se3di_node *node, se3d_s
     return true;
 }
 
-static bool create_shape(se3di_reader *reader, const se3di_node *node,
-                         const se3di_shape_entry *entry)
+static void place_surface(const se3di_reader *reader, const se3d_model_shape *shape,
+                          se3d_shape_def *def)
+{
+    const se3di_placement *place = &reader->part->place;
+    const bool on_ground = shape->body.index1 == reader->model->bodies[0].body.index1;
+    (on_ground ? se3di_place_vector : se3di_flip_vector)(place, def->surface_velocity);
+    (on_ground ? se3di_place_axial : se3di_flip_axial)(place, def->surface_spin);
+}
+
+static bool create_shape(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
     const se3d_model_shape *shape = &entry->shape;
     const se3di_mesh *mesh = entry->mesh;
     se3d_shape_def def = se3d_shape_def_default();
-    se3d_shape made;
     int32_t fixed = 0;
     if (!read_shape_keys(reader, node, &def)) {
         return false;
     }
+    place_surface(reader, shape, &def);
     def.body = shape->body;
     def.radius = shape->radius;
     def.length = shape->length;
+    def.bottom_radius = shape->bottom_radius;
+    def.top_radius = shape->top_radius;
     memcpy(def.position, shape->position, sizeof def.position);
     memcpy(def.orientation, shape->orientation, sizeof def.orientation);
     memcpy(def.size, shape->size, sizeof def.size);
@@ -178,10 +190,16 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node,
         def.vertex_count = mesh->point_count;
         def.triangles = mesh->triangles;
         def.triangle_count = mesh->triangle_count;
+        def.heights = mesh->heights;
+        def.row_count = mesh->row_count;
+        def.column_count = mesh->column_count;
+        memcpy(def.spacing, mesh->spacing, sizeof def.spacing);
     }
+    const int mirrored = mesh && mesh->of && !mesh->heights; /* cells are cut the other way */
     se3d_status status =
-        (entry->convex ? se3d_shape_create_hull : se3di_shape_row_of(shape)->create)(reader->system,
-                                                                                     &def, &made);
+        (entry->convex ? se3d_shape_create_hull
+         : mirrored    ? se3d_shape_create_mesh
+                       : se3di_shape_row_of(shape)->create)(reader->system, &def, &entry->made);
     if (status >= 0) {
         status = se3d_body_get_fixed(reader->system, shape->body, &fixed);
     }
@@ -195,7 +213,7 @@ static bool create_shapes(se3di_reader *reader)
     const se3di_component *main = reader->part;
     bool good = true;
     for (size_t k = 0; good && k < reader->model->shape_count; ++k) {
-        const se3di_shape_entry *entry = &reader->model->shapes[k];
+        se3di_shape_entry *entry = &reader->model->shapes[k];
         int32_t wanted = 1;
         se3di_reader_enter(reader, entry->part);
         good = se3di_read_key(reader, entry->node, &se3di_object_shape, NULL, "contact", &wanted) &&

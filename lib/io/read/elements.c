@@ -15,8 +15,8 @@ const char *const se3di_coordinates[] = {[SE3D_JOINT_COORDINATE_ANGLE] = "angle"
                                          [SE3D_JOINT_COORDINATE_DISPLACEMENT] = "displacement",
                                          NULL};
 
-static const char *const kind_texts[] = {"joint", "constraint", "driver",
-                                         "force", "wheel",      "state"};
+static const char *const kind_texts[] = {"joint", "constraint", "driver", "force",
+                                         "wheel", "state",      "road"};
 
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
                         se3di_element_entry **entry)
@@ -37,10 +37,12 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
         }
     }
     if (se3di_ionames_find(&model->element_names, name, NULL)) {
-        return se3di_reader_fail_key(reader, node, "name",
-                                     "`%.60s` is the name of two elements: joints, constraints, "
-                                     "drivers, forces, wheels and states must have different names",
-                                     name);
+        return se3di_reader_fail_key(
+            reader, node, "name",
+            "`%.60s` is the name of two elements: joints, constraints, "
+            "drivers, forces, wheels, states and roads must have different "
+            "names",
+            name);
     }
     se3di_element_entry *grown =
         se3di_iopool_grow(&model->pool, model->elements, model->element_count,
@@ -54,6 +56,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
     memset(*entry, 0, sizeof **entry);
     (*entry)->name = name;
     (*entry)->node = node;
+    (*entry)->part = reader->part;
     (*entry)->kind = kind;
     reader->alternative = 0;
     return true;

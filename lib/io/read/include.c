@@ -62,6 +62,7 @@ static const se3di_key part_keys[] = {
     {"drivers", SE3DI_KIND_LIST, .object = "driver", .text = "as of a model"},
     {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "as of a model"},
     {"forces", SE3DI_KIND_LIST, .object = "force", .text = "as of a model"},
+    {"roads", SE3DI_KIND_LIST, .object = "road", .text = "as of a model"},
     {"wheels", SE3DI_KIND_LIST, .object = "wheel", .text = "as of a model"},
     {"include", SE3DI_KIND_LIST, .object = "instance", .text = "as of a model"},
     {"instances", SE3DI_KIND_LIST, .object = "instance", .text = "as of a model"},

@@ -74,6 +74,7 @@ static const se3di_key model_keys[] = {
      .text = "springs, dampers, friction, stops, loads"},
     {"states", SE3DI_KIND_LIST, .object = "state",
      .text = "numbers that are integrated with the motion: filters, controllers"},
+    {"roads", SE3DI_KIND_LIST, .object = "road", .text = "surfaces that tyres name"},
     {"wheels", SE3DI_KIND_LIST, .object = "wheel", .text = "what measures a suspension"},
     {"contact", SE3DI_KIND_OBJECT, .object = "contact",
      .text = "how shapes and particles touch; may be empty"},
@@ -86,6 +87,8 @@ static const se3di_key model_keys[] = {
      .text = "regions that remove particles and count them"},
     {"regions", SE3DI_KIND_LIST, .object = "region",
      .text = "boxes whose particles are averaged over"},
+    {"flows", SE3DI_KIND_LIST, .object = "flow",
+     .text = "planes, disks and rectangles through which particles are counted"},
     {"analysis", SE3DI_KIND_ONE_OR_LIST, .object = "analysis",
      .text = "one analysis, or several that run one after the other"},
     {"events", SE3DI_KIND_LIST, .object = "event",
@@ -190,8 +193,8 @@ static bool read_mechanism(se3di_reader *reader)
            read_section(reader, se3di_read_joints) &&
            read_section(reader, se3di_read_constraints) &&
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_states) &&
-           read_section(reader, se3di_read_forces) && se3di_read_state_laws(reader) &&
-           read_section(reader, se3di_read_wheels);
+           read_section(reader, se3di_read_roads) && read_section(reader, se3di_read_forces) &&
+           se3di_read_state_laws(reader) && read_section(reader, se3di_read_wheels);
 }
 
 /* Whether the analyses, of which there is one, compute motions from constraints alone. */

@@ -357,6 +357,7 @@ const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape,
     mesh->file = file;
     mesh->model = reader->file;
     mesh->mirror = -1;
+    mesh->source = NULL;
     mesh->scale = scale;
     mesh->next = model->meshes;
     model->meshes = mesh;
@@ -379,12 +380,53 @@ static void copy_mirrored(const se3di_mesh *mesh, int axis, se3di_mesh *copy)
     copy->high[axis] = 0.0 - mesh->low[axis];
 }
 
+#define FACETS 64 /* of a funnel */
+
+/* It has its corners once: the two triangles of a facet are (a, b, top a) and (top b, top a, b). */
+static void fill_funnel(const se3d_model_shape *shape, se3di_mesh *mesh)
+{
+    const double radius[2] = {shape->bottom_radius, shape->top_radius};
+    const double wide = fmax(radius[0], radius[1]);
+    for (uint32_t k = 0; k < FACETS; ++k) {
+        const double angle = 6.283185307179586 * k / FACETS;
+        const uint32_t a = 2 * k, b = 2 * ((k + 1) % FACETS);
+        const uint32_t facet[6] = {a, b, a + 1, b + 1, a + 1, b};
+        memcpy(mesh->triangles + 6 * (size_t)k, facet, sizeof facet);
+        for (size_t end = 0; end < 2; ++end) {
+            double *point = mesh->points + 3 * (a + end);
+            point[0] = radius[end] * io_cos(angle);
+            point[1] = radius[end] * io_sin(angle);
+            point[2] = (end == 0 ? -0.5 : 0.5) * shape->length;
+        }
+    }
+    for (int a = 0; a < 3; ++a) {
+        mesh->high[a] = a < 2 ? wide : 0.5 * shape->length;
+        mesh->low[a] = -mesh->high[a];
+    }
+}
+
+const se3di_mesh *se3di_make_funnel(se3di_reader *reader, const se3d_model_shape *shape)
+{
+    se3di_iopool *pool = &reader->model->pool;
+    se3di_mesh *mesh = se3di_iopool_alloc(pool, sizeof *mesh);
+    if (mesh) {
+        mesh->points = se3di_iopool_array(pool, 2 * FACETS, 3 * sizeof *mesh->points);
+        mesh->triangles = se3di_iopool_array(pool, 2 * FACETS, 3 * sizeof *mesh->triangles);
+    }
+    if (!mesh || !mesh->points || !mesh->triangles) {
+        se3di_reader_fail_memory(reader);
+        return NULL;
+    }
+    mesh->point_count = mesh->triangle_count = 2 * (size_t)FACETS;
+    fill_funnel(shape, mesh);
+    return mesh;
+}
+
 const se3di_mesh *se3di_mirror_mesh(se3di_reader *reader, const se3di_mesh *mesh, int axis)
 {
     se3d_model *model = reader->model;
     for (se3di_mesh *known = model->meshes; known; known = known->next) {
-        if (known->mirror == axis && known->scale <= mesh->scale && known->scale >= mesh->scale &&
-            strcmp(known->file, mesh->file) == 0 && strcmp(known->model, mesh->model) == 0) {
+        if (known->mirror == axis && known->source == mesh) {
             return known;
         }
     }
@@ -402,6 +444,8 @@ const se3di_mesh *se3di_mirror_mesh(se3di_reader *reader, const se3di_mesh *mesh
     }
     copy_mirrored(mesh, axis, copy);
     copy->mirror = axis;
+    copy->source = mesh;
+    copy->heights = NULL;
     copy->next = model->meshes;
     model->meshes = copy;
     return copy;

@@ -11,6 +11,8 @@
  * and in the mesh. */
 const se3di_mesh *se3di_read_mesh(se3di_reader *reader, const se3di_node *shape, const char *file,
                                   double scale);
+/* The surface of a funnel, for pictures; NULL: out of memory. */
+const se3di_mesh *se3di_make_funnel(se3di_reader *reader, const se3d_model_shape *shape);
 /* The mesh with one axis turned round; NULL: out of memory. */
 const se3di_mesh *se3di_mirror_mesh(se3di_reader *reader, const se3di_mesh *mesh, int axis);
 

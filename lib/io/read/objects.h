@@ -25,6 +25,7 @@
     X(source)                                                                                      \
     X(sink)                                                                                        \
     X(region)                                                                                      \
+    X(flow)                                                                                        \
     X(body)                                                                                        \
     X(term)                                                                                        \
     X(joint)                                                                                       \
@@ -32,6 +33,7 @@
     X(constraint)                                                                                  \
     X(force)                                                                                       \
     X(state)                                                                                       \
+    X(road)                                                                                        \
     X(wheel)                                                                                       \
     X(analysis)                                                                                    \
     X(event)                                                                                       \
@@ -39,6 +41,10 @@
     X(modes_output)                                                                                \
     X(frequencies)                                                                                 \
     X(output)                                                                                      \
+    X(goal)                                                                                        \
+    X(unknown)                                                                                     \
+    X(limit)                                                                                       \
+    X(fields)                                                                                      \
     X(study)                                                                                       \
     X(varied)                                                                                      \
     X(measure)

@@ -15,6 +15,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/field_grid.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
@@ -53,6 +54,8 @@ static const se3di_key output_keys[] = {
     {"vtk", SE3DI_KIND_FILE, .types = " vtk ", .words = vtk_endings,
      .text = "surfaces of the bodies and points of the particles for ParaView, see "
          "[VTK](../scene.md#vtk)"},
+    {"fields", SE3DI_KIND_OBJECT, .object = "fields", .types = " vtk ",
+     .text = "density, velocity, temperature and stress of the particles on a grid, too"},
     {"summary", SE3DI_KIND_FILE, .types = " summary ",
      .text = "minimum, maximum, mean, rms and integral of each channel over all rows, as CSV"},
     {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
@@ -355,6 +358,7 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
                            output) ||
         !read_snapshots(reader, node, output) || !read_contacts(reader, node, output) ||
+        !se3di_read_field_grid(reader, node, &output->grid) ||
         !check_kind_of_rows(reader, node, output) ||
         (!output->particles && !output->contacts && !output->vtk &&
          !read_channels(reader, node, output))) {

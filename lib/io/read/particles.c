@@ -14,8 +14,10 @@
 #include "io/model/model.h"
 #include "io/model/tagged.h"
 #include "io/read/clumps.h"
+#include "io/read/flows.h"
 #include "io/read/materials.h"
 #include "io/read/objects.h"
+#include "io/read/particle_names.h"
 #include "io/read/particle_table.h"
 #include "io/read/sections.h"
 
@@ -181,22 +183,6 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
                : true;
 }
 
-/* Names of sets and sinks are channels, as those of bodies and elements are. */
-static bool check_free(se3di_reader *reader, const se3di_node *node, const char *name)
-{
-    static const char words[] = " particles contacts energy violation work steps iterations ";
-    const se3d_model *model = reader->model;
-    if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
-        se3di_ionames_find(&model->element_names, name, NULL) ||
-        se3di_tagged_find_set(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_sink(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_region(model->particles, name) != SIZE_MAX) {
-        return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
-                                 name);
-    }
-    return true;
-}
-
 /* {table: [[radius, frequency], ...]} */
 static bool read_radius_table(se3di_reader *reader, const se3di_node *radius, se3d_fill_def *def)
 {
@@ -293,7 +279,7 @@ static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag
         *tag = (uint32_t)known;
         return true;
     }
-    if (!check_free(reader, child, name)) {
+    if (!se3di_check_free_name(reader, child, name)) {
         return false;
     }
     if (particles->set_count == SE3D_PARTICLES_TAGS) {
@@ -421,7 +407,8 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
     const char *text = NULL;
     se3d_particles_sink_def def = se3d_particles_sink_def_default();
     if (!se3di_read_keys(reader, node, &se3di_object_sink) ||
-        (name && (!se3di_read_name(reader, name, &text) || !check_free(reader, name, text))) ||
+        (name &&
+         (!se3di_read_name(reader, name, &text) || !se3di_check_free_name(reader, name, text))) ||
         (se3di_node_get(node, "normal") &&
          !check_beside(reader, node, "normal", " name point normal ")) ||
         !read_region(reader, node, &se3di_object_sink, &def.region, &def.axis) ||
@@ -455,26 +442,6 @@ static bool read_sinks(se3di_reader *reader, const se3di_node *list)
     return true;
 }
 
-static bool read_region_set(se3di_reader *reader, const se3di_node *node,
-                            se3di_region_entry *region)
-{
-    const se3di_node *set = se3di_node_get(node, "set");
-    const char *name = NULL;
-    region->tag = -1;
-    if (!set) {
-        return true;
-    }
-    if (!se3di_read_text(reader, set, &name)) {
-        return false;
-    }
-    const size_t tag = se3di_tagged_find_set(reader->model->particles, name);
-    if (tag == SIZE_MAX) {
-        return se3di_reader_fail(reader, set, "no `particles` are named `%.60s`", name);
-    }
-    region->tag = (int32_t)tag;
-    return true;
-}
-
 static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_entry *region)
 {
     const se3di_node *name = se3di_node_get(node, "name");
@@ -484,7 +451,8 @@ static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_
     if (!name || !se3di_node_get(node, "lower") || !se3di_node_get(node, "upper")) {
         return se3di_reader_fail(reader, node, "must have `name`, `lower` and `upper`");
     }
-    if (!se3di_read_name(reader, name, &region->name) || !check_free(reader, name, region->name) ||
+    if (!se3di_read_name(reader, name, &region->name) ||
+        !se3di_check_free_name(reader, name, region->name) ||
         !se3di_read_fields(reader, node, &se3di_object_region, NULL, "se3di_region_entry",
                            region)) {
         return false;
@@ -496,7 +464,7 @@ static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_
                                          region->upper[a], "xyz"[a], region -> lower[a]);
         }
     }
-    return read_region_set(reader, node, region);
+    return se3di_read_key_set(reader, node, &region->tag);
 }
 
 static bool read_regions(se3di_reader *reader, const se3di_node *list)
@@ -549,12 +517,14 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     const se3di_node *list = NULL;
     const se3di_node *sinks = NULL;
     const se3di_node *boxes = NULL;
+    const se3di_node *flows = NULL;
     if (!se3di_read_list(reader, root, "particles", &list) ||
         !se3di_read_list(reader, root, "sinks", &sinks) ||
-        !se3di_read_list(reader, root, "regions", &boxes)) {
+        !se3di_read_list(reader, root, "regions", &boxes) ||
+        !se3di_read_list(reader, root, "flows", &flows)) {
         return false;
     }
-    static const char *const sections[] = {"sinks", "clumps", "regions"};
+    static const char *const sections[] = {"sinks", "clumps", "regions", "flows"};
     for (size_t k = 0; !list && k < sizeof sections / sizeof *sections; ++k) {
         const se3di_node *section = se3di_node_get(root, sections[k]);
         if (section) {
@@ -580,5 +550,5 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
             return false;
         }
     }
-    return read_regions(reader, boxes) && check_analyses(reader);
+    return read_regions(reader, boxes) && se3di_read_flows(reader, flows) && check_analyses(reader);
 }

@@ -13,6 +13,8 @@ bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root);
 /* Makes the states, before the forces; se3di_read_state_laws, after them: what they depend on. */
 bool se3di_read_states(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_state_laws(se3di_reader *reader);
+/* Before the forces, which are on them. */
+bool se3di_read_roads(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_forces(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_wheels(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);

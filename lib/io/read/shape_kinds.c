@@ -15,7 +15,9 @@ static const double pi = 3.14159265358979323846;
     X(CAPSULE, capsule)                                                                            \
     X(CYLINDER, cylinder)                                                                          \
     X(PLANE, plane)                                                                                \
-    X(MESH, mesh)
+    X(MESH, mesh)                                                                                  \
+    X(HEIGHTFIELD, heightfield)                                                                    \
+    X(FUNNEL, funnel)
 
 const char *const se3di_shape_styles[] = {[SE3DI_STYLE_PAINT] = "paint",
                                           [SE3DI_STYLE_STEEL] = "steel",
@@ -50,10 +52,27 @@ static const se3di_key shape_keys[] = {
     {"size", SE3DI_KIND_VECTOR, .types = " box ", .text = "its edges [m], each > 0"},
     {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere capsule cylinder ",
      .text = "[m]"},
-    {"length", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " capsule cylinder ",
+    {"bottom_radius", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, .types = " funnel ",
+     .text = "at its lower end along z [m]; 0: a cone with its tip down"},
+    {"top_radius", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, .types = " funnel ",
+     .text = "at its upper end [m]; 0: a cone with its tip up, as bottom_radius: a tube"},
+    {"length", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " capsule cylinder funnel ",
      .text = "along its z [m]; of a capsule between the centres of its ends"},
     {"file", SE3DI_KIND_TEXT, .types = " mesh ",
      .text = "STL (binary, ASCII) or OBJ, relative to the model file"},
+    {"file", SE3DI_KIND_TEXT, .types = " heightfield ",
+     .text = "CSV, in place of heights: a row on each line, relative to the model file"},
+    {"heights", SE3DI_KIND_HEIGHTS, .types = " heightfield ",
+     .text = "along its z [m]: rows along x, one after the other along y; an expression in x and y "
+             "needs rows and columns"},
+    {"rows", SE3DI_KIND_COUNT, .most = 1000000.0, .types = " heightfield ",
+     .text = "how many, of an expression"},
+    {"columns", SE3DI_KIND_COUNT, .most = 1000000.0, .types = " heightfield ",
+     .text = "how many, of an expression"},
+    {"spacing", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " heightfield ",
+     .text = "between columns, along x [m]; the origin is in the middle of the grid"},
+    {"row_spacing", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " heightfield ",
+     .standard = "spacing", .text = "between rows, along y [m]"},
     {"scale", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_model_shape, scale),
      .types = " mesh ", .standard = "1", .text = "factor, to metres"},
     {"convex", SE3DI_KIND_BOOL, SE3DI_INTO(se3di_shape_entry, convex), .types = " mesh ",
@@ -64,6 +83,10 @@ static const se3di_key shape_keys[] = {
      .text = "[kg/m^3], for bodies without mass; a mesh must be closed"},
     {"material", SE3DI_KIND_MATERIAL,
      .text = "if there is contact or particles, what has one touches"},
+    {"surface_velocity", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
+     .text = "of the surface on its body, as that of a belt, body frame [m/s]"},
+    {"surface_spin", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
+     .text = "how the surface turns on its body about the shape's centre, body frame [rad/s]"},
     {"position", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_model_shape, position),
      .standard = "[0, 0, 0]", .text = "centre, body frame [m]"},
     {"orientation", SE3DI_KIND_ORIENTATION, SE3DI_INTO(se3d_model_shape, orientation),
@@ -196,6 +219,12 @@ static int draw_cylinder(const se3d_model_shape *s, double extent, se3di_look lo
     return 1;
 }
 
+static void enclose_funnel(const se3d_model_shape *s, double half[3])
+{
+    const double wide = s->bottom_radius > s->top_radius ? s->bottom_radius : s->top_radius;
+    set(half, wide, wide, 0.5 * s->length);
+}
+
 static int draw_plane(const se3d_model_shape *s, double extent, se3di_look looks[SE3DI_LOOKS])
 {
     (void)s;
@@ -229,6 +258,11 @@ static const se3di_shape_row rows[] = {
                           .keys = SE3DI_SHAPE_HAS_NORMAL,
                           .draw = draw_plane},
     [SE3D_SHAPE_MESH] = {.create = se3d_shape_create_mesh, .keys = SE3DI_SHAPE_NEEDS_FILE},
+    [SE3D_SHAPE_HEIGHTFIELD] = {.create = se3d_shape_create_heightfield,
+                                .keys = SE3DI_SHAPE_HAS_HEIGHTS},
+    [SE3D_SHAPE_FUNNEL] = {.create = se3d_shape_create_funnel,
+                           .keys = SE3DI_SHAPE_NEEDS_LENGTH | SE3DI_SHAPE_NEEDS_ENDS,
+                           .enclose = enclose_funnel},
 };
 
 const se3di_shape_row *se3di_shape_row_of(const se3d_model_shape *shape)

@@ -14,6 +14,7 @@
 #include "io/document/reader.h"
 #include "io/document/value.h"
 #include "io/model/model.h"
+#include "io/read/heightfield.h"
 #include "io/read/include.h"
 #include "io/read/mesh_file.h"
 #include "io/read/objects.h"
@@ -71,6 +72,12 @@ static bool read_plane(se3di_reader *reader, const se3di_node *node, se3d_model_
     return true;
 }
 
+static bool read_heights(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
+{
+    entry->mesh = se3di_read_heightfield(reader, node);
+    return entry->mesh != NULL;
+}
+
 static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_shape_entry *entry)
 {
     se3d_model_shape *shape = &entry->shape;
@@ -80,6 +87,16 @@ static bool read_triangles(se3di_reader *reader, const se3di_node *node, se3di_s
     }
     entry->mesh = se3di_read_mesh(reader, node, shape->file, shape->scale);
     return entry->mesh != NULL;
+}
+
+/* The radii of a funnel, which has at least one. */
+static bool read_ends(se3di_reader *reader, const se3di_node *node, se3d_model_shape *shape)
+{
+    return read_required(reader, node, "bottom_radius", &shape->bottom_radius) &&
+           read_required(reader, node, "top_radius", &shape->top_radius) &&
+           (shape->bottom_radius > 0.0 || shape->top_radius > 0.0 ||
+            se3di_reader_fail_key(reader, node, "top_radius",
+                                  "is 0 as `bottom_radius` is, one of them must be > 0"));
 }
 
 /* Whether all went well, as far as the kind of shape has this key. */
@@ -96,7 +113,9 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_
     return read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_RADIUS, "radius", &shape->radius) &&
            read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_LENGTH, "length", &shape->length) &&
            (!(keys & SE3DI_SHAPE_NEEDS_SIZE) || read_size(reader, node, shape->size)) &&
+           (!(keys & SE3DI_SHAPE_NEEDS_ENDS) || read_ends(reader, node, shape)) &&
            (!(keys & SE3DI_SHAPE_HAS_NORMAL) || read_plane(reader, node, shape)) &&
+           (!(keys & SE3DI_SHAPE_HAS_HEIGHTS) || read_heights(reader, node, entry)) &&
            (!(keys & SE3DI_SHAPE_NEEDS_FILE) || read_triangles(reader, node, entry));
 }
 
@@ -160,6 +179,15 @@ static bool place_shape(se3di_reader *reader, bool on_ground, se3di_shape_entry 
         shape->orientation[2] = p[0];
         shape->orientation[3] = p[1];
     }
+    if (se3di_shape_row_of(shape)->keys & SE3DI_SHAPE_NEEDS_ENDS) {
+        if (place->mirror == 2) {
+            const double bottom = shape->bottom_radius;
+            shape->bottom_radius = shape->top_radius;
+            shape->top_radius = bottom;
+        }
+        entry->mesh = se3di_make_funnel(reader, shape);
+        return entry->mesh != NULL;
+    }
     if (entry->mesh && place->mirror >= 0) {
         entry->mesh = se3di_mirror_mesh(reader, entry->mesh, place->mirror);
         return entry->mesh != NULL;
@@ -185,14 +213,29 @@ bool se3di_add_shape(se3di_reader *reader, const se3di_node *node, size_t entry,
     return true;
 }
 
+/* Without contact shapes are drawn, and have a mass (se3di_read_shape_mass), but nothing else. */
+static bool are_drawn_only(const se3d_model *model)
+{
+    static const char *const sections[] = {"contact", "particles", "sinks"};
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) {
+        if (se3di_node_get(model->root, sections[k])) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool se3di_read_shapes(se3di_reader *reader, const se3di_node *body, size_t entry)
 {
     const se3di_node *list = NULL;
+    if (reader->study && are_drawn_only(reader->model)) {
+        return true; /* a sample is not drawn */
+    }
     if (!se3di_read_list(reader, body, "shapes", &list)) {
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        se3di_shape_entry made;
+        se3di_shape_entry made = {.node = NULL};
         if (!read_shape(reader, node, &made) || !place_shape(reader, entry == 0, &made) ||
             !se3di_add_shape(reader, node, entry, &made)) {
             return false;
@@ -306,7 +349,7 @@ bool se3di_read_shape_mass(se3di_reader *reader, const se3di_node *body, se3d_bo
         return false;
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        se3di_shape_entry entry;
+        se3di_shape_entry entry = {.node = NULL};
         se3di_solid solid;
         double density = 0.0;
         if (!read_shape(reader, node, &entry) || !read_density(reader, body, node, &density) ||

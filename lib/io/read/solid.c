@@ -255,7 +255,7 @@ bool se3di_solid_measure(se3di_reader *reader, const se3di_node *node,
                          se3di_solid *solid)
 {
     memset(solid, 0, sizeof *solid);
-    if (mesh && density > 0.0) {
+    if (mesh && !mesh->of && density > 0.0) { /* a heightfield encloses nothing */
         return measure_mesh(reader, node, mesh, density, solid);
     }
     measure_simple(shape, density, solid);

@@ -39,6 +39,10 @@ static const se3di_key state_keys[] = {
     {"rate", SE3DI_KIND_FUNCTION, .types = " ode ", .required = true,
      .text = "its derivative: a function of t and of [channels](#laws-of-channels), also of the "
          "state itself and of others"},
+    {"output", SE3DI_KIND_FUNCTION, .types = " ode ", .standard = "the state itself",
+     .text = "what `value` is: a function of t and of channels; `state` is the state itself"},
+    {"input", SE3DI_KIND_FUNCTION, .types = " ode ",
+     .text = "a number that rate and output may share: a function of t and of channels"},
     {"input", SE3DI_KIND_FUNCTION, .types = " integrator lag transfer pid ", .required = true,
      .text = "u: a function of t and of [channels](#laws-of-channels)"},
     {"gain", SE3DI_KIND_NUMBER, SE3DI_INTO(state_values, gain), .types = " integrator lag ",
@@ -145,7 +149,6 @@ static bool read_state(se3di_reader *reader, const se3di_node *node)
         !se3di_read_element(reader, node, SE3DI_ELEMENT_STATE, &entry)) {
         return false;
     }
-    entry->part = reader->part;
     return create_states(reader, node, entry);
 }
 
@@ -384,6 +387,20 @@ static bool read_pid(se3di_reader *reader, const se3di_node *node, const se3di_e
            set_rate(reader, node, entry, 0, rate[0] ? rate : "0*u");
 }
 
+/* Output and input of an ode, which it may have. */
+static bool read_parts(se3di_reader *reader, const se3di_element_entry *entry)
+{
+    const se3di_node *node = entry->node;
+    se3d_function function;
+    if (se3di_node_get(node, "input") && !set_input(reader, node, entry)) {
+        return false;
+    }
+    return !se3di_node_get(node, "output") ||
+           (read_law(reader, node, "output", &function) &&
+            fail_system(reader, node,
+                        se3d_state_set_output(reader->system, entry->states[0], function)));
+}
+
 static bool read_dependence(se3di_reader *reader, const se3di_element_entry *entry)
 {
     const se3di_node *node = entry->node;
@@ -393,7 +410,8 @@ static bool read_dependence(se3di_reader *reader, const se3di_element_entry *ent
     if (strcmp(type, "ode") == 0) {
         return read_law(reader, node, "rate", &function) &&
                fail_system(reader, node,
-                           se3d_state_set_rate(reader->system, entry->states[0], function));
+                           se3d_state_set_rate(reader->system, entry->states[0], function)) &&
+               read_parts(reader, entry);
     }
     if (!se3di_read_fields(reader, node, &se3di_object_state, type, "state_values", &v) ||
         !set_input(reader, node, entry)) {

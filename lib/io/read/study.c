@@ -7,6 +7,7 @@
 #include "io/channel/combine.h"
 #include "io/channel/event.h"
 #include "io/channel/study.h"
+#include "io/document/curve.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
 #include "io/document/guess.h"
@@ -15,10 +16,12 @@
 #include "io/model/model.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
+#include "io/read/study_goal.h"
 #include "io/read/study_values.h"
 
 #define SAMPLES_MAX 1e8
 #define SEED_MAX    9007199254740992.0 /* 2^53 */
+#define MODES_MAX   1e5
 enum { SOBOL_PARAMETERS_MAX = 21 };
 
 static const char *const methods[] = {[SE3DI_STUDY_GRID] = "grid",
@@ -35,6 +38,11 @@ static const se3di_key study_keys[] = {
     {"table", SE3DI_KIND_TEXT, SE3DI_INTO(se3di_study_entry, table),
      .text = "CSV file with a column for each parameter and a row for each sample, relative to the "
          "model file; in place of parameters"},
+    {"sensitivities", SE3DI_KIND_NAMES, .standard = "those that vary",
+     .text = "parameters of which `se3d study --sensitivities` takes derivatives"},
+    {"optimize", SE3DI_KIND_OBJECT, .object = "goal",
+     .text = "which parameters `se3d study --optimize` seeks, so that a measure is the least or "
+         "the greatest"},
     {"method", SE3DI_KIND_WORD, SE3DI_INTO(se3di_study_entry, method), .words = methods,
      .standard = "grid; with `samples`, monte_carlo", .text = "how the samples are laid out"},
     {"samples", SE3DI_KIND_COUNT, .most = SAMPLES_MAX,
@@ -54,7 +62,8 @@ const se3di_object se3di_object_study = {
     "study",
     "Many runs of the model with other parameters.",
     study_keys, NULL,
-    "\"oneOf\": [{\"required\": [\"parameters\"]}, {\"required\": [\"table\"]}]"};
+    "\"anyOf\": [{\"required\": [\"parameters\"]}, {\"required\": [\"table\"]}, {\"required\": "
+    "[\"sensitivities\"]}, {\"required\": [\"optimize\"]}]"};
 
 #define CHANNEL "a [channel](#output) of one number or an [expression](#expressions-of-channels): "
 static const se3di_key measure_keys[] = {
@@ -70,6 +79,17 @@ static const se3di_key measure_keys[] = {
     {"settling", SE3DI_KIND_TEXT,
      .text = CHANNEL "time from the beginning until it stays within `band` of `target`"},
     {"time_of", SE3DI_KIND_TEXT, .text = "an [event](#events): when it happens first"},
+    {"frequency", SE3DI_KIND_COUNT, .most = MODES_MAX,
+     .text = "number of a [mode](#modes), from 1, of the analysis `modes`: its undamped frequency "
+         "[Hz]"},
+    {"damping", SE3DI_KIND_COUNT, .most = MODES_MAX, .text = "the same: its damping ratio"},
+    {"misfit", SE3DI_KIND_TEXT,
+     .text = CHANNEL "root of the mean square over time of how far it is off a `curve`"},
+    {"along", SE3DI_KIND_TEXT, .standard = "the time since the beginning of the analysis",
+     .text = "of `misfit`, the channel that x of the curve is"},
+    {"curve", SE3DI_KIND_OBJECT, .object = "spline",
+     .text = "of `misfit`, the wanted values: {linear: [[x, y], ...]} or {linear: wanted.csv}, in "
+         "the units of the channels"},
     {"time", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3di_study_measure, time),
      .text = "of `at`, since the beginning of the analysis; between two rows a straight line [s]"},
     {"event", SE3DI_KIND_TEXT, SE3DI_INTO(se3di_study_measure, event),
@@ -81,7 +101,7 @@ static const se3di_key measure_keys[] = {
     {.key = NULL}};
 const se3di_object se3di_object_measure = {
     "measure",
-    "A number that is made of a run: exactly one of max ... time_of, with what belongs to it.",
+    "A number that is made of a run: exactly one of max ... misfit, with what belongs to it.",
     measure_keys, NULL,
     NULL};
 /* clang-format on */
@@ -166,7 +186,8 @@ static bool find_reduction(se3di_reader *reader, const se3di_node *node, se3di_s
     }
     return *found || se3di_reader_fail(reader, node,
                                        "must have one of max, min, range, mean, rms, integral, "
-                                       "initial, final, at, settling, time_of");
+                                       "initial, final, at, settling, time_of, frequency, "
+                                       "damping, misfit");
 }
 
 /* Keys that belong to one reduction only. */
@@ -176,10 +197,9 @@ static bool check_belongings(se3di_reader *reader, const se3di_node *node,
     static const struct {
         const char *key;
         se3di_reduction of;
-    } table[] = {{"time", SE3DI_REDUCE_AT},
-                 {"event", SE3DI_REDUCE_AT},
-                 {"band", SE3DI_REDUCE_SETTLING},
-                 {"target", SE3DI_REDUCE_SETTLING}};
+    } table[] = {{"time", SE3DI_REDUCE_AT},       {"event", SE3DI_REDUCE_AT},
+                 {"band", SE3DI_REDUCE_SETTLING}, {"target", SE3DI_REDUCE_SETTLING},
+                 {"along", SE3DI_REDUCE_MISFIT},  {"curve", SE3DI_REDUCE_MISFIT}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         const se3di_node *child = se3di_node_get(node, table[k].key);
         if (child && m->reduction != table[k].of) {
@@ -195,13 +215,62 @@ static bool check_belongings(se3di_reader *reader, const se3di_node *node,
            se3di_reader_fail_key(reader, node, "band", "is missing, `settling` needs it");
 }
 
+/* The curve that a channel is to follow, and what its x is. */
+static bool read_wanted(se3di_reader *reader, const se3di_node *node, se3di_study_entry *entry,
+                        se3di_study_measure *m)
+{
+    const se3di_node *curve = se3di_node_get(node, "curve");
+    const se3di_node *along = se3di_node_get(node, "along");
+    const char *text = NULL;
+    se3d_function_def def = se3d_function_def_default();
+    if (!curve) {
+        return se3di_reader_fail_key(reader, node, "curve", "is missing, `misfit` needs it");
+    }
+    if (curve->kind != SE3DI_NODE_MAP || !se3di_node_get(curve, "linear")) {
+        return se3di_reader_fail(reader, curve,
+                                 "must be {linear: [[x, y], ...]} or {linear: a.csv}");
+    }
+    if (!se3di_read_curve(reader, curve, "x", &def) ||
+        (along && !se3di_read_text(reader, along, &text))) {
+        return false;
+    }
+    m->along = along ? add_source(entry, along) : SE3DI_STUDY_NO_SOURCE;
+    m->point_count = def.table_count;
+    m->x = se3di_iopool_array(reader->pool, 2 * def.table_count, sizeof *m->x);
+    if (!m->x) {
+        return se3di_reader_fail_memory(reader);
+    }
+    m->y = m->x + def.table_count;
+    for (size_t k = 0; k < def.table_count; ++k) {
+        m->x[k] = def.table_x[k];
+        m->y[k] = def.table_y[k];
+    }
+    return true;
+}
+
+/* The number of a mode: that of the measured analysis is known later. */
+static bool read_mode(se3di_reader *reader, const se3di_node *node, const se3di_node *what,
+                      se3di_study_measure *m)
+{
+    m->node = what;
+    return se3di_read_key(reader, node, &se3di_object_measure, NULL, what->key, &m->mode) &&
+           check_belongings(reader, node, m) &&
+           (m->mode > 0.0 || se3di_reader_fail(reader, what, "is 0, modes are counted from 1"));
+}
+
 static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_study_entry *entry,
                            se3di_study_measure *m)
 {
     const se3di_node *what = NULL;
     const char *text = NULL;
     if (!se3di_read_keys(reader, node, &se3di_object_measure) ||
-        !find_reduction(reader, node, m, &what) || !se3di_read_text(reader, what, &text)) {
+        !find_reduction(reader, node, m, &what)) {
+        return false;
+    }
+    if (m->reduction == SE3DI_REDUCE_FREQUENCY || m->reduction == SE3DI_REDUCE_DAMPING) {
+        return read_mode(reader, node, what, m);
+    }
+    if (!se3di_read_text(reader, what, &text)) {
         return false;
     }
     reader->alternative = -1; /* the unit of the channel, whatever that is */
@@ -210,6 +279,9 @@ static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_s
         return false;
     }
     m->has_target = se3di_node_get(node, "target") != NULL;
+    if (m->reduction == SE3DI_REDUCE_MISFIT && !read_wanted(reader, node, entry, m)) {
+        return false;
+    }
     if (m->reduction == SE3DI_REDUCE_TIME_OF) {
         m->event = text;
         return check_event(reader, what, text);
@@ -276,7 +348,7 @@ static bool read_measures(se3di_reader *reader, const se3di_node *map, se3di_stu
                                  (int)SE3DI_STUDY_MEASURES_MAX);
     }
     entry->measures = se3di_iopool_array(reader->pool, map->count, sizeof *entry->measures);
-    entry->sources = se3di_iopool_array(reader->pool, map->count, sizeof *entry->sources);
+    entry->sources = se3di_iopool_array(reader->pool, 2 * map->count, sizeof *entry->sources);
     if (!entry->measures || !entry->sources) {
         return se3di_reader_fail_memory(reader);
     }
@@ -344,10 +416,27 @@ static bool count_samples(se3di_reader *reader, const se3di_node *map, se3di_stu
                                  entry->variable_count, (int)SOBOL_PARAMETERS_MAX);
 }
 
+/* What lays out samples is for nothing. */
+static bool check_no_samples(se3di_reader *reader, const se3di_node *map)
+{
+    static const char *const others[] = {"method", "samples", NULL};
+    for (size_t k = 0; others[k]; ++k) {
+        if (se3di_node_get(map, others[k])) {
+            return se3di_reader_fail_key(reader, map, others[k],
+                                         "is for `parameters` that vary, and there are none");
+        }
+    }
+    return true;
+}
+
 static bool read_samples(se3di_reader *reader, const se3di_node *map, se3di_study_entry *entry)
 {
     const se3di_node *parameters = se3di_node_get(map, "parameters");
     static const char *const others[] = {"parameters", "method", "samples", NULL};
+    const bool is_other = se3di_node_get(map, "sensitivities") || se3di_node_get(map, "optimize");
+    if (!parameters && !entry->table && is_other) {
+        return check_no_samples(reader, map);
+    }
     if (!parameters && !entry->table) {
         return se3di_reader_fail_key(reader, map, "parameters",
                                      "is missing: which parameters vary? {m: [1, 2, 3]}");
@@ -377,10 +466,24 @@ static bool check_analysis(se3di_reader *reader, const se3di_node *map, se3di_st
         return se3di_reader_fail(reader, node, "is %s, must be from 1 to %zu", node->text,
                                  model->analysis_count);
     }
-    const size_t last = node ? number : model->analysis_count;
-    return last == 0 || !model->analyses[last - 1].modes.file ||
-           se3di_reader_fail(reader, node ? node : map,
-                             "modes cannot be measured, name another `analysis` by its number");
+    return true;
+}
+
+/* Frequencies are those of an analysis of modes. */
+static bool check_modes(se3di_reader *reader, const se3di_study_entry *entry)
+{
+    const se3d_model *model = reader->model;
+    const size_t number = entry->analysis > 0.0 ? (size_t)entry->analysis : model->analysis_count;
+    const bool has_modes = number > 0 && model->analyses[number - 1].modes.file;
+    for (size_t k = 0; k < entry->measure_count && !has_modes; ++k) {
+        const se3di_study_measure *m = &entry->measures[k];
+        if (m->mode > 0.0) {
+            return se3di_reader_fail(reader, m->node,
+                                     "the analysis that is measured must be of type modes; "
+                                     "`analysis` of the study names one by its number");
+        }
+    }
+    return true;
 }
 
 static const char *copy_text(se3di_reader *reader, const char *text, bool *good)
@@ -439,7 +542,10 @@ bool se3di_read_study(se3di_reader *reader, const se3di_node *root)
         return se3di_reader_fail_key(reader, map, "measures",
                                      "is missing: what is measured? {top: {max: bar.position.z}}");
     }
-    if (!read_measures(reader, measures, entry) || !copy_options(reader, &entry->options)) {
+    if (!read_measures(reader, measures, entry) || !check_modes(reader, entry) ||
+        !se3di_read_study_goal(reader, se3di_node_get(map, "optimize"), entry) ||
+        !se3di_read_study_sensitivities(reader, se3di_node_get(map, "sensitivities"), entry) ||
+        !copy_options(reader, &entry->options)) {
         return false;
     }
     reader->model->study = entry;

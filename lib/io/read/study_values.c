@@ -54,8 +54,7 @@ static const distribution_row distributions[] = {
     {"weibull", "weibull(scale, shape)", SE3DI_DISTRIBUTION_WEIBULL, 2, 1}};
 enum { DISTRIBUTIONS = sizeof distributions / sizeof *distributions };
 
-/* The parameter of the model that is meant. `place`: what a mistake is about. */
-static bool check_parameter(se3di_reader *reader, const se3di_node *place, const char *name)
+bool se3di_check_study_parameter(se3di_reader *reader, const se3di_node *place, const char *name)
 {
     const se3di_node *map = se3di_node_get(reader->model->root, "parameters");
     const se3di_amount *value = se3di_scope_find(reader->scope, name);
@@ -123,6 +122,19 @@ static bool read_list(se3di_reader *reader, const se3di_node *node, se3di_study_
     return true;
 }
 
+bool se3di_read_study_amounts(se3di_reader *reader, const se3di_node *map, const char *const *keys,
+                              size_t count, se3di_amount *values)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const se3di_node *node = se3di_node_get(map, keys[k]);
+        if (node && (!se3di_read_amount(reader, node, &values[k]) ||
+                     !check_single(reader, node, &values[k]))) {
+            return false;
+        }
+    }
+    return unify(reader, map, values, count);
+}
+
 static bool read_range(se3di_reader *reader, const se3di_node *node, se3di_study_variable *v)
 {
     static const char *const names[2] = {"from", "to"};
@@ -133,15 +145,11 @@ static bool read_range(se3di_reader *reader, const se3di_node *node, se3di_study
         return false;
     }
     for (size_t k = 0; k < 2; ++k) {
-        const se3di_node *end = se3di_node_get(node, names[k]);
-        if (!end) {
+        if (!se3di_node_get(node, names[k])) {
             return se3di_reader_fail_key(reader, node, names[k], "is missing");
         }
-        if (!se3di_read_amount(reader, end, &ends[k]) || !check_single(reader, end, &ends[k])) {
-            return false;
-        }
     }
-    if (!unify(reader, node, ends, 2) ||
+    if (!se3di_read_study_amounts(reader, node, names, 2, ends) ||
         !se3di_read_key(reader, node, &se3di_object_varied, NULL, "count", &count)) {
         return false;
     }
@@ -288,7 +296,7 @@ static bool read_distribution(se3di_reader *reader, const se3di_node *node, se3d
 static bool read_variable(se3di_reader *reader, const se3di_node *node, se3di_study_variable *v)
 {
     v->name = node->key;
-    if (!check_parameter(reader, node, node->key)) {
+    if (!se3di_check_study_parameter(reader, node, node->key)) {
         return false;
     }
     switch (node->kind) {
@@ -322,6 +330,54 @@ bool se3di_read_study_variables(se3di_reader *reader, const se3di_node *map,
             return false;
         }
         ++entry->variable_count;
+    }
+    return true;
+}
+
+/* ---- sensitivities ---------------------------------------------------------------------------*/
+
+static bool add_sensitivity(se3di_reader *reader, const se3di_node *node, se3di_study_entry *entry)
+{
+    const char *name = NULL;
+    if (!se3di_read_text(reader, node, &name) || !se3di_check_study_parameter(reader, node, name)) {
+        return false;
+    }
+    for (size_t k = 0; k < entry->sensitivity_count; ++k) {
+        if (strcmp(entry->sensitivities[k], name) == 0) {
+            return se3di_reader_fail(reader, node, "`%.60s` is there twice", name);
+        }
+    }
+    entry->sensitivities[entry->sensitivity_count++] = name;
+    return true;
+}
+
+bool se3di_read_study_sensitivities(se3di_reader *reader, const se3di_node *node,
+                                    se3di_study_entry *entry)
+{
+    const size_t sought =
+        entry->goal && entry->variable_count == 0 ? entry->goal->unknown_count : 0;
+    const size_t count = node ? node->count : entry->variable_count + sought;
+    if (node && (node->kind != SE3DI_NODE_LIST || count == 0)) {
+        return se3di_reader_fail(reader, node, "is %s, must be a list of parameters such as [m, k]",
+                                 node->kind == SE3DI_NODE_LIST ? "empty"
+                                                               : se3di_node_describe(node));
+    }
+    if (count > SE3DI_STUDY_PARAMETERS_MAX) {
+        return se3di_reader_fail(reader, node, "has %zu parameters, at most %d are allowed", count,
+                                 (int)SE3DI_STUDY_PARAMETERS_MAX);
+    }
+    entry->sensitivities = se3di_iopool_array(reader->pool, count, sizeof *entry->sensitivities);
+    if (!entry->sensitivities) {
+        return se3di_reader_fail_memory(reader);
+    }
+    for (const se3di_node *child = node ? node->first : NULL; child; child = child->next) {
+        if (!add_sensitivity(reader, child, entry)) {
+            return false;
+        }
+    }
+    for (size_t k = 0; !node && k < count; ++k) {
+        entry->sensitivities[entry->sensitivity_count++] =
+            sought > 0 ? entry->goal->unknowns[k].name : entry->variables[k].name;
     }
     return true;
 }
@@ -367,7 +423,7 @@ static bool read_head(table *t, char *line)
     }
     char *at = line;
     for (char *name; (name = se3di_table_next_cell(&at)) != NULL;) {
-        if (!check_parameter(t->reader, t->node, name)) {
+        if (!se3di_check_study_parameter(t->reader, t->node, name)) {
             return false;
         }
         for (size_t k = 0; k < entry->variable_count; ++k) {

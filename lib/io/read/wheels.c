@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/base/rotation.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
 #include "io/document/guess.h"
@@ -14,6 +15,8 @@
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 #include "math/vec3.h"
+
+static const char *const frames[] = {"ground", "body", NULL};
 
 /* clang-format off */
 static const se3di_key wheel_keys[] = {
@@ -32,6 +35,9 @@ static const se3di_key wheel_keys[] = {
      .required = true, .text = "from the centre to the road [m]"},
     {"width", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_wheel_def, width),
      .standard = "0", .text = "of the tread [m]"},
+    {"frame", SE3DI_KIND_WORD, .words = frames, .standard = "ground",
+     .text = "of axis, forward, up, lower and upper; body: that of the body, forward and up that "
+         "of the chassis"},
     {"forward", SE3DI_KIND_DIRECTION, .standard = "[1, 0, 0]",
      .text = "of the vehicle, ground frame"},
     {"up", SE3DI_KIND_DIRECTION, .standard = "[0, 0, 1]",
@@ -116,11 +122,23 @@ static bool read_relations(se3di_reader *reader, const se3di_node *node, se3d_wh
 }
 
 static bool read_point_on_body(se3di_reader *reader, const se3di_node *node, const char *key,
-                               const se3di_body_entry *body, double point[3])
+                               const se3di_body_entry *body, bool is_local, double point[3])
 {
     double ground[3];
+    if (is_local) {
+        return se3di_read_key_point(reader, node, key, body, point);
+    }
     return se3di_read_key_ground_point(reader, node, key, ground) &&
            se3di_ground_to_body(reader, body->body, ground, point);
+}
+
+/* Whether directions and points are said in the frames of the bodies. */
+static bool read_frame(se3di_reader *reader, const se3di_node *node, bool *is_local)
+{
+    int32_t frame = 0;
+    const bool good = se3di_read_key(reader, node, &se3di_object_wheel, NULL, "frame", &frame);
+    *is_local = frame != 0;
+    return good;
 }
 
 /* The two points of the steer axis, or neither. */
@@ -128,12 +146,15 @@ static bool read_steer_axis(se3di_reader *reader, const se3di_node *node,
                             const se3di_body_entry *body, se3d_wheel_def *def)
 {
     const bool lower = se3di_node_get(node, "lower") != NULL;
+    bool is_local = false;
     if (lower != (se3di_node_get(node, "upper") != NULL)) {
         return se3di_reader_fail_key(reader, node, lower ? "upper" : "lower",
                                      "is missing, the steer axis has two points");
     }
-    return !lower || (read_point_on_body(reader, node, "lower", body, def->steer_lower) &&
-                      read_point_on_body(reader, node, "upper", body, def->steer_upper));
+    return read_frame(reader, node, &is_local) &&
+           (!lower ||
+            (read_point_on_body(reader, node, "lower", body, is_local, def->steer_lower) &&
+             read_point_on_body(reader, node, "upper", body, is_local, def->steer_upper)));
 }
 
 /* What is needed to pair wheels, ground frame. */
@@ -179,6 +200,23 @@ static void mark_pair(se3di_reader *reader, const se3d_wheel_def *def, se3di_ele
     }
 }
 
+/* Its directions in the ground frame. */
+static bool turn_seat(se3di_reader *reader, const se3di_body_entry *const bodies[2],
+                      const se3d_wheel_def *def, wheel_seat *seat)
+{
+    double p[4], A[2][9];
+    for (int k = 0; k < 2; ++k) {
+        if (SE3D_FAILED(se3d_body_get_orientation(reader->system, bodies[k]->body, p))) {
+            return se3di_reader_fail_memory(reader);
+        }
+        se3di_rotation_to_matrix(p, A[k]);
+    }
+    se3di_mul(A[0], def->axis, seat->axis);
+    se3di_mul(A[1], def->forward, seat->forward);
+    se3di_mul(A[1], def->up, seat->up);
+    return true;
+}
+
 static bool read_seat(se3di_reader *reader, const se3di_node *node,
                       const se3di_body_entry *const bodies[2], wheel_seat *seat,
                       se3d_wheel_def *def)
@@ -187,8 +225,21 @@ static bool read_seat(se3di_reader *reader, const se3di_node *node,
         return se3di_reader_fail_key(reader, node, "at",
                                      "is missing, or point: where the wheel centre is");
     }
+    bool is_local = false;
     if (!se3di_read_key_place(reader, node, "point", "at", bodies[0], def->center) ||
-        !se3di_read_key_ground_direction(reader, node, "axis", false, seat->axis) ||
+        !read_frame(reader, node, &is_local)) {
+        return false;
+    }
+    if (is_local) {
+        return !SE3D_FAILED(
+                   se3d_body_get_point(reader->system, bodies[0]->body, def->center, seat->at)) &&
+               se3di_read_key_body_direction(reader, node, "axis", bodies[0], false, def->axis) &&
+               se3di_read_key_body_direction(reader, node, "forward", bodies[1], false,
+                                             def->forward) &&
+               se3di_read_key_body_direction(reader, node, "up", bodies[1], false, def->up) &&
+               turn_seat(reader, bodies, def, seat);
+    }
+    if (!se3di_read_key_ground_direction(reader, node, "axis", false, seat->axis) ||
         !se3di_read_key_ground_direction(reader, node, "forward", false, seat->forward) ||
         !se3di_read_key_ground_direction(reader, node, "up", false, seat->up)) {
         return false;

@@ -51,7 +51,7 @@ static se3d_status fail_path(se3di_runner *r, const char *path, int why)
         return fail(r, SE3D_ERR_STATE, text);
     }
     snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
-             memory ? "out of memory" : strerror(why));
+             memory ? "out of memory" : se3di_file_get_text(why));
     return fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
 }
 
@@ -63,7 +63,8 @@ static se3d_status fail_csv(se3di_runner *r, const se3di_csv *csv)
         return fail_path(r, csv->path, csv->failure);
     }
     snprintf(text, sizeof text, "%.500s: cannot be written: %s; the first %" PRIu64 " row%s kept",
-             csv->path, strerror(csv->failure), csv->lines - 1, csv->lines == 2 ? " is" : "s are");
+             csv->path, se3di_file_get_text(csv->failure), csv->lines - 1,
+             csv->lines == 2 ? " is" : "s are");
     return fail(r, SE3D_ERR_IO, text);
 }
 
@@ -76,7 +77,7 @@ static se3d_status open_vtk(se3di_runner *r, const se3di_output_entry *entry, co
 {
     se3di_output_file *file = &r->files[r->file_count];
     file->entry = entry;
-    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path);
+    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path, file->entry->grid);
     if (!file->vtk) {
         return fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
@@ -677,6 +678,7 @@ static se3d_status run_modes(se3di_runner *r, const se3di_analysis_entry *entry,
     se3di_modes_run modes = {.model = r->model,
                              .entry = &entry->modes,
                              .folder = r->options->directory,
+                             .watch = r->watch,
                              .pool = &r->run->pool};
     se3d_status status = se3di_modes_run_write(&modes);
     for (size_t k = 0; k < modes.file_count; ++k) {
@@ -987,7 +989,8 @@ se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
     se3d_status status = open_watch(&r);
     se3d_system_get_time(model->system, &r.time);
     for (size_t k = 0; k <= watch->analysis && status >= 0; ++k) {
-        status = model->analyses[k].modes.file ? status : run_analysis(&r, k);
+        const bool passes = model->analyses[k].modes.file && k < watch->analysis;
+        status = passes ? status : run_analysis(&r, k);
     }
     se3di_sample_destroy(&r.sample);
     model->running = 0;

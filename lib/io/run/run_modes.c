@@ -12,6 +12,7 @@
 #include "io/base/file.h"
 #include "io/base/pool.h"
 #include "io/model/model.h"
+#include "io/run/watch.h"
 #include "io/write/csv.h"
 
 static const char *const shape_parts[] = {"x", "y", "z", "rx", "ry", "rz"};
@@ -20,7 +21,7 @@ static se3d_status fail_file(se3di_modes_run *run, const se3di_csv *csv)
 {
     snprintf(run->problem, sizeof run->problem, "%.500s: cannot be written: %s",
              csv->path ? csv->path : run->entry->file,
-             csv->failure ? strerror(csv->failure) : "out of memory");
+             csv->failure ? se3di_file_get_text(csv->failure) : "out of memory");
     return csv->failure ? SE3D_ERR_IO : SE3D_ERR_NO_MEMORY;
 }
 
@@ -192,6 +193,29 @@ static se3d_status write_transfer(se3di_modes_run *run, const se3d_modes *modes)
     return close_csv(run, &csv);
 }
 
+/* Eigenvalues for who asked for them. */
+static se3d_status show_modes(const se3di_watch *watch, const se3d_modes *modes)
+{
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; watch->mode && k < se3d_modes_count(modes) && status >= 0; ++k) {
+        se3d_eigenvalue e;
+        status = se3d_modes_get_eigenvalue(modes, k, &e);
+        watch->mode(watch->ctx, k, &e);
+    }
+    return status;
+}
+
+static se3d_status write_files(se3di_modes_run *run, const se3d_modes *modes)
+{
+    const se3di_modes_entry *entry = run->entry;
+    const bool matrices = entry->input_count + entry->output_count > 0;
+    se3d_status status = write_modes(run, modes);
+    for (int32_t k = SE3D_MODES_A; k <= SE3D_MODES_D && matrices && status >= 0; ++k) {
+        status = write_matrix(run, modes, k);
+    }
+    return status >= 0 && entry->frequency_count > 0 ? write_transfer(run, modes) : status;
+}
+
 se3d_status se3di_modes_run_write(se3di_modes_run *run)
 {
     const se3di_modes_entry *entry = run->entry;
@@ -203,14 +227,7 @@ se3d_status se3di_modes_run_write(se3di_modes_run *run)
     def.output_count = entry->output_count;
     se3d_status status = se3d_modes_create(run->model->system, &def, &modes);
     if (status >= 0) {
-        status = write_modes(run, modes);
-    }
-    const bool matrices = entry->input_count + entry->output_count > 0;
-    for (int32_t k = SE3D_MODES_A; k <= SE3D_MODES_D && matrices && status >= 0; ++k) {
-        status = write_matrix(run, modes, k);
-    }
-    if (status >= 0 && entry->frequency_count > 0) {
-        status = write_transfer(run, modes);
+        status = run->watch ? show_modes(run->watch, modes) : write_files(run, modes);
     }
     se3d_modes_destroy(modes);
     return status;

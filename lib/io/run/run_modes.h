@@ -11,6 +11,7 @@ typedef struct se3di_modes_run {
     const se3d_model *model;
     const se3di_modes_entry *entry;
     const char *folder;
+    const struct se3di_watch *watch; /* gets the modes in place of files; NULL: there are files */
     se3di_iopool *pool;
     se3d_run_file files[SE3DI_MODES_FILES_MAX]; /* written */
     size_t file_count;

@@ -5,6 +5,7 @@
 
 #include "io/channel/output.h"
 #include "io/model/model.h"
+#include "se3d/modes.h"
 
 typedef struct se3di_watch {
     const se3di_output_entry *output; /* channels of the rows, and how often */
@@ -12,10 +13,13 @@ typedef struct se3di_watch {
     /* Take a row: the time, then the numbers of the channels. @return OK, NO_MEMORY */
     se3d_status (*take)(void *ctx, const double *row);
     se3d_event_callback event; /* of the events of that analysis; NULL: none */
-    void *ctx;                 /* of both */
+    /* Take a mode of that analysis, the slowest first, from 0; NULL: none. */
+    void (*mode)(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue);
+    void *ctx; /* of all */
 } se3di_watch;
 
-/* Run the analyses of a model up to the one that is wanted, but for modes; nothing is written.
+/* Run the analyses of a model up to the one that is wanted, but for modes before it; nothing is
+ * written.
  * @return as se3d_model_run; `error` (may be NULL) says why not. */
 se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
                               const se3d_run_options *options, se3d_model_error *error);

@@ -142,7 +142,7 @@ static se3d_status write_table(merger *m, const char *path)
         }
     }
     snprintf(text, sizeof text, "%.500s: cannot be written: %.150s", path,
-             strerror(errno ? errno : ENOSPC));
+             se3di_file_get_text(errno ? errno : ENOSPC));
     se3di_document_report(m->error, "", 0, 0, "", text);
     return SE3D_ERR_IO;
 }

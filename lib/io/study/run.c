@@ -15,6 +15,8 @@
 #include "io/run/watch.h"
 #include "io/study/study.h"
 
+#define SHARP 1e-11 /* tolerance of runs whose differences count */
+
 typedef struct trial {
     se3d_study *study;
     se3d_model *model;
@@ -76,9 +78,17 @@ static se3d_status take_row(void *ctx, const double *row)
     se3d_study *study = t->study;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         se3di_tally *tally = &study->tallies[k];
-        const size_t source = tally->measure->source;
-        if (source != SE3DI_STUDY_NO_SOURCE &&
-            !se3di_tally_add(tally, &study->pool, row[0], row[t->places[source]])) {
+        const se3di_study_measure *m = tally->measure;
+        if (m->source == SE3DI_STUDY_NO_SOURCE) {
+            continue;
+        }
+        double value = row[t->places[m->source]];
+        if (m->reduction == SE3DI_REDUCE_MISFIT) {
+            const double since = tally->has_row ? row[0] - tally->start : 0.0;
+            value -= se3di_tally_get_wanted(
+                m, m->along == SE3DI_STUDY_NO_SOURCE ? since : row[t->places[m->along]]);
+        }
+        if (!se3di_tally_add(tally, &study->pool, row[0], value)) {
             return SE3D_ERR_NO_MEMORY;
         }
     }
@@ -110,6 +120,19 @@ static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_r
     }
     se3di_sample_destroy(&sample);
     return status;
+}
+
+static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue)
+{
+    const trial *t = ctx;
+    for (size_t k = 0; k < t->study->entry->measure_count; ++k) {
+        const se3di_study_measure *m = &t->study->entry->measures[k];
+        if (m->mode > 0.0 && (size_t)m->mode == index + 1) {
+            se3di_tally_find(&t->study->tallies[k], m->reduction == SE3DI_REDUCE_FREQUENCY
+                                                        ? eigenvalue->frequency
+                                                        : eigenvalue->damping);
+        }
+    }
 }
 
 /* An expression over the measures above it and the parameters of this model. */
@@ -175,6 +198,27 @@ static se3d_status conclude(const trial *t, double *measures)
     return result;
 }
 
+static bool is_of_high_order(int32_t method)
+{
+    return method == SE3D_METHOD_AUTO || method == SE3D_METHOD_DOP853 ||
+           method == SE3D_METHOD_GAUSS || method == SE3D_METHOD_RADAU || method == SE3D_METHOD_RK45;
+}
+
+/* Let methods of high order hold their errors near rounding, if the user has not asked for another
+ * tolerance. Those of second order would take for ever. */
+static void sharpen(const trial *t)
+{
+    const bool wanted =
+        t->study->is_sharp && !t->study->entry->options.tolerance && !t->model->particles;
+    for (size_t k = 0; wanted && k < t->model->analysis_count; ++k) {
+        se3d_solver_def *solver = &t->model->analyses[k].solver;
+        if (is_of_high_order(solver->method) && solver->analysis == SE3D_ANALYSIS_DYNAMICS &&
+            !(solver->tolerance > 0.0 && solver->tolerance < SHARP)) {
+            solver->tolerance = SHARP;
+        }
+    }
+}
+
 static se3d_status run(trial *t, const se3di_named *values, size_t count, double *measures)
 {
     se3d_study *study = t->study;
@@ -189,6 +233,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
     if (status < 0) {
         return status;
     }
+    sharpen(t);
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         se3di_tally_begin(&study->tallies[k], &study->entry->measures[k]);
     }
@@ -196,6 +241,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
                                .analysis = study->analysis,
                                .take = take_row,
                                .event = take_event,
+                               .mode = take_mode,
                                .ctx = t};
     status = se3di_model_watch(t->model, &watch, &how, t->error);
     return status < 0 ? status : conclude(t, measures);

@@ -100,12 +100,12 @@ static bool fill(se3d_study *study)
     return make_head(study);
 }
 
-/* The analysis that is measured: modes have no rows. */
+/* The analysis that is measured. */
 static bool find_analysis(const se3d_model *model, size_t *index)
 {
     const size_t asked = (size_t)model->study->analysis;
     *index = asked > 0 ? asked - 1 : model->analysis_count - 1;
-    return *index < model->analysis_count && !model->analyses[*index].modes.file;
+    return *index < model->analysis_count;
 }
 
 se3d_status se3d_study_create(se3d_model *model, se3d_study **out, se3d_model_error *error)

@@ -27,15 +27,35 @@ struct se3d_study {
     se3d_interrupt interrupt;
     void *interrupt_ctx;
     bool is_running;  /* a sample: what it calls back may neither begin another nor destroy it */
+    bool is_sharp;    /* runs are as exact as methods can: their differences count */
     const char *head; /* first lines of its tables, without the shard */
     char *row;
     size_t row_size;
     se3di_iopool reply_pool; /* of the last answer */
 };
 
+enum { SE3DI_STUDY_LEVELS = 9 };
+
+/* The place where a derivative is taken, and with respect to what. */
+typedef struct se3di_study_point {
+    se3di_named *values; /* [count] of parameters; one of them is changed and put back */
+    size_t count, which;
+    double step;      /* the first one; those behind it are halves */
+    double bounds[2]; /* nothing outside of them is run */
+    size_t levels;    /* how many steps, 1 to SE3DI_STUDY_LEVELS: two runs each, and more steps
+                       * if there are values on one side only */
+} se3di_study_point;
+
 /* Run the model with some parameters of it. @return as se3d_study_eval. */
 se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
                             double *measures, se3d_model_error *error);
+/* Take derivatives of all measures, by runs beside the point; `centre`: the measures there.
+ * `errors` (may be NULL) are estimates. NaN: there is none.
+ * @return OK, NO_MEMORY, INTERRUPTED */
+se3d_status se3di_study_differentiate(se3d_study *study, const se3di_study_point *point,
+                                      const double *centre, double *derivatives, double *errors);
+/* A first step for derivatives with respect to a parameter that has this value. */
+double se3di_study_get_step(const se3d_study *study, const char *name, double value);
 /* "# se3d study ...": what all tables of the study begin with, then the rest of the first line and
  * the names of the columns. */
 const char *se3di_study_get_columns(const se3d_study *study);

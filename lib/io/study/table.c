@@ -136,7 +136,8 @@ static se3d_status fail(const char *path, se3d_model_error *error, se3d_status s
 static se3d_status fail_write(const char *path, se3d_model_error *error)
 {
     char text[200];
-    snprintf(text, sizeof text, "cannot be written: %.150s", strerror(errno ? errno : ENOSPC));
+    snprintf(text, sizeof text, "cannot be written: %.150s",
+             se3di_file_get_text(errno ? errno : ENOSPC));
     return fail(path, error, SE3D_ERR_IO, text);
 }
 

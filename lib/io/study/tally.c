@@ -19,6 +19,16 @@ void se3di_tally_begin(se3di_tally *tally, const se3di_study_measure *measure)
     tally->value_capacity = kept.value_capacity;
 }
 
+double se3di_tally_get_wanted(const se3di_study_measure *m, double x)
+{
+    size_t k = 1;
+    while (k + 1 < m->point_count && x > m->x[k]) {
+        ++k;
+    }
+    const double share = (x - m->x[k - 1]) / (m->x[k] - m->x[k - 1]);
+    return m->y[k - 1] + share * (m->y[k] - m->y[k - 1]);
+}
+
 static bool keep(se3di_tally *t, se3di_iopool *pool, double time, double value)
 {
     double *times =
@@ -114,7 +124,9 @@ static double get_settling(const se3di_tally *t, const char **problem)
 static double get_found(const se3di_tally *t, const char **problem)
 {
     if (!t->has_found) {
-        *problem = t->measure->event ? "the event did not happen" : "the time was not reached";
+        *problem = t->measure->event        ? "the event did not happen"
+                   : t->measure->mode > 0.0 ? "there are fewer modes"
+                                            : "the time was not reached";
     }
     return t->has_found ? t->found : (double)NAN;
 }
@@ -132,6 +144,7 @@ double se3di_tally_get(const se3di_tally *t, const char **problem)
     case SE3DI_REDUCE_MEAN:
         return duration > 0.0 ? t->sum / duration : t->last;
     case SE3DI_REDUCE_RMS:
+    case SE3DI_REDUCE_MISFIT:
         return duration > 0.0 ? sqrt(t->squares / duration) : fabs(t->last);
     case SE3DI_REDUCE_INTEGRAL:
         return t->sum;
@@ -141,6 +154,8 @@ double se3di_tally_get(const se3di_tally *t, const char **problem)
         return get_settling(t, problem);
     case SE3DI_REDUCE_AT:
     case SE3DI_REDUCE_TIME_OF:
+    case SE3DI_REDUCE_FREQUENCY:
+    case SE3DI_REDUCE_DAMPING:
         return get_found(t, problem);
     default:
         return t->last;

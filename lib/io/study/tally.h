@@ -22,6 +22,8 @@ typedef struct se3di_tally {
 
 /* Begin a run; what the tally has of memory stays for it. */
 void se3di_tally_begin(se3di_tally *tally, const se3di_study_measure *measure);
+/* The wanted value at x: straight lines between the points of a MISFIT, and beyond them. */
+double se3di_tally_get_wanted(const se3di_study_measure *measure, double x);
 /* Take the number of a row. @return false: out of memory. */
 bool se3di_tally_add(se3di_tally *tally, se3di_iopool *pool, double time, double value);
 /* Take what is found at the event of the measure; only the first time counts. */

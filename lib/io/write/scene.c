@@ -499,7 +499,8 @@ se3d_status se3d_scene_write(se3d_scene *scene, const char *path, se3d_model_err
     errno = 0;
     if (!write_file(scene, path)) {
         const int why = errno;
-        snprintf(text, sizeof text, "%.500s: cannot be written: %s", path, strerror(why));
+        snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
+                 se3di_file_get_text(why));
         se3di_document_report(error, "", 0, 0, "", text);
         return why == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO;
     }

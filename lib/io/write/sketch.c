@@ -407,8 +407,8 @@ static void put_between(const sketch *s, const se3di_element_entry *entry)
 
 static void put_elements(sketch *s)
 {
-    static const char *const heads[SE3DI_ELEMENT_KINDS] = {"Joints", "Constraints", "Drivers",
-                                                           "Forces", "Wheels",      "States"};
+    static const char *const heads[SE3DI_ELEMENT_KINDS] = {
+        "Joints", "Constraints", "Drivers", "Forces", "Wheels", "States", "Roads"};
     char name[TEXT_SIZE];
     for (int kind = SE3DI_ELEMENT_JOINT; kind < SE3DI_ELEMENT_KINDS; ++kind) {
         bool any = false;

@@ -17,7 +17,8 @@
 #include "io/write/unit_mesh.h"
 #include "io/write/vtk_file.h"
 
-enum { PATH_SIZE = 4096, EXTENSION = 4 };
+enum { PATH_SIZE = 4096, EXTENSION = 4, PARTS = 4 };
+static const char *const part_names[PARTS] = {"bodies", "grains", "contacts", "fields"};
 
 typedef struct surface {
     const double *points;
@@ -36,6 +37,7 @@ struct se3di_vtk {
     se3d_model *model;
     se3di_iopool *pool;
     const char *path;
+    const se3d_field_grid *grid; /* NULL: no fields */
     se3di_sizes sizes;
     piece *pieces;
     size_t piece_count, piece_capacity;
@@ -145,7 +147,8 @@ static bool prepare(se3di_vtk *vtk)
     return true;
 }
 
-se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path)
+se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path,
+                          const se3d_field_grid *grid)
 {
     se3di_vtk *vtk = se3di_iopool_alloc(pool, sizeof *vtk);
     if (!vtk) {
@@ -153,6 +156,7 @@ se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *pat
     }
     vtk->model = model;
     vtk->pool = pool;
+    vtk->grid = grid;
     vtk->path = se3di_iopool_copy(pool, path, strlen(path));
     return vtk->path && prepare(vtk) ? vtk : NULL;
 }
@@ -227,14 +231,15 @@ static void move_points(se3di_vtk *vtk)
 /* The path of a file of the series: "DIR/motion/bodies_00007.vtp"; `whole` false: as the list says
  * it, without DIR.
  */
-static bool name_file(const se3di_vtk *vtk, const char *what, size_t number, bool whole, char *path)
+static bool name_file(const se3di_vtk *vtk, int part, size_t number, bool whole, char *path)
 {
     const char *start = vtk->path;
     for (const char *c = vtk->path; *c && !whole; ++c) {
         start = *c == '/' || *c == '\\' ? c + 1 : start;
     }
-    const int length = snprintf(path, PATH_SIZE, "%.*s/%s_%05zu.vtp",
-                                (int)(strlen(start) - EXTENSION), start, what, number);
+    const int length =
+        snprintf(path, PATH_SIZE, "%.*s/%s_%05zu.%s", (int)(strlen(start) - EXTENSION), start,
+                 part_names[part], number, part == 3 ? "vti" : "vtp");
     return length > 0 && length < PATH_SIZE;
 }
 
@@ -248,7 +253,7 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
         {SE3DI_VTK_POINTS, "points", vtk->points, n, 3, 3, 0.0, 0.0, false},
         {SE3DI_VTK_POLYS, "connectivity", vtk->triangles, 3 * polys, 1, 1, 0.0, 0.0, true},
         {SE3DI_VTK_POLYS, "offsets", NULL, polys, 1, 1, 3.0, 3.0, true}};
-    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays};
+    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays, NULL};
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     move_points(vtk);
     return se3di_vtk_file_write(&file, path);
@@ -280,7 +285,7 @@ static bool write_rows(const char *path, const double *rows, size_t n, size_t wi
         (se3di_vtk_array){SE3DI_VTK_POINTS, "points", rows + place, n, 3, width, 0.0, 0.0, false};
     points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
     points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
-    const se3di_vtk_file file = {n, n, 0, arrays, count + 3};
+    const se3di_vtk_file file = {n, n, 0, arrays, count + 3, NULL};
     return se3di_vtk_file_write(&file, path);
 }
 
@@ -327,29 +332,90 @@ static bool write_points(const se3di_vtk *vtk, se3di_sample *sample, const char 
     return good;
 }
 
-/* A series of its own for what the model has. */
-static bool has_part(const se3d_model *model, int part)
+/* What of the numbers of a cell has a name of its own. */
+static const column field_columns[] = {{"density", SE3D_FIELD_DENSITY, 1, false},
+                                       {"solid_fraction", SE3D_FIELD_SOLID_FRACTION, 1, false},
+                                       {"velocity", SE3D_FIELD_VELOCITY, 3, false},
+                                       {"temperature", SE3D_FIELD_TEMPERATURE, 1, false},
+                                       {"kinetic_stress", SE3D_FIELD_KINETIC_STRESS, 6, false},
+                                       {"contact_stress", SE3D_FIELD_CONTACT_STRESS, 6, false}};
+enum { FIELD_COLUMNS = sizeof field_columns / sizeof *field_columns };
+
+static bool put_fields(const se3d_field_grid *grid, const double *values, size_t cells,
+                       const char *path)
 {
-    return part == 0 || (part == 1 && model->particles) ||
+    se3di_vtk_array arrays[FIELD_COLUMNS];
+    se3di_vtk_grid image = {.cells = {grid->cells[0], grid->cells[1], grid->cells[2]}};
+    for (int a = 0; a < 3; ++a) {
+        image.origin[a] = grid->lower[a];
+        image.spacing[a] = (grid->upper[a] - grid->lower[a]) / grid->cells[a];
+    }
+    for (int k = 0; k < FIELD_COLUMNS; ++k) {
+        const column *c = &field_columns[k];
+        arrays[k] = (se3di_vtk_array){SE3DI_VTK_CELL_DATA,
+                                      c->name,
+                                      values + c->first,
+                                      cells,
+                                      c->width,
+                                      SE3D_FIELD_VALUES,
+                                      0.0,
+                                      0.0,
+                                      false};
+    }
+    const se3di_vtk_file file = {.arrays = arrays, .array_count = FIELD_COLUMNS, .grid = &image};
+    return se3di_vtk_file_write(&file, path);
+}
+
+static bool write_fields(const se3di_vtk *vtk, const char *path)
+{
+    const se3d_field_grid *grid = vtk->grid;
+    const size_t cells = (size_t)grid->cells[0] * (size_t)grid->cells[1] * (size_t)grid->cells[2];
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &vtk->model->pool.allocator);
+    double *values = se3di_iopool_array(&pool, cells, SE3D_FIELD_VALUES * sizeof *values);
+    errno = ENOMEM; /* unless something else fails */
+    const bool good = values &&
+                      se3d_particles_get_fields(vtk->model->particles->set, grid,
+                                                cells * SE3D_FIELD_VALUES, values) >= 0 &&
+                      put_fields(grid, values, cells, path);
+    const int why = errno;
+    se3di_iopool_destroy(&pool);
+    errno = why;
+    return good;
+}
+
+/* A series of its own for what the model has. */
+static bool has_part(const se3di_vtk *vtk, int part)
+{
+    const se3d_model *model = vtk->model;
+    return part == 0 || (part == 3 && vtk->grid) || (part == 1 && model->particles) ||
            (part == 2 && (model->particles || se3di_node_get(model->root, "contact")));
 }
 
-static const char *const part_names[] = {"bodies", "grains", "contacts"};
+static bool write_part(se3di_vtk *vtk, se3di_sample *sample, int part, const char *path)
+{
+    switch (part) {
+    case 0:
+        return write_bodies(vtk, path);
+    case 1:
+        return write_points(vtk, sample, path, write_particles);
+    case 2:
+        return write_points(vtk, sample, path, write_contacts);
+    default:
+        return write_fields(vtk, path);
+    }
+}
 
 static bool write_state(se3di_vtk *vtk, se3di_sample *sample, size_t number)
 {
     char path[PATH_SIZE];
     bool good = true;
-    for (int part = 0; part < 3 && good; ++part) {
-        if (!has_part(vtk->model, part)) {
-            continue;
+    for (int part = 0; part < PARTS && good; ++part) {
+        if (has_part(vtk, part)) {
+            errno = ENAMETOOLONG;
+            good = name_file(vtk, part, number, true, path) && se3di_file_make_folders(path) &&
+                   write_part(vtk, sample, part, path);
         }
-        errno = ENAMETOOLONG;
-        good =
-            name_file(vtk, part_names[part], number, true, path) && se3di_file_make_folders(path) &&
-            (part == 0
-                 ? write_bodies(vtk, path)
-                 : write_points(vtk, sample, path, part == 1 ? write_particles : write_contacts));
     }
     return good;
 }
@@ -358,8 +424,8 @@ static bool write_state(se3di_vtk *vtk, se3di_sample *sample, size_t number)
 static void forget_state(const se3di_vtk *vtk, size_t number)
 {
     char path[PATH_SIZE];
-    for (int part = 0; part < 3; ++part) {
-        if (has_part(vtk->model, part) && name_file(vtk, part_names[part], number, true, path)) {
+    for (int part = 0; part < PARTS; ++part) {
+        if (has_part(vtk, part) && name_file(vtk, part, number, true, path)) {
             remove(path);
         }
     }
@@ -427,11 +493,11 @@ static bool write_list(const se3di_vtk *vtk)
           file);
     for (size_t k = 0; k < vtk->count; ++k) {
         time[se3di_number_format(vtk->times[k], time)] = '\0';
-        for (int part = 0; part < 3; ++part) {
-            if (!has_part(vtk->model, part)) {
+        for (int part = 0; part < PARTS; ++part) {
+            if (!has_part(vtk, part)) {
                 continue;
             }
-            name_file(vtk, part_names[part], k, false, path);
+            name_file(vtk, part, k, false, path);
             fprintf(file, "<DataSet timestep=\"%s\" part=\"%d\" name=\"%s\" file=\"", time, part,
                     part_names[part]);
             put_path(file, path);

@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Results for ParaView: a .pvd file that lists a .vtp file of the bodies and one of the particles
- * for each time. They lie in a folder beside it, of its name. */
+/* Results for ParaView: a .pvd file that lists, for each time, a .vtp file of the bodies, one of
+ * the particles, one of the contacts and a .vti file of fields. They lie in a folder beside it, of
+ * its name. */
 #ifndef SE3D_IO_VTK_H
 #define SE3D_IO_VTK_H
 
 #include "base/coder.h"
 #include "io/channel/sample.h"
 #include "io/model/model.h"
+#include "se3d/field.h"
 
 typedef struct se3di_vtk se3di_vtk;
 
-/* Begin a series in memory of `pool`; `path` ends with .pvd. @return NULL: out of memory. */
-se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path);
+/* Begin a series in memory of `pool`; `path` ends with .pvd; `grid`: of fields of the particles,
+ * NULL: none. @return NULL: out of memory. */
+se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path,
+                          const se3d_field_grid *grid);
 /* Write the present state, that of the sample; at the time of the one before it takes its place.
  * After a failure nothing more is written. */
 void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time);

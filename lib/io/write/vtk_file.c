@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* .vtp files: VTK's PolyData in XML with appended raw data. Every array is preceded by its size in
- * bytes, 64 bits. */
+/* .vtp and .vti files: VTK's PolyData and ImageData in XML with appended raw data. Every array is
+ * preceded by its size in bytes, 64 bits. */
 #include "io/write/vtk_file.h"
 
 #include <stdint.h>
 #include <string.h>
 
 #include "io/base/file.h"
+#include "io/base/number.h"
 
 enum { BLOCK = 4096 };
 
@@ -45,18 +46,57 @@ static void put_data(FILE *file, const se3di_vtk_array *a)
     fwrite(block, 1, used, file);
 }
 
+/* "0 3 0 4 0 5" of a grid of 3 x 4 x 5 cells. */
+static void put_extent(FILE *file, const char *name, const se3di_vtk_grid *grid)
+{
+    fprintf(file, " %s=\"0 %d 0 %d 0 %d\"", name, (int)grid->cells[0], (int)grid->cells[1],
+            (int)grid->cells[2]);
+}
+
+static void put_triple(FILE *file, const char *name, const double values[3])
+{
+    char text[3][48];
+    for (int k = 0; k < 3; ++k) {
+        text[k][se3di_number_format(values[k], text[k])] = '\0';
+    }
+    fprintf(file, " %s=\"%s %s %s\"", name, text[0], text[1], text[2]);
+}
+
+static const char *type_of(const se3di_vtk_file *f)
+{
+    return f->grid ? "ImageData" : "PolyData";
+}
+
+static void put_piece(FILE *file, const se3di_vtk_file *f)
+{
+    if (f->grid) {
+        fputs("<ImageData", file);
+        put_extent(file, "WholeExtent", f->grid);
+        put_triple(file, "Origin", f->grid->origin);
+        put_triple(file, "Spacing", f->grid->spacing);
+        fputs(">\n<Piece", file);
+        put_extent(file, "Extent", f->grid);
+        fputs(">\n", file);
+        return;
+    }
+    fprintf(file,
+            "<PolyData>\n<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" "
+            "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
+            f->points, f->verts, f->polys);
+}
+
 static void put_head(FILE *file, const se3di_vtk_file *f)
 {
     static const char *const names[] = {"PointData", "CellData", "Points", "Verts", "Polys"};
+    const size_t sections = f->grid ? SE3DI_VTK_CELL_DATA + 1 : SE3DI_VTK_SECTION_COUNT;
     size_t offset = 0;
     size_t k = 0;
     fprintf(file,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n"
-            "<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"0\" "
-            "NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
-            f->points, f->verts, f->polys);
-    for (size_t s = 0; s < SE3DI_VTK_SECTION_COUNT; ++s) {
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
+            type_of(f));
+    put_piece(file, f);
+    for (size_t s = 0; s < sections; ++s) {
         fprintf(file, "<%s>\n", names[s]);
         for (; k < f->array_count && (size_t)f->arrays[k].section == s; ++k) {
             const se3di_vtk_array *a = &f->arrays[k];
@@ -68,7 +108,7 @@ static void put_head(FILE *file, const se3di_vtk_file *f)
         }
         fprintf(file, "</%s>\n", names[s]);
     }
-    fputs("</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", file);
+    fprintf(file, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type_of(f));
 }
 
 bool se3di_vtk_file_write(const se3di_vtk_file *f, const char *path)

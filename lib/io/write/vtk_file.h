@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One .vtp file: points with numbers, and cells made of them; the numbers follow the XML as raw
- * bytes, little-endian. */
+/* One .vtp file: points with numbers, and cells made of them; or one .vti file: numbers of the
+ * cells of a grid. The numbers follow the XML as raw bytes, little-endian. */
 #ifndef SE3D_IO_VTK_FILE_H
 #define SE3D_IO_VTK_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef enum se3di_vtk_section {
     SE3DI_VTK_POINT_DATA = 0,
@@ -26,10 +27,16 @@ typedef struct se3di_vtk_array {
     bool whole; /* 32-bit integers, else 32-bit floats */
 } se3di_vtk_array;
 
+typedef struct se3di_vtk_grid {
+    double origin[3], spacing[3];
+    int32_t cells[3];
+} se3di_vtk_grid;
+
 typedef struct se3di_vtk_file {
     size_t points, verts, polys;   /* how many */
     const se3di_vtk_array *arrays; /* in the order of their sections */
     size_t array_count;
+    const se3di_vtk_grid *grid; /* of a .vti file, all of whose arrays are cell data; NULL: .vtp */
 } se3di_vtk_file;
 
 /* Write it under a temporary name, then rename. @return false: errno says why. */

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `roads`: surfaces under tyres. */
+#include <string.h>
+
+#include "io/document/document.h"
+#include "io/document/fields.h"
+#include "io/document/function.h"
+#include "io/document/keys.h"
+#include "io/document/reader.h"
+#include "io/model/model.h"
+#include "io/read/bodies.h"
+#include "io/read/elements.h"
+#include "io/read/height_grid.h"
+#include "io/read/mesh_file.h"
+#include "io/read/objects.h"
+#include "io/read/sections.h"
+
+static const char *const road_types[] = {"plane", "height", "heightfield", "mesh", NULL};
+
+typedef struct road_values {
+    double spacing, row_spacing, scale;
+    const char *file;
+} road_values;
+
+/* clang-format off */
+static const se3di_key road_keys[] = {
+    {"name", SE3DI_KIND_NAME, .standard = "road1, road2, ...",
+     .text = "unique among joints, drivers, constraints, forces, wheels and roads"},
+    {"when", SE3DI_KIND_CONDITION, .text = "it is there only if this holds"},
+    {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
+    {"body", SE3DI_KIND_BODY, .standard = "ground", .text = "that the road is fixed to"},
+    {"at", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
+     .text = "origin of the road's x, y, z at the given pose, ground frame [m]"},
+    {"normal", SE3DI_KIND_DIRECTION, .standard = "[0, 0, 1]",
+     .text = "its z, at the given pose, ground frame"},
+    {"forward", SE3DI_KIND_DIRECTION, .standard = "[1, 0, 0]",
+     .text = "its x, as far as it is not along the normal, ground frame"},
+    {"height", SE3DI_KIND_FUNCTION, .types = " height ", .required = true,
+     .text = "z over t, x and y: an expression, or a table over the time t [m]"},
+    {"heights", SE3DI_KIND_ROWS, .types = " heightfield ",
+     .text = "rows of heights along x, the rows along y, the middle at the origin [m]; or file"},
+    {"file", SE3DI_KIND_TEXT, SE3DI_INTO(road_values, file), .types = " heightfield mesh ",
+     .text = "relative to the model file; heightfield: CSV, a row on each line; mesh: STL or OBJ"},
+    {"spacing", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(road_values, spacing),
+     .types = " heightfield ", .required = true, .text = "between columns, along x [m]"},
+    {"row_spacing", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(road_values, row_spacing),
+     .types = " heightfield ", .standard = "spacing", .text = "between rows, along y [m]"},
+    {"scale", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(road_values, scale),
+     .types = " mesh ", .standard = "1", .text = "factor, to metres"},
+    {.key = NULL}};
+const se3di_object se3di_object_road = {
+    "road",
+    "A road under tyres.",
+    road_keys, road_types,
+    NULL};
+/* clang-format on */
+
+static bool read_heightfield(se3di_reader *reader, const se3di_node *node, const road_values *v,
+                             se3d_road_def *def)
+{
+    const se3di_node *heights = se3di_node_get(node, "heights");
+    se3di_height_grid grid = {NULL, 0, 0};
+    if ((heights != NULL) == (v->file != NULL)) {
+        return se3di_reader_fail_key(reader, node, "heights", "must be given, or file, not both");
+    }
+    if (!(v->spacing > 0.0)) {
+        return se3di_reader_fail_key(reader, node, "spacing",
+                                     "is missing, must be the distance of points [m] > 0");
+    }
+    if (heights && heights->kind != SE3DI_NODE_LIST) {
+        return se3di_reader_fail(reader, heights, "is %s, must be a list of rows",
+                                 se3di_node_describe(heights));
+    }
+    if (!(heights ? se3di_read_grid_rows(reader, heights, &grid)
+                  : se3di_read_grid_file(reader, node, "file", &grid))) {
+        return false;
+    }
+    def->heights = grid.heights;
+    def->column_count = grid.column_count;
+    def->row_count = grid.row_count;
+    def->spacing[0] = v->spacing;
+    def->spacing[1] = v->row_spacing > 0.0 ? v->row_spacing : v->spacing;
+    return true;
+}
+
+static bool read_height(se3di_reader *reader, const se3di_node *node, se3d_road_def *def)
+{
+    static const char *const variables[] = {"t", "x", "y", NULL};
+    const se3di_node *height = se3di_node_get(node, "height");
+    se3d_function_def constant = se3d_function_def_default();
+    if (!height) {
+        return se3di_reader_fail_key(reader, node, "height",
+                                     "is missing, must be z over t, x and y [m]");
+    }
+    if (!se3di_read_function(reader, height, variables, &constant.constant, &def->height)) {
+        return false;
+    }
+    if (def->height.index1 == 0 &&
+        SE3D_FAILED(se3d_function_create(reader->system, &constant, &def->height))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    return true;
+}
+
+static bool read_mesh(se3di_reader *reader, const se3di_node *node, const road_values *v,
+                      se3d_road_def *def)
+{
+    if (!v->file) {
+        return se3di_reader_fail_key(reader, node, "file", "is missing, must be an STL or OBJ");
+    }
+    const se3di_mesh *mesh = se3di_read_mesh(reader, node, v->file, v->scale);
+    if (!mesh) {
+        return false;
+    }
+    def->vertices = mesh->points;
+    def->vertex_count = mesh->point_count;
+    def->triangles = mesh->triangles;
+    def->triangle_count = mesh->triangle_count;
+    return true;
+}
+
+static bool read_frame(se3di_reader *reader, const se3di_node *node, se3d_road_def *def)
+{
+    double at[3] = {0.0, 0.0, 0.0}, normal[3] = {0.0, 0.0, 1.0}, forward[3] = {1.0, 0.0, 0.0};
+    const se3di_body_entry *body = NULL;
+    if (se3di_node_get(node, "body")) {
+        if (!se3di_read_key_body(reader, node, "body", &body)) {
+            return false;
+        }
+        def->body = body->body;
+    } else if (SE3D_FAILED(se3d_system_get_ground(reader->system, &def->body))) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (se3di_component_is_mirrored(reader->part)) {
+        return se3di_reader_fail(reader, node,
+                                 "is in a part that is mirrored, must be in the model "
+                                 "or a part that is only moved and turned");
+    }
+    se3di_place_point(&reader->part->place, at);
+    se3di_place_vector(&reader->part->place, normal);
+    se3di_place_vector(&reader->part->place, forward);
+    return se3di_read_key_ground_point(reader, node, "at", at) &&
+           se3di_read_key_ground_direction(reader, node, "normal", false, normal) &&
+           se3di_read_key_ground_direction(reader, node, "forward", false, forward) &&
+           se3di_ground_to_body(reader, def->body, at, def->point) &&
+           se3di_ground_to_body_direction(reader, def->body, normal, def->normal) &&
+           se3di_ground_to_body_direction(reader, def->body, forward, def->forward);
+}
+
+static bool read_road(se3di_reader *reader, const se3di_node *node)
+{
+    const char *type = NULL;
+    se3di_element_entry *entry = NULL;
+    se3d_road_def def = se3d_road_def_default();
+    road_values v = {.scale = 1.0};
+    if (!se3di_read_type(reader, node, &se3di_object_road, &type) ||
+        !se3di_read_element(reader, node, SE3DI_ELEMENT_ROAD, &entry) ||
+        !read_frame(reader, node, &def) ||
+        !se3di_read_fields(reader, node, &se3di_object_road, type, "road_values", &v)) {
+        return false;
+    }
+    def.name = entry->name;
+    if ((strcmp(type, "height") == 0 && !read_height(reader, node, &def)) ||
+        (strcmp(type, "heightfield") == 0 && !read_heightfield(reader, node, &v, &def)) ||
+        (strcmp(type, "mesh") == 0 && !read_mesh(reader, node, &v, &def))) {
+        return false;
+    }
+    const se3d_status status = se3d_road_create(reader->system, &def, &entry->road);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_roads(se3di_reader *reader, const se3di_node *root)
+{
+    const se3di_node *list = NULL;
+    if (!se3di_read_list(reader, root, "roads", &list)) {
+        return false;
+    }
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        bool wanted = true;
+        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_road(reader, node))) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a study seeks, for a method of optimisation: its parameters, its limits, and the measures
+ * with their derivatives where it asks for them. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/base/number.h"
+#include "io/base/sized.h"
+#include "io/document/document.h"
+#include "io/read/study_goal.h"
+#include "io/study/study.h"
+
+/* Two steps, extrapolated once: what a search needs. */
+enum { LEVELS = 2 };
+#define SHARE 0.01 /* of from ... to: the first step */
+
+static const se3di_study_goal *get_goal(const se3d_study *study)
+{
+    return study ? study->entry->goal : NULL;
+}
+
+se3d_status se3d_study_get_goal_sized(const se3d_study *study, se3d_study_goal *goal, size_t size)
+{
+    const se3di_study_goal *from = get_goal(study);
+    if (!study || !goal) {
+        return SE3D_ERR_NULL;
+    }
+    if (!from) {
+        return SE3D_ERR_STATE;
+    }
+    const se3d_study_goal filled = {.method = se3di_study_goal_get_method(from->method),
+                                    .maximizes = from->greatest,
+                                    .measure = from->measure,
+                                    .evaluations = (uint64_t)from->evaluations,
+                                    .tolerance = from->tolerance,
+                                    .seed = (uint64_t)study->entry->seed};
+    return se3di_io_give(goal, size, &filled, sizeof filled);
+}
+
+size_t se3d_study_count_unknowns(const se3d_study *study)
+{
+    const se3di_study_goal *goal = get_goal(study);
+    return goal ? goal->unknown_count : 0;
+}
+
+const char *se3d_study_get_unknown_name(const se3d_study *study, size_t index)
+{
+    return index < se3d_study_count_unknowns(study) ? study->entry->goal->unknowns[index].name : "";
+}
+
+se3d_status se3d_study_get_unknown(const se3d_study *study, size_t index, double bounds[2],
+                                   double *start)
+{
+    if (!study || !bounds || !start) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= se3d_study_count_unknowns(study)) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_study_unknown *u = &study->entry->goal->unknowns[index];
+    bounds[0] = u->from;
+    bounds[1] = u->to;
+    *start = u->start;
+    return SE3D_OK;
+}
+
+size_t se3d_study_count_limits(const se3d_study *study)
+{
+    const se3di_study_goal *goal = get_goal(study);
+    return goal ? goal->limit_count : 0;
+}
+
+se3d_status se3d_study_get_limit(const se3d_study *study, size_t index, size_t *measure,
+                                 double bounds[2])
+{
+    if (!study || !measure || !bounds) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= se3d_study_count_limits(study)) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_study_limit *limit = &study->entry->goal->limits[index];
+    *measure = limit->measure;
+    bounds[0] = limit->from;
+    bounds[1] = limit->to;
+    return SE3D_OK;
+}
+
+/* "kg*m^2/s": the SI unit as a model file takes it. */
+static void put_unit(se3di_dimension d, char *text, size_t size)
+{
+    static const char *const words[] = {"m", "kg", "rad", "s"};
+    const int exponents[] = {d.length, d.mass, d.angle, d.time};
+    size_t used = 0;
+    text[0] = '\0';
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        for (size_t k = 0; k < 4; ++k) {
+            const int exponent = sign * exponents[k];
+            if (exponent <= 0) {
+                continue;
+            }
+            const char *before = used == 0 ? (sign > 0 ? "" : "rad/") : sign > 0 ? "*" : "/";
+            used += (size_t)snprintf(text + used, size - used, exponent > 1 ? "%s%s^%d" : "%s%s",
+                                     before, words[k], exponent);
+        }
+    }
+}
+
+se3d_status se3d_study_write_unknown(const se3d_study *study, size_t index, double value,
+                                     char *text, size_t size)
+{
+    char number[SE3DI_NUMBER_SIZE];
+    char unit[60] = "";
+    if (!study || !text) {
+        return SE3D_ERR_NULL;
+    }
+    if (index >= se3d_study_count_unknowns(study) || size < SE3DI_NUMBER_SIZE + sizeof unit) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const se3di_amount *shape = &study->entry->goal->unknowns[index].shape;
+    if (shape->hard) {
+        put_unit(shape->dimension, unit, sizeof unit);
+    }
+    number[se3di_number_format(value, number)] = '\0';
+    snprintf(text, size, "%s%s%s", number, unit[0] ? " " : "", unit);
+    return SE3D_OK;
+}
+
+/* ---- measures --------------------------------------------------------------------------------*/
+
+static se3d_status fail(const se3d_study *study, se3d_model_error *error, se3d_status status,
+                        const char *text)
+{
+    se3di_document_report(error, study ? study->model->file : "", 0, 0, "", text);
+    return status;
+}
+
+static se3d_status check(const se3d_study *study, const double *values, const double *measures,
+                         se3d_model_error *error)
+{
+    if (!study || !values || !measures) {
+        return fail(study, error, SE3D_ERR_NULL, "study, values or measures is NULL");
+    }
+    if (!get_goal(study)) {
+        return fail(study, error, SE3D_ERR_STATE,
+                    "the study has no `optimize`: which parameters are sought, and what for?");
+    }
+    if (study->is_running) {
+        return fail(study, error, SE3D_ERR_STATE, "a sample of the study is being run");
+    }
+    for (size_t k = 0; k < study->entry->goal->unknown_count; ++k) {
+        if (!isfinite(values[k])) {
+            char text[120];
+            snprintf(text, sizeof text, "%.60s = %g, must be finite",
+                     study->entry->goal->unknowns[k].name, values[k]);
+            return fail(study, error, SE3D_ERR_INVALID_ARGUMENT, text);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status differentiate(se3d_study *study, se3di_named *named, const double *measures,
+                                 double *derivatives)
+{
+    const se3di_study_goal *goal = study->entry->goal;
+    se3d_status status = SE3D_OK;
+    for (size_t k = 0; k < goal->unknown_count && status >= 0; ++k) {
+        const se3di_study_unknown *u = &goal->unknowns[k];
+        const se3di_study_point point = {.values = named,
+                                         .count = goal->unknown_count,
+                                         .which = k,
+                                         .step = SHARE * (u->to - u->from),
+                                         .bounds = {u->from, u->to},
+                                         .levels = LEVELS};
+        status = se3di_study_differentiate(study, &point, measures,
+                                           derivatives + k * study->entry->measure_count, NULL);
+    }
+    return status;
+}
+
+se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, double *measures,
+                                     double *derivatives, se3d_model_error *error)
+{
+    se3d_model_error own;
+    error = error ? error : &own;
+    se3d_status status = check(study, values, measures, error);
+    if (status < 0) {
+        return status;
+    }
+    const se3di_study_goal *goal = study->entry->goal;
+    for (size_t k = 0; derivatives && k < goal->unknown_count * study->entry->measure_count; ++k) {
+        derivatives[k] = (double)NAN;
+    }
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &study->pool.allocator);
+    se3di_named *named = se3di_iopool_array(&pool, goal->unknown_count, sizeof *named);
+    if (!named) {
+        return fail(study, error, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    for (size_t k = 0; k < goal->unknown_count; ++k) {
+        named[k] = (se3di_named){goal->unknowns[k].name, goal->unknowns[k].shape};
+        named[k].value.v[0] = values[k];
+    }
+    status = se3di_study_run(study, named, goal->unknown_count, measures, error);
+    if (derivatives && (status >= 0 || status == SE3D_ERR_NOT_FINITE)) {
+        const se3d_status done = differentiate(study, named, measures, derivatives);
+        status = done < 0 ? fail(study, error, done, se3d_status_get_text(done)) : status;
+    }
+    se3di_iopool_destroy(&pool);
+    return status;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Maxima of errors and residuals: what is not a number must be seen at their end, and fmax() and
+ * comparisons let it go. */
+#ifndef SE3DI_LARGER_H
+#define SE3DI_LARGER_H
+
+#include <math.h>
+
+/* The larger one; NaN if one is NaN. */
+static inline double se3di_larger(double a, double b)
+{
+    return b <= a || isnan(a) ? a : b;
+}
+
+#endif

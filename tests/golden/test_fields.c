@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Fields of particles on a grid: their sums are what there is, and one cell is the average. */
+#include "check.h"
+#include "se3d/se3d.h"
+#include "support/particle_worlds.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+enum { CELLS_MOST = 2000 };
+
+static double fields[CELLS_MOST * SE3D_FIELD_VALUES];
+
+static se3d_field_grid grid_of(int32_t x, int32_t y, int32_t z, double width)
+{
+    se3d_field_grid grid = se3d_field_grid_default();
+    grid.lower[0] = grid.lower[1] = -0.1;
+    grid.upper[0] = grid.upper[1] = 0.1;
+    grid.lower[2] = -0.02;
+    grid.upper[2] = 0.4;
+    grid.cells[0] = x;
+    grid.cells[1] = y;
+    grid.cells[2] = z;
+    grid.width = width;
+    return grid;
+}
+
+/* Of all cells times their volume; returns the number of cells. */
+static size_t add_up(const se3d_particles *set, const se3d_field_grid *grid,
+                     double sum[SE3D_FIELD_VALUES])
+{
+    const size_t cells = (size_t)grid->cells[0] * (size_t)grid->cells[1] * (size_t)grid->cells[2];
+    double volume = 1.0 / (double)cells;
+    for (int a = 0; a < 3; ++a) {
+        volume *= grid->upper[a] - grid->lower[a];
+    }
+    memset(sum, 0, SE3D_FIELD_VALUES * sizeof *sum);
+    CHECK(cells <= CELLS_MOST);
+    CHECK(!se3d_particles_get_fields(set, grid, cells * SE3D_FIELD_VALUES, fields));
+    for (size_t k = 0; k < cells; ++k) {
+        double *f = fields + k * SE3D_FIELD_VALUES;
+        const double *u = f + SE3D_FIELD_VELOCITY;
+        sum[SE3D_FIELD_DENSITY] += volume * f[SE3D_FIELD_DENSITY];
+        sum[SE3D_FIELD_SOLID_FRACTION] += volume * f[SE3D_FIELD_SOLID_FRACTION];
+        for (int a = 0; a < 3; ++a) {
+            const double p = f[SE3D_FIELD_DENSITY] * u[a];
+            sum[SE3D_FIELD_VELOCITY + a] += volume * p;
+            sum[SE3D_FIELD_KINETIC_STRESS + a] +=
+                volume * (f[SE3D_FIELD_KINETIC_STRESS + a] + p * u[a]);
+        }
+        for (int c = 0; c < 6; ++c) {
+            sum[SE3D_FIELD_CONTACT_STRESS + c] += volume * f[SE3D_FIELD_CONTACT_STRESS + c];
+        }
+    }
+    return cells;
+}
+
+static se3d_system *run_world(int kind, int32_t threads, se3d_particles **set)
+{
+    se3d_system *system = particle_world(kind, threads);
+    CHECK(!se3d_system_get_particles(system, 0, set));
+    CHECK(!se3d_particles_run(*set, 0.06));
+    return system;
+}
+
+/* Of one cell that holds them all, from the average over its box. */
+static void get_average(const se3d_particles *set, const se3d_field_grid *grid,
+                        double sum[SE3D_FIELD_VALUES])
+{
+    se3d_average average;
+    double volume = 1.0;
+    for (int a = 0; a < 3; ++a) {
+        volume *= grid->upper[a] - grid->lower[a];
+    }
+    CHECK(!se3d_particles_get_average(set, grid->lower, grid->upper, grid->tag, &average));
+    sum[SE3D_FIELD_DENSITY] = average.mass;
+    sum[SE3D_FIELD_SOLID_FRACTION] = average.solid_fraction * volume;
+    for (int a = 0; a < 3; ++a) {
+        sum[SE3D_FIELD_VELOCITY + a] = average.mass * average.velocity[a];
+        sum[SE3D_FIELD_KINETIC_STRESS + a] =
+            volume * average.kinetic_stress[a] +
+            average.mass * average.velocity[a] * average.velocity[a];
+    }
+    for (int c = 0; c < 6; ++c) {
+        sum[SE3D_FIELD_CONTACT_STRESS + c] = volume * average.contact_stress[c];
+    }
+}
+
+static void sums_are_what_there_is(void)
+{
+    static const int kinds[3] = {PARTICLES_HEAP, PARTICLES_PERIOD, PARTICLES_CLUMPS};
+    for (int k = 0; k < 3; ++k) {
+        se3d_particles *set;
+        se3d_system *system = run_world(kinds[k], 1, &set);
+        const int periodic = kinds[k] == PARTICLES_PERIOD;
+        const se3d_field_grid grids[3] = {grid_of(1, 1, 1, 0.02), grid_of(7, 9, 20, 0.03),
+                                          grid_of(10, 10, 12, 0.001)};
+        for (int g = 0; g < 3; ++g) {
+            double sum[SE3D_FIELD_VALUES], all[SE3D_FIELD_VALUES] = {0.0};
+            const size_t cells = add_up(set, &grids[g], sum);
+            get_average(set, &grids[g], all);
+            CHECK(all[SE3D_FIELD_DENSITY] > 0.1);
+            CHECK_NEAR(sum[0], all[0], 1e-12 * all[0]);
+            for (int c = SE3D_FIELD_VELOCITY; c < SE3D_FIELD_TEMPERATURE; ++c) {
+                CHECK_NEAR(sum[c], all[c], 1e-12);
+            }
+            for (int c = SE3D_FIELD_KINETIC_STRESS; c < SE3D_FIELD_KINETIC_STRESS + 3; ++c) {
+                CHECK_NEAR(sum[c], all[c], 1e-12);
+            }
+            /* what of spheres and branches is outside differs: it is cut off there */
+            const int cut = !periodic;
+            CHECK_NEAR(sum[1], all[1], (cut ? 2e-2 : 1e-12) * all[1]);
+            for (int c = SE3D_FIELD_CONTACT_STRESS; c < SE3D_FIELD_VALUES; ++c) {
+                CHECK_NEAR(sum[c], all[c], (cut ? 2e-2 : 1e-9) * (fabs(all[14]) + 1e-3));
+            }
+            for (size_t i = 0; i < cells && g == 1; ++i) {
+                CHECK(fields[SE3D_FIELD_VALUES * i] >= 0.0 &&
+                      fields[SE3D_FIELD_VALUES * i + SE3D_FIELD_TEMPERATURE] >= 0.0);
+            }
+        }
+        se3d_system_destroy(system);
+    }
+}
+
+/* A lattice in a period all of whose particles move as one: the same everywhere. */
+static void uniform_beds_are_uniform(void)
+{
+    se3d_system *system;
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_material material;
+    se3d_particles_def def = se3d_particles_def_default();
+    se3d_particles *set;
+    double sum[SE3D_FIELD_VALUES];
+    CHECK(!se3d_system_create(NULL, &system));
+    stuff.density = 2000.0;
+    stuff.stiffness = 1e4;
+    CHECK(!se3d_material_create(system, &stuff, &material));
+    for (int a = 0; a < 3; ++a) {
+        def.boundary[a] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        def.upper[a] = 0.1;
+    }
+    CHECK(!se3d_particles_create(system, &def, &set));
+    for (int k = 0; k < 1000; ++k) {
+        const double r[3] = {0.005 + 0.01 * (k % 10), 0.005 + 0.01 * (k / 10 % 10),
+                             0.005 + 0.01 * (k / 100)};
+        const double radius = 0.004, v[3] = {0.2, -0.1, 0.4};
+        CHECK(!se3d_particles_add(set, material, 1, r, &radius, v, NULL, NULL));
+    }
+    se3d_field_grid grid = grid_of(8, 8, 8, 0.035);
+    for (int a = 0; a < 3; ++a) {
+        grid.lower[a] = 0.02; /* not the domain's: what leaves it on one side comes back */
+        grid.upper[a] = 0.12;
+    }
+    const size_t cells = add_up(set, &grid, sum);
+    const double solid = 4.0 / 3.0 * PI * 64e-9 / 1e-6;
+    CHECK_NEAR(sum[SE3D_FIELD_SOLID_FRACTION], solid * 1e-3, 1e-15);
+    for (size_t k = 0; k < cells; ++k) {
+        const double *f = fields + k * SE3D_FIELD_VALUES;
+        CHECK_NEAR(f[SE3D_FIELD_SOLID_FRACTION], solid, 0.03 * solid);
+        CHECK_NEAR(f[SE3D_FIELD_DENSITY], 2000.0 * f[SE3D_FIELD_SOLID_FRACTION], 1e-9);
+        CHECK_NEAR(f[SE3D_FIELD_VELOCITY], 0.2, 1e-12);
+        CHECK_NEAR(f[SE3D_FIELD_VELOCITY + 2], 0.4, 1e-12);
+        CHECK_NEAR(f[SE3D_FIELD_TEMPERATURE], 0.0, 1e-13);
+    }
+    grid.tag = 3;
+    (void)add_up(set, &grid, sum);
+    CHECK(!(sum[SE3D_FIELD_DENSITY] > 0.0));
+    se3d_system_destroy(system);
+}
+
+static void fields_do_not_depend_on_threads(void)
+{
+    static double first[CELLS_MOST * SE3D_FIELD_VALUES];
+    const se3d_field_grid grid = grid_of(5, 6, 7, 0.04);
+    for (int32_t threads = 1; threads <= 3; threads += 2) {
+        double sum[SE3D_FIELD_VALUES];
+        se3d_particles *set;
+        se3d_system *system = run_world(PARTICLES_HEAP, threads, &set);
+        const size_t cells = add_up(set, &grid, sum);
+        if (threads == 1) {
+            memcpy(first, fields, cells * SE3D_FIELD_VALUES * sizeof *first);
+        }
+        CHECK(memcmp(first, fields, cells * SE3D_FIELD_VALUES * sizeof *first) == 0);
+        se3d_system_destroy(system);
+    }
+}
+
+int main(void)
+{
+    RUN(sums_are_what_there_is);
+    RUN(uniform_beds_are_uniform);
+    RUN(fields_do_not_depend_on_threads);
+    return check_finish();
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The playground but for its page: what the worker says, and the texts that it takes. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "playground.h"
+
+static char path[400];
+
+static void write_model(double stiffness, const char *joint)
+{
+    FILE *file = fopen(path, "w");
+    CHECK(file != NULL);
+    if (!file) {
+        return;
+    }
+    fprintf(file,
+            "se3d: 1\n"
+            "parameters: {k: %g}\n"
+            "gravity: [0, 0, 0]\n"
+            "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0.3, 0, 0]}]\n"
+            "joints: [{name: rail, type: %s, body_i: ground, body_j: block, at: [0, 0, 0],\n"
+            "          axis: [1, 0, 0]}]\n"
+            "forces: [{name: spring, type: tsda, body_i: ground, body_j: block, k: k, l0: 0.1}]\n"
+            "analysis: {type: dynamics, duration: 1}\n"
+            "output: [{file: x.csv, channels: [block.position.x], every: 0.01}]\n",
+            stiffness, joint);
+    fclose(file);
+}
+
+/* A number of the last state, behind its name. */
+static double read_number(const char *state, const char *name)
+{
+    const char *at = strstr(state, name);
+    return at ? strtod(at + strlen(name), NULL) : (double)NAN;
+}
+
+/* Turn until nothing is to be done. @return the last state. */
+static const char *turn_until_quiet(void)
+{
+    static char state[4000];
+    for (int k = 0; k < 100; ++k) {
+        const double rest = se3d_play_turn();
+        const char *now = se3d_play_take_state();
+        if (*now) {
+            snprintf(state, sizeof state, "%s", now);
+        }
+        if (rest < 0.0) {
+            break;
+        }
+    }
+    return state;
+}
+
+static void check_opening(void)
+{
+    CHECK(se3d_play_turn() < 0.0);
+    CHECK(*se3d_play_take_state() == '\0');
+    write_model(50.0, "prismatik");
+    CHECK_CONTAINS(se3d_play_open(path), "model.yaml:5:");
+    CHECK(se3d_play_turn() < 0.0);
+    write_model(50.0, "prismatic");
+    CHECK(*se3d_play_open(path) == '\0');
+    CHECK_CONTAINS(se3d_play_take_scene(), "\"glb\"");
+    CHECK(*se3d_play_take_scene() == '\0');
+    CHECK_CONTAINS(se3d_play_take_state(), "\"running\":true");
+}
+
+/* x'' = -k (x - 0.1), x(0) = 0.3 */
+static void check_motion(double stiffness, const char *state)
+{
+    const double t = read_number(state, "\"t\":");
+    const double x = 0.1 + 0.2 * cos(sqrt(stiffness) * t);
+    CHECK(t > 0.0);
+    CHECK_NEAR(read_number(state, "\"values\":["), x, 1e-6);
+}
+
+static void check_orders(void)
+{
+    CHECK(se3d_play_say("pause"));
+    CHECK_CONTAINS(turn_until_quiet(), "\"running\":false");
+    CHECK(se3d_play_say("reset"));
+    CHECK(read_number(turn_until_quiet(), "\"t\":") <= 0.0);
+    CHECK(se3d_play_say("step") && se3d_play_say("step"));
+    const char *state = turn_until_quiet();
+    CHECK_NEAR(read_number(state, "\"t\":"), 2.0 / 60.0, 1e-9);
+    check_motion(50.0, state);
+    CHECK(se3d_play_say("run"));
+    se3d_play_watch(0);
+    CHECK(se3d_play_turn() < 0.0);
+    se3d_play_watch(1);
+    CHECK(se3d_play_turn() >= 0.0);
+    CHECK(se3d_play_say("pause"));
+    check_motion(50.0, turn_until_quiet());
+}
+
+static void check_saving(void)
+{
+    write_model(50.0, "prismatik");
+    se3d_play_save();
+    CHECK_CONTAINS(turn_until_quiet(), "prismatik");
+    write_model(80.0, "prismatic");
+    se3d_play_save();
+    CHECK_CONTAINS(turn_until_quiet(), "\"trouble\":\"\"");
+    CHECK(se3d_play_say("step"));
+    check_motion(80.0, turn_until_quiet());
+}
+
+static void check_refusals(void)
+{
+    char words[300];
+    memset(words, 'a', sizeof words - 1);
+    words[sizeof words - 1] = '\0';
+    CHECK(!se3d_play_say(words));
+    int taken = 0;
+    while (taken < 1000 && se3d_play_say("set 1 0 nan")) {
+        ++taken;
+    }
+    CHECK(taken == 64);
+    (void)turn_until_quiet();
+    CHECK(se3d_play_say("pause"));
+    (void)turn_until_quiet();
+    CHECK_CONTAINS(se3d_play_open("/nowhere/model.yaml"), "No such file");
+    CHECK(se3d_play_turn() < 0.0);
+}
+
+int main(void)
+{
+    const char *folder = getenv("SE3D_BUILD_DIR");
+    snprintf(path, sizeof path, "%s/tests/playground_model.yaml", folder ? folder : ".");
+    check_opening();
+    check_orders();
+    check_saving();
+    check_refusals();
+    remove(path);
+    return check_finish();
+}

@@ -1,0 +1,21 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# What `gcc -fanalyzer` finds: prints it and fails. It takes minutes, so that it is run before a release.
+# Files: those given, or all of the libraries, the program and the recorder but the kernels at their
+# instruction levels.
+cd "$(dirname "$0")/.." || exit 1
+if [ $# -eq 0 ]; then
+    # shellcheck disable=SC2046
+    set -- $(find lib tools/se3d record -name '*.c' | grep -Ev '_(avx2|avx512|fma|portable)\.c$' | sort)
+fi
+flags="-std=c11 -D_POSIX_C_SOURCE=200809L -O1 -fopenmp -ffp-contract=off -Iinclude -Ilib -Itools/se3d -Irecord
+-isystem /usr/include/suitesparse -fanalyzer -Wno-analyzer-too-complex"
+log=$(mktemp) || exit 1
+trap 'rm -f "$log"' EXIT
+# shellcheck disable=SC2086
+printf '%s\n' "$@" | xargs -P "$(nproc 2>/dev/null || echo 2)" -I FILE "${SE3D_GCC:-gcc}" $flags -c FILE -o /dev/null \
+    2>"$log" || cat "$log"
+problems=$(grep -c 'warning: .*\[-Wanalyzer' "$log")
+grep -E 'warning: .*\[-Wanalyzer' "$log"
+echo "analyzer: $# files, $problems problems"
+[ "$problems" -eq 0 ]

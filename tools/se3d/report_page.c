@@ -1,0 +1,630 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* se3d report MODEL...: models are run, and one page shows what they are and what came out: a
+ * sketch, parameters, curves, tables. Nothing of it is fetched from elsewhere, and names are texts
+ * wherever they stand. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chart.h"
+#include "file.h"
+#include "interrupt.h"
+#include "io/write/sketch.h"
+#include "io/write/svg.h"
+#include "options.h"
+#include "process.h"
+#include "snapshots.h"
+#include "table.h"
+#include "text.h"
+
+enum {
+    PATH_SIZE = 4200,
+    BELOW_SIZE = 300,
+    MODELS_MAX = 64,
+    WORDS_MAX = 2 * SETTINGS_MAX + 8,
+    ROWS_MAX = 20000
+};
+
+typedef struct report {
+    char *models[MODELS_MAX];
+    char below[MODELS_MAX][BELOW_SIZE]; /* the folder of its results, "" or "name/" */
+    size_t count;
+    const char *folder; /* -o; NULL: the usual one */
+    const char *x;      /* -x; NULL: chosen */
+    char *settings[SETTINGS_MAX];
+    size_t setting_count;
+    int has_x; /* a file of results has it */
+    int quiet, help;
+    char place[PATH_SIZE]; /* of the page */
+    FILE *page;
+} report;
+
+static int usage(const char *what, const char *word)
+{
+    fprintf(stderr, "se3d report: %s `", what);
+    text_put_plain(stderr, word);
+    fputs("`; see `se3d help report`\n", stderr);
+    return EXIT_USAGE;
+}
+
+/* ---- the page --------------------------------------------------------------------------------*/
+
+static void put_tag(FILE *page, const char *tag, const char *text)
+{
+    fprintf(page, "<%s>", tag);
+    se3di_svg_put(page, text);
+    fprintf(page, "</%s>\n", tag);
+}
+
+static void put_number(FILE *page, double value)
+{
+    if (isfinite(value)) {
+        fprintf(page, "<td>%.6g</td>", value);
+    } else {
+        fputs("<td></td>", page);
+    }
+}
+
+/* What was drawn, as a picture that has a style of its own. @return false: it cannot be read */
+static int put_picture(FILE *page, FILE *drawing, const char *text)
+{
+    const long size = fflush(drawing) == 0 ? ftell(drawing) : -1;
+    char *data = size > 0 ? malloc((size_t)size) : NULL;
+    rewind(drawing);
+    const int good = data && fread(data, 1, (size_t)size, drawing) == (size_t)size;
+    if (good) {
+        fputs("<img alt=\"", page);
+        se3di_svg_put(page, text);
+        fputs("\" src=\"data:image/svg+xml;base64,", page);
+        base64_put(page, data, (size_t)size);
+        fputs("\">\n", page);
+    }
+    free(data);
+    return good;
+}
+
+static int put_sketch(FILE *page, se3d_model *model)
+{
+    FILE *drawing = tmpfile();
+    int good = drawing != NULL;
+    if (good && !SE3D_FAILED(se3di_sketch_put(model, NULL, drawing))) {
+        good = put_picture(page, drawing, "sketch");
+    }
+    if (drawing) {
+        fclose(drawing);
+    }
+    return good;
+}
+
+static void put_parameters(FILE *page, const se3d_model *model)
+{
+    const size_t count = se3d_model_count_parameters(model);
+    if (count == 0) {
+        return;
+    }
+    fputs("<h3>Parameters</h3>\n<table><tr><th>name</th><th>in the file</th><th>value</th></tr>\n",
+          page);
+    for (size_t k = 0; k < count; ++k) {
+        double value = (double)NAN;
+        const char *name = se3d_model_get_parameter_name(model, k);
+        se3d_model_get_parameter(model, name, &value);
+        fputs("<tr><td>", page);
+        se3di_svg_put(page, name);
+        fputs("</td><td>", page);
+        se3di_svg_put(page, se3d_model_get_parameter_text(model, k));
+        fputs("</td>", page);
+        put_number(page, value);
+        fputs("</tr>\n", page);
+    }
+    fputs("</table>\n", page);
+}
+
+/* ---- one file of results ---------------------------------------------------------------------*/
+
+typedef struct sheet {
+    table t;
+    const se3d_model *model; /* whose channels were listed */
+    size_t channels;
+    double *columns; /* [t.count][rows] */
+    size_t rows, x;
+} sheet;
+
+static const double *get_column(const sheet *s, size_t k)
+{
+    return s->columns + k * s->rows;
+}
+
+/* Of very many rows, every so many. */
+static int read_sheet(sheet *s)
+{
+    const size_t stride = s->t.rows / ROWS_MAX + 1;
+    const size_t most = s->t.rows / stride + 2;
+    double *rows = calloc(most * s->t.count, sizeof *rows);
+    s->rows = rows ? table_read_rows(&s->t, stride, rows, most) : 0;
+    s->columns = calloc(s->rows * s->t.count + 1, sizeof *s->columns);
+    for (size_t i = 0; rows && s->columns && i < s->rows; ++i) {
+        for (size_t k = 0; k < s->t.count; ++k) {
+            s->columns[k * s->rows + i] = rows[i * s->t.count + k];
+        }
+    }
+    free(rows);
+    return rows && s->columns;
+}
+
+/* The unit of a column: of its channel, or of that whose component it is; else by its name. */
+static const char *get_unit(const sheet *s, const char *column, char *buffer, size_t size)
+{
+    const char *dot = strrchr(column, '.');
+    for (size_t k = 0; k < s->channels; ++k) {
+        se3d_model_channel channel;
+        if (SE3D_FAILED(se3d_model_get_listed_channel(s->model, k, &channel))) {
+            break;
+        }
+        const size_t length = strlen(channel.name);
+        const int is_part = dot && column + length == dot && channel.width > 1;
+        if (strncmp(column, channel.name, length) == 0 && (column[length] == '\0' || is_part)) {
+            return channel.unit;
+        }
+    }
+    return table_get_unit(&s->t, column, buffer, size);
+}
+
+/* A name with its unit. */
+static void make_label(const sheet *s, const char *quantity, const char *column, char *label,
+                       size_t size)
+{
+    char unit[60];
+    const char *text = get_unit(s, column, unit, sizeof unit);
+    snprintf(label, size, text[0] ? "%.120s [%.40s]" : "%.120s", quantity, text);
+}
+
+static int put_chart(FILE *page, const chart *c)
+{
+    FILE *drawing = tmpfile();
+    int good = drawing != NULL;
+    if (good) {
+        chart_put(c, drawing);
+        good = put_picture(page, drawing, c->title);
+        fclose(drawing);
+    }
+    return good;
+}
+
+/* Curves of one quantity and unit share a frame, as far as it has room. */
+static int put_charts(FILE *page, const sheet *s)
+{
+    char *done = calloc(s->t.count + 1, 1);
+    int good = done != NULL;
+    for (size_t k = 1; k < s->t.count && good; ++k) {
+        char quantity[400];
+        chart c = {.x = get_column(s, s->x), .count = s->rows};
+        if (done[k] || k == s->x) {
+            continue;
+        }
+        table_get_quantity(s->t.names[k], quantity, sizeof quantity);
+        make_label(s, quantity, s->t.names[k], c.y_label, sizeof c.y_label);
+        make_label(s, s->t.names[s->x], s->t.names[s->x], c.x_label, sizeof c.x_label);
+        c.title = c.y_label;
+        for (size_t i = k; i < s->t.count && c.curves < CHART_CURVES_MAX; ++i) {
+            char other[400];
+            char label[200];
+            table_get_quantity(s->t.names[i], other, sizeof other);
+            make_label(s, other, s->t.names[i], label, sizeof label);
+            if (!done[i] && i != s->x && strcmp(label, c.y_label) == 0) {
+                done[i] = 1;
+                c.names[c.curves] = s->t.names[i];
+                c.y[c.curves++] = get_column(s, i);
+            }
+        }
+        good = put_chart(page, &c);
+    }
+    free(done);
+    return good;
+}
+
+/* dy/dx where |x| is the least, from the rows beside it. */
+static double get_slope(const sheet *s, size_t k)
+{
+    const double *x = get_column(s, s->x);
+    const double *y = get_column(s, k);
+    size_t at = 0;
+    for (size_t i = 1; i < s->rows; ++i) {
+        at = fabs(x[i]) < fabs(x[at]) ? i : at;
+    }
+    const size_t before = at > 0 ? at - 1 : at;
+    const size_t after = at + 1 < s->rows ? at + 1 : at;
+    const double apart = x[after] - x[before];
+    return fabs(apart) > 0.0 ? (y[after] - y[before]) / apart : (double)NAN;
+}
+
+static void put_row(FILE *page, const sheet *s, size_t k)
+{
+    char unit[60];
+    const double *x = get_column(s, s->x);
+    const double *y = get_column(s, k);
+    size_t least = 0;
+    size_t most = 0;
+    for (size_t i = 1; i < s->rows; ++i) {
+        least = y[i] < y[least] ? i : least;
+        most = y[i] > y[most] ? i : most;
+    }
+    fputs("<tr><td>", page);
+    se3di_svg_put(page, s->t.names[k]);
+    fputs("</td><td>", page);
+    se3di_svg_put(page, get_unit(s, s->t.names[k], unit, sizeof unit));
+    fputs("</td>", page);
+    const double cells[] = {y[0], y[least], x[least], y[most], x[most], y[s->rows - 1]};
+    for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) {
+        put_number(page, cells[i]);
+    }
+    if (s->x > 0) {
+        put_number(page, get_slope(s, k));
+    }
+    fputs("</tr>\n", page);
+}
+
+static void put_table(FILE *page, const sheet *s)
+{
+    fputs("<table><tr><th>channel</th><th>unit</th><th>first</th><th>least</th><th>at</th>"
+          "<th>most</th><th>at</th><th>last</th>",
+          page);
+    if (s->x > 0) {
+        fputs("<th>slope at 0</th>", page);
+    }
+    fputs("</tr>\n", page);
+    for (size_t k = 1; k < s->t.count; ++k) {
+        if (k != s->x) {
+            put_row(page, s, k);
+        }
+    }
+    fputs("</table>\n", page);
+}
+
+/* A link to a file below the page: every other character as its number. */
+static void put_link(FILE *page, const char *path)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                "_./-";
+    fputs("<p><a href=\"./", page);
+    for (const char *c = path; *c; ++c) {
+        fprintf(page, strchr(plain, *c) ? "%c" : "%%%02X", (unsigned char)*c);
+    }
+    fputs("\">", page);
+    se3di_svg_put(page, path);
+    fputs("</a></p>\n", page);
+}
+
+/* What stands on the horizontal axis: as asked; the first channel of kinematics; else the time. */
+static size_t choose_x(report *r, const se3d_model *model, const table *t)
+{
+    int still = 1; /* nothing but kinematics */
+    for (size_t k = 0; k < se3d_model_count_analyses(model); ++k) {
+        se3d_model_analysis analysis;
+        still =
+            still && !SE3D_FAILED(se3d_model_get_analysis(model, k, &analysis)) &&
+            (strcmp(analysis.type, "kinematics") == 0 || strcmp(analysis.type, "assembly") == 0);
+    }
+    const size_t asked = r->x ? table_find(t, r->x) : t->count;
+    r->has_x = r->has_x || asked < t->count;
+    return asked < t->count ? asked : still && t->count > 2 ? 1 : 0;
+}
+
+static int put_results(report *r, se3d_model *model, const char *folder, const char *below,
+                       const char *file)
+{
+    char path[2 * PATH_SIZE];
+    char link[PATH_SIZE];
+    sheet s = {.model = model};
+    int good = 1;
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    snprintf(link, sizeof link, "%s%s", below, file);
+    put_tag(r->page, "h3", file);
+    put_link(r->page, link);
+    if (!table_read(&s.t, "report", path)) {
+        return 0;
+    }
+    s.x = choose_x(r, model, &s.t);
+    good = !SE3D_FAILED(se3d_model_list_channels(model, &s.channels)) && read_sheet(&s);
+    if (good && s.rows > 0) {
+        put_table(r->page, &s);
+        good = s.rows < 2 || put_charts(r->page, &s);
+    }
+    free(s.columns);
+    table_destroy(&s.t);
+    return good;
+}
+
+/* ---- one model -------------------------------------------------------------------------------*/
+
+/* The words for another command: the settings, then the model, which may begin with a dash. */
+static int add_words(const report *r, char *model, char *set, char *end, char **words)
+{
+    int count = 0;
+    for (size_t k = 0; k < r->setting_count; ++k) {
+        words[count++] = set;
+        words[count++] = r->settings[k];
+    }
+    words[count++] = end;
+    words[count++] = model;
+    return count;
+}
+
+/* `se3d run` with the settings of the report. */
+static int run_one(const report *r, char *model, char *folder)
+{
+    char set[] = "--set", end[] = "--", output[] = "-o", quiet[] = "-q";
+    char *words[WORDS_MAX] = {quiet, output, folder};
+    return run_entry.run(3 + add_words(r, model, set, end, words + 3), words);
+}
+
+static int put_model(report *r, se3d_model *model, const char *path, const char *folder,
+                     const char *below)
+{
+    const char *title = se3d_model_get_title(model);
+    int good = 1;
+    put_tag(r->page, "h2", title[0] ? title : se3d_model_get_name(model));
+    put_tag(r->page, "p", path);
+    for (size_t k = 0; k < r->setting_count; ++k) {
+        put_tag(r->page, "p", r->settings[k]);
+    }
+    good = put_sketch(r->page, model);
+    put_parameters(r->page, model);
+    for (size_t k = 0; k < se3d_model_count_outputs(model) && good; ++k) {
+        se3d_model_output output;
+        se3d_model_get_output(model, k, &output);
+        if (output.channel_count > 0) {
+            good = put_results(r, model, folder, below, output.file);
+        }
+    }
+    return good;
+}
+
+static int read_model(const report *r, char *path, se3d_model **model)
+{
+    char set[] = "--set", end[] = "--";
+    char *words[WORDS_MAX];
+    options o;
+    int code = options_read(&o, &report_entry, add_words(r, path, set, end, words), words);
+    if (code == EXIT_DONE) {
+        const se3d_model_options how = options_get_model(&o);
+        code = options_read_model(&o, &how, model);
+    }
+    return code;
+}
+
+static int is_taken(const report *r, size_t count, const char *below)
+{
+    for (size_t k = 0; k < count; ++k) {
+        if (strcmp(r->below[k], below) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Models of one name have folders of their own: m, m-2, m-3. */
+static void choose_below(report *r, size_t index, const char *name)
+{
+    char *below = r->below[index];
+    snprintf(below, BELOW_SIZE, "%.250s/", name);
+    for (size_t k = 2; is_taken(r, index, below); ++k) {
+        snprintf(below, BELOW_SIZE, "%.250s-%zu/", name, k);
+    }
+}
+
+/* Run a model into its folder and put it on the page. */
+static int report_model(report *r, size_t index)
+{
+    char folder[PATH_SIZE + BELOW_SIZE];
+    char *path = r->models[index];
+    const char *below = r->below[index];
+    se3d_model *model = NULL;
+    int code = read_model(r, path, &model);
+    if (code == EXIT_DONE && se3d_model_count_analyses(model) == 0) {
+        fprintf(stderr, "se3d report: %s: there is nothing to run\n", path);
+        code = EXIT_USAGE;
+    }
+    if (code == EXIT_DONE) {
+        if (r->count > 1) {
+            choose_below(r, index, se3d_model_get_name(model));
+        }
+        snprintf(folder, sizeof folder, "%s%s%s", r->place, r->count > 1 ? "/" : "", below);
+        code = run_one(r, path, folder);
+    }
+    if (code == EXIT_DONE && !put_model(r, model, path, folder, below)) {
+        fputs("se3d report: out of memory, or of room for temporary files\n", stderr);
+        code = EXIT_FAILED;
+    }
+    se3d_model_destroy(model);
+    return code;
+}
+
+/* ---- the command -----------------------------------------------------------------------------*/
+
+/* The folder of the page, by the first model. */
+static int find_place(report *r)
+{
+    se3d_model *model = NULL;
+    int length = -1;
+    if (r->folder) {
+        length = snprintf(r->place, sizeof r->place, "%s", r->folder);
+    } else if (r->count > 1) {
+        length = snprintf(r->place, sizeof r->place, "results/report");
+    } else {
+        const int code = read_model(r, r->models[0], &model);
+        if (code != EXIT_DONE) {
+            return code;
+        }
+        length = snprintf(r->place, sizeof r->place, "results/%s", se3d_model_get_name(model));
+        se3d_model_destroy(model);
+    }
+    return length > 0 && (size_t)length < sizeof r->place
+               ? EXIT_DONE
+               : usage("the path is too long:", r->folder ? r->folder : r->models[0]);
+}
+
+static int write_page(report *r)
+{
+    static const char head[] =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+        "img-src data:; style-src 'unsafe-inline'\">\n<title>Report</title>\n<style>"
+        "body{font:15px sans-serif;color:#1c2730;max-width:84em;margin:2em auto;padding:0 1em}"
+        "table{border-collapse:collapse;margin:1em 0}"
+        "td,th{border:1px solid #c8d0d6;padding:.2em .6em;text-align:right}"
+        "td:first-child,th:first-child{text-align:left}img{max-width:100%;margin:.3em}"
+        "</style></head><body>\n<h1>Report</h1>\n";
+    char path[PATH_SIZE + 20];
+    int code = EXIT_DONE;
+    snprintf(path, sizeof path, "%s/report.html", r->place);
+    r->page = se3di_file_make_folders(path) ? se3di_partial_open(path) : NULL;
+    if (r->page) {
+        fputs(head, r->page);
+        for (size_t k = 0; k < r->count && code == EXIT_DONE; ++k) {
+            code = report_model(r, k);
+        }
+        if (code == EXIT_DONE && r->x && !r->has_x) {
+            code = usage("no file of results has the channel of -x,", r->x);
+        }
+        fputs("</body></html>\n", r->page);
+    }
+    const int good = r->page && file_end(r->page, path, code == EXIT_DONE && !ferror(r->page));
+    if (!good && code == EXIT_DONE) {
+        fprintf(stderr, "se3d report: %s: cannot be written: %s\n", path, strerror(errno));
+        code = EXIT_FAILED;
+    }
+    if (code == EXIT_DONE && !r->quiet) {
+        fputs("wrote ", stdout);
+        text_put_plain(stdout, path);
+        putchar('\n');
+    }
+    return code;
+}
+
+static int take_value(report *r, const char *name, char *value)
+{
+    if (!value || !value[0]) {
+        return usage("a value is missing after", name);
+    }
+    if (strcmp(name, "--set") == 0) {
+        if (r->setting_count == SETTINGS_MAX) {
+            return usage("too many --set, no room for", value);
+        }
+        r->settings[r->setting_count++] = value;
+    } else if (strcmp(name, "-x") == 0) {
+        r->x = value;
+    } else {
+        r->folder = value;
+    }
+    return EXIT_DONE;
+}
+
+static int add_model(report *r, char *word)
+{
+    if (r->count == MODELS_MAX) {
+        return usage("too many models, no room for", word);
+    }
+    if (strcmp(word, "-") == 0) {
+        return usage("a model must be a file, not", word);
+    }
+    r->models[r->count++] = word;
+    return EXIT_DONE;
+}
+
+static int takes_value(const char *word)
+{
+    static const char *const names[] = {"--set", "-x", "-o", "--output"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        if (strcmp(word, names[k]) == 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int read_flag(report *r, const char *word)
+{
+    if (strcmp(word, "-q") == 0 || strcmp(word, "--quiet") == 0) {
+        r->quiet = 1;
+    } else if (strcmp(word, "-h") == 0 || strcmp(word, "--help") == 0) {
+        r->help = 1;
+    } else {
+        return usage("unknown option", word);
+    }
+    return EXIT_DONE;
+}
+
+static int read_words(report *r, int count, char *const *words)
+{
+    int names = 0; /* after "--" no word is an option */
+    for (int k = 0; k < count; ++k) {
+        int code = EXIT_DONE;
+        if (names || words[k][0] != '-' || !words[k][1]) {
+            code = add_model(r, words[k]);
+        } else if (strcmp(words[k], "--") == 0) {
+            names = 1;
+        } else if (takes_value(words[k])) {
+            code = take_value(r, words[k], k + 1 < count ? words[k + 1] : NULL);
+            ++k;
+        } else {
+            code = read_flag(r, words[k]);
+        }
+        if (code != EXIT_DONE) {
+            return code;
+        }
+    }
+    if (r->count == 0 && !r->help) {
+        fputs("se3d report: which model? Give a file; see `se3d help report`\n", stderr);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
+}
+
+static int command_report(int count, char *const *words)
+{
+    report *r = calloc(1, sizeof *r);
+    if (!r) {
+        fputs("se3d report: out of memory\n", stderr);
+        return EXIT_FAILED;
+    }
+    interrupt_begin();
+    int code = read_words(r, count, words);
+    if (code == EXIT_DONE && r->help) {
+        command_print_help(&report_entry);
+    } else if (code == EXIT_DONE) {
+        code = find_place(r);
+        code = code == EXIT_DONE ? write_page(r) : code;
+    }
+    free(r);
+    return code;
+}
+
+const command_entry report_entry = {
+    .name = "report",
+    .run = command_report,
+    .operands = "MODEL...",
+    .files = "yaml yml json",
+    .summary = "run models and write one page of curves and tables",
+    .text = "Runs the models and writes report.html: of each a sketch, its parameters, and for "
+            "every file of results a table and curves, one frame for each quantity. Curves of "
+            "kinematics are drawn over their first channel (the travel of a wheel, the angle of "
+            "the hand wheel), the others over time. The CSV files lie beside the page, which "
+            "needs no network.",
+    .options =
+        (const command_option[]){
+            {"--output", "-o", "DIR",
+             "folder for the page and the results (default: results/<model>, of several models "
+             "results/report)"},
+            {"-x", NULL, "CHANNEL", "horizontal axis of the files that have it"},
+            COMMAND_OPTION_SET,
+            COMMAND_OPTION_QUIET,
+            {0}},
+    .examples =
+        (const command_example[]){
+            {"report travel.yaml roll.yaml steer.yaml", "kinematics of a suspension on one page"},
+            {"report corner.yaml --set rack_z=152", "with another hardpoint"},
+            {0}},
+    .exits = "0 done; 1 a run or a file failed; 2 bad usage or model.",
+};

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What `se3d study` does beside samples: derivatives of measures. */
+#ifndef SE3D_TOOL_STUDY_DERIVE_H
+#define SE3D_TOOL_STUDY_DERIVE_H
+
+#include "options.h"
+#include "se3d/study.h"
+
+/* Write sensitivities.csv into `folder`, a line for each measure and parameter. @return the exit
+ * code, after a message if it failed. */
+int study_derive(const options *o, se3d_study *study, const char *folder);
+
+#endif
