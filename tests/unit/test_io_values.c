@@ -249,6 +249,34 @@ static void laws_are_put_together_alike_in_every_locale(void)
     setlocale(LC_ALL, "C");
 }
 
+/* What the caller gave may be gone once the model is read. */
+static void texts_of_the_caller_are_copied(void)
+{
+    const char *model_text = "se3d: 1\nparameters: {L: 500 mm, a: 2*L}\n"
+                             "bodies: [{name: b, mass: 1, inertia: [1, 1, 1]}]\n";
+    char given[6][16] = {"L", "700 mm", "dynamics", "rk4", "0.01", "1"};
+    se3d_model_setting setting = {given[0], given[1]};
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    options.settings = &setting;
+    options.setting_count = 1;
+    options.analysis = given[2];
+    options.method = given[3];
+    options.step = given[4];
+    options.duration = given[5];
+    CHECK(se3d_model_read_text(model_text, strlen(model_text), "m", &options, &model, &error) ==
+          SE3D_OK);
+    memset(given, 'x', sizeof given);
+    double value = 0.0;
+    CHECK(se3d_model_get_parameter(model, "L", &value) == SE3D_OK);
+    CHECK_NEAR(value, 0.7, 1e-15);
+    CHECK(se3d_model_get_parameter(model, "a", &value) == SE3D_OK);
+    CHECK_NEAR(value, 1.4, 1e-15);
+    CHECK(se3d_model_get_parameter(model, "xxx", &value) == SE3D_ERR_INVALID_ARGUMENT);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
     RUN(four_ways_to_say_an_orientation_agree);
@@ -259,5 +287,6 @@ int main(void)
     RUN(numbers_have_a_point_in_every_locale);
     RUN(numbers_are_written_as_printf_does);
     RUN(laws_are_put_together_alike_in_every_locale);
+    RUN(texts_of_the_caller_are_copied);
     return check_finish();
 }

@@ -435,10 +435,10 @@ se3di_node *se3di_node_of_text(se3di_iopool *pool, const char *key, const char *
     se3di_node *node = se3di_iopool_alloc(pool, sizeof *node);
     if (node) {
         node->kind = SE3DI_NODE_SCALAR;
-        node->key = key;
-        node->text = text;
+        node->key = se3di_iopool_copy(pool, key, strlen(key));
+        node->text = se3di_iopool_copy(pool, text, strlen(text));
     }
-    return node;
+    return node && node->key && node->text ? node : NULL;
 }
 
 se3di_node *se3di_node_get(const se3di_node *map, const char *key)

@@ -64,7 +64,7 @@ se3d_status se3di_document_parse_value(se3di_iopool *pool, const char *name, con
 
 /* The child of a map, or NULL (also if `map` is NULL or not a map). */
 se3di_node *se3di_node_get(const se3di_node *map, const char *key);
-/* A text that no file holds, an option of the command line; NULL: out of memory. */
+/* A text that no file holds, an option of the command line, copied; NULL: out of memory. */
 se3di_node *se3di_node_of_text(se3di_iopool *pool, const char *key, const char *text);
 /* True for a plain scalar that stands for nothing: empty, `~` or `null`. */
 bool se3di_node_is_null(const se3di_node *node);
