@@ -90,12 +90,13 @@ SE3D_API se3d_status se3d_model_read_text(const char *text, size_t length, const
                                           const se3d_model_options *options, se3d_model **out,
                                           se3d_model_error *error);
 
-/* Destroy a model and its system; NULL is fine. Within se3d_model_run or a callback of the
- * system nothing is destroyed. @since 0.1 */
+/* Destroy a model and its system; NULL is fine. Within se3d_model_run, a sample of a study of the
+ * model or a callback of the system nothing is destroyed. @since 0.1 */
 SE3D_API void se3d_model_destroy(se3d_model *model);
 
-/* Get the system of a model, which may be changed. @return the system, owned by the model; NULL
- * for NULL. @since 0.1 */
+/* Get the system of a model, which may be changed, but not destroyed: the model keeps it and its
+ * particles (se3d_system_set_kept). @return the system, owned by the model; NULL for NULL.
+ * @since 0.1 */
 SE3D_API se3d_system *se3d_model_get_system(const se3d_model *model);
 
 /* Get the name of the file without folder and extension. @return the text, owned by the model;

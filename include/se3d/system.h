@@ -38,9 +38,16 @@ SE3D_API se3d_status se3d_system_create(const se3d_system_def *def, se3d_system 
 
 /* Destroy a system and its elements; NULL is fine. Solvers and clones of its particle sets that
  * still live are empty then: their calls return STATE, and they may be destroyed as long as the
- * allocator lives. Within a callback of the system nothing is destroyed, and a message (STATE)
- * says so. @since 0.1 */
+ * allocator lives. Within a callback of the system, or if its owner keeps it, nothing is
+ * destroyed, and a message (STATE) says so. @since 0.1 */
 SE3D_API void se3d_system_destroy(se3d_system *system);
+
+/* Keep a system that is handed out: se3d_system_destroy, and se3d_particles_destroy of the sets
+ * that it has by now, destroy nothing and leave a message (STATE) until it is kept no longer. So
+ * models keep theirs. A clone is not kept.
+ * @param[in] kept  not 0: from now on; 0: no longer, before it is destroyed
+ * @return OK, NULL, STATE (within a callback). @since 0.1 */
+SE3D_API se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept);
 
 /* Make an independent copy with the same allocator; handles are valid on both. @return OK, NULL,
  * NO_MEMORY, STATE (within a callback that sees a trial state). @since 0.1 */

@@ -27,6 +27,13 @@ void se3di_owner_unlink(se3d_particles *particles)
     }
 }
 
+void se3di_owners_keep(se3d_system *system, int32_t kept)
+{
+    for (se3di_particles *set = system->model.sets; set; set = set->next) {
+        owner_of(set)->kept = kept;
+    }
+}
+
 void se3di_copies_orphan(se3d_system *system)
 {
     for (se3d_particles *copy = system->copies; copy; copy = copy->next) {
@@ -60,7 +67,7 @@ se3d_status se3di_owners_clone(const se3d_system *system, se3d_system *copy)
         }
         particles->system = copy;
         particles->next = NULL;
-        particles->is_copy = 0;
+        particles->is_copy = particles->kept = 0;
         se3di_particles_adopt(&particles->set, &copy->model);
         *last = &particles->set;
         last = &particles->set.next;

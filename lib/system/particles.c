@@ -83,7 +83,7 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     se3di_particles_init(set, allocator);
     particles->system = system;
     particles->next = NULL;
-    particles->is_copy = 0;
+    particles->is_copy = particles->kept = 0;
     set->threads = full.threads;
     set->kernels = se3di_particle_kernels_choose(full.portable);
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
@@ -123,6 +123,12 @@ void se3d_particles_destroy(se3d_particles *particles)
         (particles->system && se3di_enter(particles->system, SE3DI_BUSY_FREE, __func__) < 0)) {
         return;
     }
+    if (particles->system && particles->kept) {
+        (void)SE3DI_FAIL(particles->system, SE3D_ERR_STATE,
+                         "se3d_particles_destroy is not allowed: they belong to the model, or to "
+                         "whoever else keeps their system (se3d_system_set_kept)");
+        return;
+    }
     const se3d_allocator allocator = particles->set.allocator;
     if (particles->system) {
         se3di_particles_count_users(&particles->set, &particles->system->model, 0);
@@ -153,6 +159,7 @@ se3d_status se3d_particles_clone(const se3d_particles *particles, se3d_particles
     }
     copy->system = particles->system;
     copy->is_copy = 1;
+    copy->kept = 0;
     copy->next = copy->system->copies;
     copy->system->copies = copy;
     se3di_particles_count_users(&copy->set, &copy->system->model, 1);

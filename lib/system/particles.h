@@ -11,7 +11,7 @@ struct se3d_particles {
     se3d_system *system;  /* NULL: a clone whose system was destroyed */
     se3d_particles *next; /* a clone: the next one of the system */
     int32_t is_copy;      /* a clone, which no step of the system moves */
-    int32_t reserved;
+    int32_t kept;         /* the owner of the system has it, too */
 };
 
 /* The index of a material in the set's table, which it gets and is counted in if it has none. */
@@ -35,6 +35,8 @@ se3d_status se3di_check_particles_name(se3d_system *system, const char *name);
 void se3di_owner_unlink(se3d_particles *particles);
 void se3di_owners_destroy(se3di_model *model);
 se3d_status se3di_owners_clone(const se3d_system *system, se3d_system *copy);
+/* The sets of the system are its owner's, or nobody's any more. */
+void se3di_owners_keep(se3d_system *system, int32_t kept);
 /* `system` goes: calls of the clones of its sets are refused from now on. */
 void se3di_copies_orphan(se3d_system *system);
 

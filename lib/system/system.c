@@ -56,6 +56,7 @@ static void begin_life(se3d_system *system)
     system->solvers = NULL;
     system->coordinates = NULL;
     system->copies = NULL;
+    system->kept = 0;
 }
 
 se3d_status se3d_system_create(const se3d_system_def *def, se3d_system **out)
@@ -93,9 +94,23 @@ se3d_status se3d_system_set_log(se3d_system *system, se3d_log_callback log, void
     return SE3D_OK;
 }
 
+se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept)
+{
+    SE3DI_EDIT(system);
+    system->kept = kept != 0;
+    se3di_owners_keep(system, system->kept);
+    return SE3D_OK;
+}
+
 void se3d_system_destroy(se3d_system *system)
 {
     if (!system || se3di_enter(system, SE3DI_BUSY_FREE, __func__) < 0) {
+        return;
+    }
+    if (system->kept) {
+        (void)SE3DI_FAIL(system, SE3D_ERR_STATE,
+                         "se3d_system_destroy is not allowed: the system belongs to the model, or "
+                         "to whoever else keeps it (se3d_system_set_kept)");
         return;
     }
     const se3d_allocator allocator = system->model.allocator;

@@ -23,6 +23,8 @@ struct se3d_system {
     struct se3d_solver *solvers;          /* that live, in a chain */
     struct se3d_coordinates *coordinates; /* that live, in a chain */
     struct se3d_particles *copies;        /* clones of particle sets that live, in a chain */
+    int32_t kept;                         /* its owner alone may destroy it */
+    int32_t reserved;
 };
 
 /* Record an error on the system, log it, and return its status. */

@@ -184,10 +184,11 @@ static const char study_motion[] =
     "study: {parameters: {h: [1, 2, 3]}, measures: {z: {initial: block.position.z}}}\n";
 static int study_meddled;
 
-/* From the interrupt of a sample the study can neither be run again nor taken away. */
+/* From the interrupt of a sample neither the study nor its model can be run again or taken away. */
 static int meddle_with_study(void *ctx)
 {
-    se3d_study *study = *(se3d_study **)ctx;
+    const study_world *s = ctx;
+    se3d_study *study = s->study;
     double h = 4.0, z = 0.0;
     const char *line = NULL;
     se3d_model_error error;
@@ -198,6 +199,7 @@ static int meddle_with_study(void *ctx)
     IS(se3d_study_eval_nominal(study, &z, &error), SE3D_ERR_STATE);
     IS(se3d_study_eval_sensitivity(study, 0, &h, &z, NULL, &error), SE3D_ERR_STATE);
     se3d_study_destroy(study);
+    se3d_model_destroy(s->model); /* whose tree the sample is read from */
     ++study_meddled;
     return 0;
 }
@@ -207,7 +209,7 @@ static void study_keeps_its_sample(const world *w)
     study_world s = open_study_of(w, study_motion);
     double h = 4.0, z = 0.0;
     const char *line = NULL;
-    IS(se3d_study_set_interrupt(s.study, meddle_with_study, &s.study), SE3D_OK);
+    IS(se3d_study_set_interrupt(s.study, meddle_with_study, &s), SE3D_OK);
     IS(se3d_study_eval(s.study, &h, &z, NULL), SE3D_OK);
     CHECK_NEAR(z, 4.0, 0.0);
     IS(se3d_study_run_sample(s.study, 0, &line), SE3D_OK);

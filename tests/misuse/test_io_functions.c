@@ -55,6 +55,8 @@ static int meddle(void *ctx, size_t analysis, double time, double fraction)
     IS(se3d_model_run(w->model, NULL, &run, NULL), SE3D_ERR_STATE);
     CHECK(run == NULL);
     se3d_model_destroy(w->model);
+    se3d_system_destroy(se3d_model_get_system(w->model));
+    IS(se3d_system_get_error_status(se3d_model_get_system(w->model)), SE3D_ERR_STATE);
     se3d_scene_destroy(w->scene);
     IS(se3d_scene_record(w->scene), SE3D_OK);
     return 0;
@@ -73,6 +75,56 @@ static void a_run_keeps_its_model(void)
     CHECK(se3d_run_count_analyses(run) == 2);
     se3d_run_destroy(run);
     close_world(&w);
+}
+
+static const char particle_text[] =
+    "se3d: 1\nparticles: [{material: m, radius: 0.1, lower: [0, 0, 0], upper: [.3, .3, .3]}]\n"
+    "materials: [{name: m, density: 1000, stiffness: 2e4}]\ncontact: {law: hooke}\n"
+    "bodies: [{name: block, mass: 1, inertia: [1, 1, 1]}]\n"
+    "analysis: {type: dynamics, duration: 1e-3}\n"
+    "output: [{file: g.csv, particles: true}, {file: b.csv, channels: [block.position]}]\n";
+
+/* What a model has handed out is destroyed with it, and not before. */
+static int take_away(void *ctx, size_t analysis, double time, double fraction)
+{
+    se3d_system *system = ctx;
+    se3d_particles *set = NULL;
+    (void)analysis, (void)time, (void)fraction;
+    IS(se3d_system_get_particles(system, 0, &set), SE3D_OK);
+    se3d_particles_destroy(set);
+    CHECK_CONTAINS(se3d_system_get_error(system), "se3d_particles_destroy is not allowed");
+    se3d_system_destroy(system);
+    CHECK_CONTAINS(se3d_system_get_error(system), "se3d_system_destroy is not allowed");
+    return 0;
+}
+
+static void a_model_keeps_its_system(void)
+{
+    se3d_run_options how = se3d_run_options_default();
+    se3d_model_error error = {.message = ""};
+    se3d_model *model = NULL;
+    se3d_system *copy = NULL;
+    se3d_particles *own = NULL;
+    se3d_run *run = NULL;
+    const char *build = getenv("SE3D_BUILD_DIR");
+    char folder[800];
+    snprintf(folder, sizeof folder, "%s/misuse", build ? build : "/tmp");
+    IS(se3d_model_read_text(particle_text, strlen(particle_text), "g.yaml", NULL, &model, &error),
+       SE3D_OK);
+    fprintf(stderr, "%s", error.message);
+    se3d_system *system = se3d_model_get_system(model);
+    how.directory = folder;
+    how.progress = take_away;
+    how.ctx = system;
+    IS(se3d_model_run(model, &how, &run, &error), SE3D_OK);
+    CHECK(take_away(system, 0, 0.0, 0.0) == 0); /* nor outside of a run */
+    IS(se3d_particles_create(system, NULL, &own), SE3D_OK);
+    se3d_particles_destroy(own); /* who made it may */
+    CHECK(se3d_system_count_particles(system) == 1);
+    IS(se3d_system_clone(system, &copy), SE3D_OK);
+    se3d_system_destroy(copy);
+    se3d_run_destroy(run);
+    se3d_model_destroy(model);
 }
 
 static void model_read_file(const world *w)
@@ -551,6 +603,7 @@ static void a_sample_keeps_its_study(void)
 int main(void)
 {
     RUN(a_run_keeps_its_model);
+    RUN(a_model_keeps_its_system);
     RUN(a_sample_keeps_its_study);
     RUN(every_function_of_the_map_has_a_row);
     RUN(every_function_rejects_bad_arguments);

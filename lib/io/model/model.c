@@ -13,6 +13,7 @@ void se3d_model_destroy(se3d_model *model)
 {
     if (model && !model->running && !se3d_system_is_busy(model->system)) {
         se3di_iopool pool = model->pool; /* the model itself lies in it */
+        (void)se3d_system_set_kept(model->system, 0);
         se3d_system_destroy(model->system);
         se3di_iopool_destroy(&pool);
     }

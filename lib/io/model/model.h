@@ -113,7 +113,7 @@ typedef struct se3di_shape_entry {
 struct se3d_model {
     se3di_iopool pool;
     se3d_system *system;
-    int32_t running; /* se3d_model_run is at work */
+    int32_t running; /* runs of it, and samples of its studies, that are at work */
     int32_t reserved;
     const se3d_scene *kept; /* which that run keeps in its checkpoints; NULL: none */
     const char *file;

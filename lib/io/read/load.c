@@ -247,6 +247,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                       (!attempt->warns || se3di_warn_of_model(&reader));
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
+    (void)se3d_system_set_kept(model->system, 1); /* who is handed it does not destroy it */
     model->content = reader.content;
     model->attached = reader.files;
     return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;

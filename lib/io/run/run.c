@@ -942,7 +942,7 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     if (!r.run) {
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    model->running = 1;
+    ++model->running;
     model->kept = used.scene;
     r.saved = clock_now();
     const se3di_floats host = se3di_floats_set();
@@ -951,7 +951,7 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     se3di_sample_destroy(&r.sample);
     se3di_checkpoint_ignore(&r);
     se3di_floats_restore(host);
-    model->running = 0;
+    --model->running;
     model->kept = NULL;
     *out = r.run;
     return status;
@@ -984,7 +984,7 @@ se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
     if (!r.run) {
         return fail(&r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    model->running = 1;
+    ++model->running;
     se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     se3d_status status = open_watch(&r);
     se3d_system_get_time(model->system, &r.time);
@@ -993,7 +993,7 @@ se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
         status = passes ? status : run_analysis(&r, k);
     }
     se3di_sample_destroy(&r.sample);
-    model->running = 0;
+    --model->running;
     se3d_run_destroy(r.run);
     return status;
 }

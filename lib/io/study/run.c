@@ -257,8 +257,10 @@ se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t
     }
     const se3di_floats host = se3di_floats_set();
     study->is_running = true;
+    ++study->model->running;
     const se3d_status status = run(&t, values, count, measures);
     se3d_model_destroy(t.model);
+    --study->model->running;
     study->is_running = false;
     se3di_floats_restore(host);
     return status > 0 ? SE3D_OK : status;
