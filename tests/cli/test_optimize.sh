@@ -40,7 +40,7 @@ for method in cobyla bobyqa slsqp mma crs direct isres; do
     [ $method = isres ] && wide=0.1
     near "$dir/rows" 2 1 $wide
     near "$dir/rows" 3 0.5 $wide
-    expect "$method again" 0 "$program" study "$dir/$method.yaml" -o "$dir/again" --optimize -q
+    expect "$method again, by three processes" 0 "$program" study "$dir/$method.yaml" -o "$dir/again" --optimize -q --jobs 3
     is "$(cksum <"$dir/$method/optimize.csv")" "$(cksum <"$dir/again/optimize.csv")"
 done
 is "$(sed -n 1p "$dir/slsqp/optimize.csv")" 'evaluation,x,y,px,py,f,sum,violation,status'

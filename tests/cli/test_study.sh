@@ -119,6 +119,11 @@ is "$(grep -c . "$dir/slopes/sensitivities.csv")" 19
 is "$(sed -n 's/^force,k,\([^,]*,[^,]*,0.1000000\|[^,]*,[^,]*,0.0999999\).*/ok/p' "$dir/slopes/sensitivities.csv")" ok
 expect 'derivatives as JSON' 0 study --sensitivities -o "$dir/slopes" --json
 is "$(cat "$dir/out")" "{\"status\": \"done\", \"file\": \"$dir/slopes/sensitivities.csv\", \"measures\": 6, \"parameters\": 3}"
+slopes=$(cksum <"$dir/slopes/sensitivities.csv")
+expect 'derivatives by two processes' 0 study --sensitivities -o "$dir/slopes" --jobs 2
+is "$(cksum <"$dir/slopes/sensitivities.csv")" "$slopes"
+has "$dir/err" 'study: derivatives by c, 3 of 3'
+expect 'a server of two processes' 2 study --server --jobs 2
 expect 'derivatives in parts' 2 study --sensitivities --shard 1/2
 sed '/^  parameters:/,/^  seed/d; s/^study:/study:\n  sensitivities: [k]/; s/band: 2 mm/band: 1e-9/' "$model" >"$dir/only.yaml"
 expect 'a study of derivatives, with a measure that has no value' 1 "$program" study "$dir/only.yaml" -o "$dir/only"

@@ -386,9 +386,9 @@ static int run_job(job *j, se3d_model *model)
     const int asked = o->server || o->merge || o->sensitivities || o->optimize;
     const int has_samples = asked || se3d_study_count_samples(j->study) > 0;
     if (o->optimize || (!has_samples && se3d_study_count_unknowns(j->study) > 0)) {
-        code = study_optimize(o, j->study, j->folder);
+        code = study_optimize(o, j->study, j->jobs, j->folder);
     } else if (o->sensitivities || !has_samples) {
-        code = study_derive(o, j->study, j->folder);
+        code = study_derive(o, j->study, j->jobs, j->folder);
     } else {
         code = o->server ? serve(j) : o->merge ? merge(j) : run_study(j);
     }
@@ -408,10 +408,14 @@ static int command_study(int count, char *const *words)
     memset(&j, 0, sizeof j);
     j.o = &o;
     const int others = o.merge + o.server + o.sensitivities + o.optimize;
-    if (others > 1 || (others > 0 && (o.shard || o.jobs || o.resume))) {
+    if (others > 1 || (others > 0 && (o.shard || o.resume))) {
         fputs("se3d study: --merge, --server, --sensitivities and --optimize go with none of each "
-              "other, --shard, --jobs, --resume\n",
+              "other, --shard, --resume\n",
               stderr);
+        return EXIT_USAGE;
+    }
+    if (o.jobs && (o.merge || o.server)) {
+        fputs("se3d study: --jobs goes with neither --merge nor --server\n", stderr);
         return EXIT_USAGE;
     }
     code = options_check_file(&o, &study_entry);
@@ -446,7 +450,9 @@ const command_entry study_entry = {
         (const command_option[]){
             {"--output", "-o", "DIR",
              "folder for the table, made if missing (default: results/<model>)"},
-            {"--jobs", NULL, "N", "run by this many processes, or `all`: one for each processor"},
+            {"--jobs", NULL, "N",
+             "run by this many processes, or `all`: one for each processor; with --optimize, its "
+             "derivatives"},
             {"--resume", NULL, NULL, "go on with the table that is there"},
             {"--shard", NULL, "K/N",
              "run part K of N; auto/N: K from SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX or HQ_TASK_ID; "

@@ -10,6 +10,7 @@
 
 #include "file.h"
 #include "interrupt.h"
+#include "study_jobs.h"
 #include "text.h"
 
 enum { PATH_SIZE = 4200 };
@@ -23,7 +24,9 @@ typedef struct derivation {
     double *at;                   /* [parameters] */
     double *derivatives, *errors; /* [parameters][measures] */
     size_t missing;               /* cells without a derivative */
+    size_t jobs;                  /* processes */
     char path[PATH_SIZE];
+    se3d_status status; /* of the last runs */
     se3d_model_error error;
 } derivation;
 
@@ -39,19 +42,75 @@ static int is_over(void *ctx)
     return interrupt_came();
 }
 
+static int goes_on(se3d_status status)
+{
+    return !SE3D_FAILED(status) || status == SE3D_ERR_NOT_FINITE;
+}
+
+static void show(const derivation *d, size_t index)
+{
+    if (!d->o->quiet && !d->o->json) {
+        fprintf(stderr, "study: derivatives by %s, %zu of %zu\n",
+                se3d_study_get_sensitivity_name(d->study, index), index + 1, d->parameters);
+    }
+}
+
+static void derive_one(derivation *d, size_t index)
+{
+    const size_t at = index * d->measures;
+    d->status = se3d_study_eval_sensitivity(d->study, index, &d->at[index], d->derivatives + at,
+                                            d->errors + at, &d->error);
+}
+
+/* In a process of its own: the numbers go to a pipe. */
+static int work(void *ctx, size_t index, FILE *to)
+{
+    derivation *d = ctx;
+    const size_t at = index * d->measures;
+    derive_one(d, index);
+    return fwrite(&d->status, sizeof d->status, 1, to) == 1 &&
+           fwrite(&d->error, sizeof d->error, 1, to) == 1 &&
+           fwrite(&d->at[index], sizeof *d->at, 1, to) == 1 &&
+           fwrite(d->derivatives + at, sizeof *d->derivatives, d->measures, to) == d->measures &&
+           fwrite(d->errors + at, sizeof *d->errors, d->measures, to) == d->measures;
+}
+
+static int take(void *ctx, size_t index, FILE *from)
+{
+    derivation *d = ctx;
+    const size_t at = index * d->measures;
+    const int good =
+        fread(&d->status, sizeof d->status, 1, from) == 1 &&
+        fread(&d->error, sizeof d->error, 1, from) == 1 &&
+        fread(&d->at[index], sizeof *d->at, 1, from) == 1 &&
+        fread(d->derivatives + at, sizeof *d->derivatives, d->measures, from) == d->measures &&
+        fread(d->errors + at, sizeof *d->errors, d->measures, from) == d->measures;
+    if (good) {
+        show(d, index);
+    }
+    return good && goes_on(d->status);
+}
+
+/* By each parameter, in this process or in several. @return false: *why says why not all. */
+static int derive_all(derivation *d, const char **why)
+{
+    const study_tasks tasks = {d->parameters, work, take, d};
+    if (d->jobs > 1 && d->parameters > 1) {
+        return study_run_tasks(&tasks, d->jobs, why);
+    }
+    for (size_t k = 0; k < d->parameters && goes_on(d->status); ++k) {
+        show(d, k);
+        derive_one(d, k);
+    }
+    return 1;
+}
+
 static int compute(derivation *d)
 {
-    se3d_status status = se3d_study_eval_nominal(d->study, d->values, &d->error);
-    for (size_t k = 0; k < d->parameters && (!SE3D_FAILED(status) || status == SE3D_ERR_NOT_FINITE);
-         ++k) {
-        double *derivatives = d->derivatives + k * d->measures;
-        double *errors = d->errors + k * d->measures;
-        if (!d->o->quiet && !d->o->json) {
-            fprintf(stderr, "study: derivatives by %s, %zu of %zu\n",
-                    se3d_study_get_sensitivity_name(d->study, k), k + 1, d->parameters);
-        }
-        status =
-            se3d_study_eval_sensitivity(d->study, k, &d->at[k], derivatives, errors, &d->error);
+    const char *why = "";
+    d->status = se3d_study_eval_nominal(d->study, d->values, &d->error);
+    if (goes_on(d->status) && !derive_all(d, &why) && goes_on(d->status)) {
+        return fail(d, why[0] ? why : "ended by the user");
     }
     size_t valued = 0;
     for (size_t k = 0; k < d->measures; ++k) {
@@ -60,10 +119,10 @@ static int compute(derivation *d)
     for (size_t k = 0; k < d->measures * d->parameters; ++k) {
         d->missing += isfinite(d->derivatives[k]) ? 0 : 1;
     }
-    if (status == SE3D_ERR_NOT_FINITE && valued > 0) {
+    if (d->status == SE3D_ERR_NOT_FINITE && valued > 0) {
         return EXIT_DONE; /* the others have theirs */
     }
-    return SE3D_FAILED(status) ? fail(d, d->error.message) : EXIT_DONE;
+    return SE3D_FAILED(d->status) ? fail(d, d->error.message) : EXIT_DONE;
 }
 
 /* Say why cells are empty: what a measure without a value lacks, else where they are. */
@@ -183,10 +242,11 @@ static int run(derivation *d)
     return code;
 }
 
-int study_derive(const options *o, se3d_study *study, const char *folder)
+int study_derive(const options *o, se3d_study *study, size_t jobs, const char *folder)
 {
     derivation d = {.o = o,
                     .study = study,
+                    .jobs = jobs,
                     .measures = se3d_study_count_measures(study),
                     .parameters = se3d_study_count_sensitivities(study)};
     const size_t cells = d.measures * d.parameters;

@@ -6,8 +6,8 @@
 #include "options.h"
 #include "se3d/study.h"
 
-/* Write sensitivities.csv into `folder`, a line for each measure and parameter. @return the exit
- * code, after a message if it failed. */
-int study_derive(const options *o, se3d_study *study, const char *folder);
+/* Write sensitivities.csv into `folder`, a line for each measure and parameter; `jobs` processes
+ * share the parameters out. @return the exit code, after a message if it failed. */
+int study_derive(const options *o, se3d_study *study, size_t jobs, const char *folder);
 
 #endif

@@ -7,9 +7,10 @@
 
 #if !defined(SE3D_HAS_NLOPT)
 
-int study_optimize(const options *o, se3d_study *study, const char *folder)
+int study_optimize(const options *o, se3d_study *study, size_t jobs, const char *folder)
 {
     (void)study;
+    (void)jobs;
     (void)folder;
     report_failure(o, "",
                    "this se3d was built without NLopt, whose methods `optimize` takes (Debian: "
@@ -28,6 +29,8 @@ int study_optimize(const options *o, se3d_study *study, const char *folder)
 
 #include "file.h"
 #include "interrupt.h"
+#include "io/study/derive.h"
+#include "study_jobs.h"
 #include "text.h"
 
 enum { PATH_SIZE = 4200, VALUE_SIZE = 120 };
@@ -52,7 +55,7 @@ typedef struct search {
     const options *o;
     se3d_study *study;
     se3d_study_goal goal;
-    size_t unknowns, measures, side_count;
+    size_t unknowns, measures, side_count, jobs;
     double *from, *width;
     double *derivatives; /* [unknowns][measures] at the present point */
     double *point;       /* in 0 ... 1, of what is known */
@@ -68,6 +71,7 @@ typedef struct search {
     char path[PATH_SIZE];
     se3d_model_error error; /* of the first run */
     se3d_status status;     /* that ended the search */
+    se3d_status taken;      /* of derivatives that another process took */
     char missing[400];      /* a derivative, which ended it */
 } search;
 
@@ -175,6 +179,46 @@ static void end(search *s, se3d_status status)
     nlopt_force_stop(s->opt);
 }
 
+/* The derivatives by one parameter, in a process of its own. */
+static int work(void *ctx, size_t index, FILE *to)
+{
+    search *s = ctx;
+    double *slopes = s->derivatives + index * s->measures;
+    const se3d_status status =
+        se3di_study_derive_unknown(s->study, index, s->now.values, s->now.measures, slopes);
+    return fwrite(&status, sizeof status, 1, to) == 1 &&
+           fwrite(slopes, sizeof *slopes, s->measures, to) == s->measures;
+}
+
+static int take(void *ctx, size_t index, FILE *from)
+{
+    search *s = ctx;
+    double *slopes = s->derivatives + index * s->measures;
+    return fread(&s->taken, sizeof s->taken, 1, from) == 1 &&
+           fread(slopes, sizeof *slopes, s->measures, from) == s->measures && s->taken >= 0;
+}
+
+/* The measures at s->now.values, and the derivatives if they are wanted. */
+static se3d_status eval_now(search *s, int with_derivatives, se3d_model_error *error)
+{
+    const study_tasks tasks = {s->unknowns, work, take, s};
+    const char *why = "";
+    const int shared = with_derivatives && s->jobs > 1 && s->unknowns > 1;
+    se3d_status status =
+        se3d_study_eval_unknowns(s->study, s->now.values, s->now.measures,
+                                 with_derivatives && !shared ? s->derivatives : NULL, error);
+    for (size_t k = 0; shared && k < s->unknowns * s->measures; ++k) {
+        s->derivatives[k] = (double)NAN;
+    }
+    s->taken = SE3D_OK;
+    if (shared && (status >= 0 || status == SE3D_ERR_NOT_FINITE) &&
+        !study_run_tasks(&tasks, s->jobs, &why)) {
+        snprintf(s->missing, sizeof s->missing, "%s", why); /* a process has ended, by itself */
+        status = s->taken < 0 ? s->taken : SE3D_ERR_INTERRUPTED;
+    }
+    return status;
+}
+
 /* Run the model at a point, unless that was the last one. */
 static void go_to(search *s, const double *u, int with_derivatives)
 {
@@ -187,8 +231,7 @@ static void go_to(search *s, const double *u, int with_derivatives)
     for (size_t k = 0; k < s->unknowns; ++k) {
         s->now.values[k] = s->from[k] + fmin(fmax(u[k], 0.0), 1.0) * s->width[k];
     }
-    const se3d_status status = se3d_study_eval_unknowns(
-        s->study, s->now.values, s->now.measures, with_derivatives ? s->derivatives : NULL, &error);
+    const se3d_status status = eval_now(s, with_derivatives, &error);
     s->has_point = 1;
     s->has_derivatives = with_derivatives;
     if (status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED || interrupt_came()) {
@@ -577,10 +620,11 @@ static int make_room(search *s, double **memory, double **u)
     return 1;
 }
 
-int study_optimize(const options *o, se3d_study *study, const char *folder)
+int study_optimize(const options *o, se3d_study *study, size_t jobs, const char *folder)
 {
     search s = {.o = o,
                 .study = study,
+                .jobs = jobs,
                 .unknowns = se3d_study_count_unknowns(study),
                 .measures = se3d_study_count_measures(study)};
     double *memory = NULL;

@@ -7,7 +7,8 @@
 #include "se3d/study.h"
 
 /* Seek what `optimize` of the study says and write optimize.csv into `folder`, a line for each
- * evaluation. @return the exit code, after a message if it failed. */
-int study_optimize(const options *o, se3d_study *study, const char *folder);
+ * evaluation; derivatives are taken by `jobs` processes. @return the exit code, after a message if
+ * it failed. */
+int study_optimize(const options *o, se3d_study *study, size_t jobs, const char *folder);
 
 #endif

@@ -9,6 +9,7 @@
 #include "io/base/sized.h"
 #include "io/document/document.h"
 #include "io/read/study_goal.h"
+#include "io/study/derive.h"
 #include "io/study/study.h"
 
 /* Two steps, extrapolated once: what a search needs. */
@@ -160,22 +161,41 @@ static se3d_status check(const se3d_study *study, const double *values, const do
     return SE3D_OK;
 }
 
-static se3d_status differentiate(se3d_study *study, se3di_named *named, const double *measures,
-                                 double *derivatives)
+/* The unknowns as parameters of a run; NULL: out of memory. */
+static se3di_named *name_values(const se3d_study *study, const double *values, se3di_iopool *pool)
 {
     const se3di_study_goal *goal = study->entry->goal;
-    se3d_status status = SE3D_OK;
-    for (size_t k = 0; k < goal->unknown_count && status >= 0; ++k) {
-        const se3di_study_unknown *u = &goal->unknowns[k];
-        const se3di_study_point point = {.values = named,
-                                         .count = goal->unknown_count,
-                                         .which = k,
-                                         .step = SHARE * (u->to - u->from),
-                                         .bounds = {u->from, u->to},
-                                         .levels = LEVELS};
-        status = se3di_study_differentiate(study, &point, measures,
-                                           derivatives + k * study->entry->measure_count, NULL);
+    se3di_named *named = se3di_iopool_array(pool, goal->unknown_count, sizeof *named);
+    for (size_t k = 0; named && k < goal->unknown_count; ++k) {
+        named[k] = (se3di_named){goal->unknowns[k].name, goal->unknowns[k].shape};
+        named[k].value.v[0] = values[k];
     }
+    return named;
+}
+
+static se3d_status differentiate(se3d_study *study, size_t index, se3di_named *named,
+                                 const double *measures, double *derivatives)
+{
+    const se3di_study_goal *goal = study->entry->goal;
+    const se3di_study_unknown *u = &goal->unknowns[index];
+    const se3di_study_point point = {.values = named,
+                                     .count = goal->unknown_count,
+                                     .which = index,
+                                     .step = SHARE * (u->to - u->from),
+                                     .bounds = {u->from, u->to},
+                                     .levels = LEVELS};
+    return se3di_study_differentiate(study, &point, measures, derivatives, NULL);
+}
+
+se3d_status se3di_study_derive_unknown(se3d_study *study, size_t index, const double *values,
+                                       const double *measures, double *derivatives)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &study->pool.allocator);
+    se3di_named *named = name_values(study, values, &pool);
+    const se3d_status status =
+        named ? differentiate(study, index, named, measures, derivatives) : SE3D_ERR_NO_MEMORY;
+    se3di_iopool_destroy(&pool);
     return status;
 }
 
@@ -188,23 +208,23 @@ se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, do
     if (status < 0) {
         return status;
     }
-    const se3di_study_goal *goal = study->entry->goal;
-    for (size_t k = 0; derivatives && k < goal->unknown_count * study->entry->measure_count; ++k) {
+    const size_t count = study->entry->goal->unknown_count;
+    for (size_t k = 0; derivatives && k < count * study->entry->measure_count; ++k) {
         derivatives[k] = (double)NAN;
     }
     se3di_iopool pool;
     se3di_iopool_init(&pool, &study->pool.allocator);
-    se3di_named *named = se3di_iopool_array(&pool, goal->unknown_count, sizeof *named);
+    se3di_named *named = name_values(study, values, &pool);
     if (!named) {
         return fail(study, error, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    for (size_t k = 0; k < goal->unknown_count; ++k) {
-        named[k] = (se3di_named){goal->unknowns[k].name, goal->unknowns[k].shape};
-        named[k].value.v[0] = values[k];
-    }
-    status = se3di_study_run(study, named, goal->unknown_count, measures, error);
+    status = se3di_study_run(study, named, count, measures, error);
     if (derivatives && (status >= 0 || status == SE3D_ERR_NOT_FINITE)) {
-        const se3d_status done = differentiate(study, named, measures, derivatives);
+        se3d_status done = SE3D_OK;
+        for (size_t k = 0; k < count && done >= 0; ++k) {
+            done = differentiate(study, k, named, measures,
+                                 derivatives + k * study->entry->measure_count);
+        }
         status = done < 0 ? fail(study, error, done, se3d_status_get_text(done)) : status;
     }
     se3di_iopool_destroy(&pool);
