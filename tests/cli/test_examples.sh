@@ -7,7 +7,7 @@ for model in "$models"/*.yaml; do
     [ "$name" = me751_jacobian ] || # to evaluate, not to run
         expect "$name" 0 "$program" run -q "$model" --duration 0.06 -o "$dir/$name"
 done
-for name in kerb washboard four_post; do
+for name in kerb washboard four_post one_wheel two_wheels; do
     expect "$name" 0 "$program" run -q "$models/../fsae/$name.yaml" --duration 0.01 -o "$dir/$name"
 done
 finish

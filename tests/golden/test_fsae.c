@@ -108,6 +108,39 @@ static void gradients_are_the_slopes_of_the_travel_rig(void)
     close_rig(&r);
 }
 
+/* The rig of one wheel: the others stand, and the load of the wheel over its travel is its rate. */
+static void one_wheel_moves_alone(void)
+{
+    const double h = 5e-4, at = 0.3;
+    double fl[3][SE3D_WHEEL_MEASURES], fr[3][SE3D_WHEEL_MEASURES], two[SE3D_WHEEL_MEASURES];
+    rig r;
+    if (!open_rig("one_wheel", &r)) {
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        run(&r, at + (k - 1) * h);
+        measure(&r, 0, fl[k]);
+        measure(&r, 1, fr[k]);
+    }
+    const double by = fl[2][SE3D_WHEEL_TRAVEL] - fl[0][SE3D_WHEEL_TRAVEL];
+    const double load = fl[2][SE3D_WHEEL_WHEEL_LOAD] - fl[0][SE3D_WHEEL_WHEEL_LOAD];
+    CHECK(by > 1e-5);
+    CHECK_NEAR(load / by, fl[1][SE3D_WHEEL_WHEEL_RATE], 1e-6 * fl[1][SE3D_WHEEL_WHEEL_RATE]);
+    CHECK_NEAR(fr[2][SE3D_WHEEL_TRAVEL], 0.0, 1e-12);
+    CHECK(fr[2][SE3D_WHEEL_WHEEL_LOAD] < fr[0][SE3D_WHEEL_WHEEL_LOAD]); /* the bar takes it */
+    close_rig(&r);
+    if (!open_rig("two_wheels", &r)) {
+        return;
+    }
+    run(&r, at); /* both up: the bar turns but does not wind, the curves are those of one wheel */
+    measure(&r, 0, two);
+    CHECK_NEAR(two[SE3D_WHEEL_TRAVEL], fl[1][SE3D_WHEEL_TRAVEL], 1e-9);
+    CHECK_NEAR(two[SE3D_WHEEL_TOE], fl[1][SE3D_WHEEL_TOE], 1e-9);
+    CHECK_NEAR(two[SE3D_WHEEL_CAMBER], fl[1][SE3D_WHEEL_CAMBER], 1e-9);
+    CHECK(two[SE3D_WHEEL_WHEEL_LOAD] < fl[1][SE3D_WHEEL_WHEEL_LOAD] - 10.0);
+    close_rig(&r);
+}
+
 /* One wheel alone is lifted: its load over its travel, the bar included, is the wheel rate. */
 static void the_wheel_rate_is_the_slope_with_one_wheel_lifted(void)
 {
@@ -344,6 +377,7 @@ static void tyres_do_not_wobble(void)
 int main(void)
 {
     RUN(gradients_are_the_slopes_of_the_travel_rig);
+    RUN(one_wheel_moves_alone);
     RUN(the_wheel_rate_is_the_slope_with_one_wheel_lifted);
     RUN(both_sides_measure_the_same);
     RUN(the_hand_wheel_steers_to_its_side);
