@@ -92,6 +92,51 @@ says 'no file of results has the channel of -x, `pin.angel`'
 holds 'a page without its axis' [ ! -e "$dir/no-axis/report.html" ]
 expect 'an axis of one of two' 0 "$program" report -q "$dir/turn.yaml" "$models/fourbar_kinematics.yaml" -x pin.angle -o "$dir/axis"
 
+# Studies: a grid has lines, other samples have spots; what is there is not run again; failures are told.
+cat >"$dir/grid.yaml" <<'END'
+se3d: 1
+parameters: {L: 1, up: 0.5}
+bodies: [{name: rod, mass: 1, inertia: [1, 1, 1], position: [L, 0, up]}]
+analysis: {type: assembly}
+study:
+  parameters: {L: [1, 2, 3], up: {from: 0, to: 1, count: 2}}
+  measures: {far: {final: rod.position.x}, high: {final: rod.position.z}, root: sqrt(2.5 - far)}
+END
+expect 'a study with samples that fail' 0 "$program" report -q "$dir/grid.yaml" -o "$dir/grid" --jobs 2
+is "$(grep -c '<img alt="far"\|<img alt="root"' "$dir/grid/report.html")" 4
+has "$dir/grid/report.html" '<tr><td>far</td><td>6</td><td>2</td><td>0.894427</td><td>1</td><td>1</td><td>2</td>'
+has "$dir/grid/report.html" '<tr><td>root</td><td>4</td>'
+has "$dir/grid/report.html" '<tr><td>high</td><td>0.00</td><td>1.00</td></tr>'
+before=$(ls -i "$dir/grid/study.csv")
+expect 'the same study' 0 "$program" report -q "$dir/grid.yaml" -o "$dir/grid" -x up
+is "$(ls -i "$dir/grid/study.csv")" "$before"
+is "$(grep -c '<img alt="far"' "$dir/grid/report.html")" 1
+expect 'another study' 1 "$program" report -q "$dir/grid.yaml" -o "$dir/grid" --set up=3
+says 'is of another model, study or version of se3d'
+cat >"$dir/draw.py" <<'END'
+import base64, re, sys
+page = open(sys.argv[1], encoding="utf-8").read()
+drawings = [base64.b64decode(d).decode() for d in re.findall(r"svg\+xml;base64,([^\"]*)", page)]
+print([(d.count('class="thick'), d.count('class="spot')) for d in drawings])
+END
+sed 's/count: 2/count: 8/' "$dir/grid.yaml" >"$dir/spots.yaml"
+expect 'many lines' 0 "$program" report -q "$dir/spots.yaml" -o "$dir/spots"
+expect 'a file alone' 0 "$program" report "$dir/grid/study.csv"
+has "$dir/out" "wrote $dir/grid/report.html"
+has "$dir/grid/report.html" 'href="./study.csv"'
+if command -v python3 >/dev/null; then
+    expect 'its curves' 0 python3 "$dir/draw.py" "$dir/grid/report.html"
+    is "$(cat "$dir/out")" '[(4, 0), (6, 0), (4, 0), (6, 0), (4, 0), (5, 0)]'
+    expect 'its spots' 0 python3 "$dir/draw.py" "$dir/spots/report.html"
+    has "$dir/out" '(1, 24)'
+fi
+sed 's/^  parameters: {L: .*/  sensitivities: [L]/' "$dir/grid.yaml" >"$dir/slopes.yaml"
+expect 'derivatives' 0 "$program" report -q "$dir/slopes.yaml" -o "$dir/slopes"
+has "$dir/slopes/report.html" '<tr><td>far</td><td>L</td><td>1</td><td>1</td><td>1</td>'
+printf 'nonsense' >"$dir/none.csv"
+expect 'a file without rows' 1 "$program" report "$dir/none.csv"
+says 'has no rows'
+
 # What fails leaves no page.
 sed 's/duration: 1,/duration: -1,/' "$dir/turn.yaml" >"$dir/bad.yaml"
 expect 'a model that is wrong' 2 "$program" report "$dir/turn.yaml" "$dir/bad.yaml" -o "$dir/bad"

@@ -8,7 +8,7 @@
 #include "io/write/svg.h"
 
 enum { WIDTH = 640, HEIGHT = 320, LEFT = 84, RIGHT = 16, TOP = 34, BOTTOM = 46, LABEL_SIZE = 40 };
-enum { POINTS_MAX = 2000, PIECE_MAX = 512 };
+enum { POINTS_MAX = 2000, SPOTS_MAX = 500, PIECE_MAX = 512 };
 
 typedef struct axis {
     double from, to, step;
@@ -102,6 +102,20 @@ static void put_curve(const chart *c, size_t k, const axis *x, const axis *y, FI
     se3di_svg_close(file);
 }
 
+static void put_spots(const chart *c, size_t k, const axis *x, const axis *y, FILE *file)
+{
+    const size_t stride = c->count / SPOTS_MAX + 1;
+    char kind[16];
+    snprintf(kind, sizeof kind, "spot b%zu", k);
+    se3di_svg_open(file, "curve", c->names[k]);
+    for (size_t i = 0; i < c->count; i += stride) {
+        if (isfinite(c->x[i]) && isfinite(c->y[k][i])) {
+            se3di_svg_circle(file, kind, place(x, y, c->x[i], c->y[k][i]), 2.5);
+        }
+    }
+    se3di_svg_close(file);
+}
+
 static void put_legend(const chart *c, FILE *file)
 {
     const double width = (double)(WIDTH - LEFT - RIGHT) / (double)c->curves;
@@ -132,7 +146,7 @@ void chart_put(const chart *c, FILE *file)
     se3di_svg_begin(file, WIDTH, HEIGHT, c->title);
     put_ticks(&x, &y, file);
     for (size_t k = 0; k < c->curves; ++k) {
-        put_curve(c, k, &x, &y, file);
+        (c->is_spots ? put_spots : put_curve)(c, k, &x, &y, file);
     }
     put_legend(c, file);
     se3di_svg_text(file, "number", (se3di_spot){LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 10.0},

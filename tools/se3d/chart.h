@@ -14,6 +14,7 @@ typedef struct chart {
     const double *y[CHART_CURVES_MAX];
     const char *names[CHART_CURVES_MAX];
     size_t curves, count;
+    int is_spots; /* not 0: rows are spots, which nothing joins */
 } chart;
 
 /* Write it to a file that is open. Rows with a number that is not finite are left out. */

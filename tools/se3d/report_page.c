@@ -8,23 +8,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chart.h"
 #include "file.h"
 #include "interrupt.h"
 #include "io/write/sketch.h"
 #include "io/write/svg.h"
 #include "options.h"
 #include "process.h"
+#include "report.h"
+#include "se3d/study.h"
 #include "snapshots.h"
-#include "table.h"
 #include "text.h"
 
 enum {
     PATH_SIZE = 4200,
     BELOW_SIZE = 300,
     MODELS_MAX = 64,
-    WORDS_MAX = 2 * SETTINGS_MAX + 8,
-    ROWS_MAX = 20000
+    WORDS_MAX = 2 * SETTINGS_MAX + 12,
+    ROWS_MAX = 20000,
+    SAMPLES_MAX = 200000
 };
 
 typedef struct report {
@@ -33,6 +34,7 @@ typedef struct report {
     size_t count;
     const char *folder; /* -o; NULL: the usual one */
     const char *x;      /* -x; NULL: chosen */
+    char *jobs;         /* --jobs; NULL: one */
     char *settings[SETTINGS_MAX];
     size_t setting_count;
     int has_x; /* a file of results has it */
@@ -51,14 +53,14 @@ static int usage(const char *what, const char *word)
 
 /* ---- the page --------------------------------------------------------------------------------*/
 
-static void put_tag(FILE *page, const char *tag, const char *text)
+void report_put_tag(FILE *page, const char *tag, const char *text)
 {
     fprintf(page, "<%s>", tag);
     se3di_svg_put(page, text);
     fprintf(page, "</%s>\n", tag);
 }
 
-static void put_number(FILE *page, double value)
+void report_put_number(FILE *page, double value)
 {
     if (isfinite(value)) {
         fprintf(page, "<td>%.6g</td>", value);
@@ -115,7 +117,7 @@ static void put_parameters(FILE *page, const se3d_model *model)
         fputs("</td><td>", page);
         se3di_svg_put(page, se3d_model_get_parameter_text(model, k));
         fputs("</td>", page);
-        put_number(page, value);
+        report_put_number(page, value);
         fputs("</tr>\n", page);
     }
     fputs("</table>\n", page);
@@ -123,26 +125,17 @@ static void put_parameters(FILE *page, const se3d_model *model)
 
 /* ---- one file of results ---------------------------------------------------------------------*/
 
-typedef struct sheet {
-    table t;
-    const se3d_model *model; /* whose channels were listed */
-    size_t channels;
-    double *columns; /* [t.count][rows] */
-    size_t rows, x;
-} sheet;
-
-static const double *get_column(const sheet *s, size_t k)
+const double *sheet_get_column(const sheet *s, size_t k)
 {
     return s->columns + k * s->rows;
 }
 
-/* Of very many rows, every so many. */
-static int read_sheet(sheet *s)
+int sheet_read(sheet *s, size_t most)
 {
-    const size_t stride = s->t.rows / ROWS_MAX + 1;
-    const size_t most = s->t.rows / stride + 2;
-    double *rows = calloc(most * s->t.count, sizeof *rows);
-    s->rows = rows ? table_read_rows(&s->t, stride, rows, most) : 0;
+    const size_t stride = s->t.rows / most + 1;
+    const size_t room = s->t.rows / stride + 2;
+    double *rows = calloc(room * s->t.count, sizeof *rows);
+    s->rows = rows ? table_read_rows(&s->t, stride, rows, room) : 0;
     s->columns = calloc(s->rows * s->t.count + 1, sizeof *s->columns);
     for (size_t i = 0; rows && s->columns && i < s->rows; ++i) {
         for (size_t k = 0; k < s->t.count; ++k) {
@@ -180,7 +173,7 @@ static void make_label(const sheet *s, const char *quantity, const char *column,
     snprintf(label, size, text[0] ? "%.120s [%.40s]" : "%.120s", quantity, text);
 }
 
-static int put_chart(FILE *page, const chart *c)
+int report_put_chart(FILE *page, const chart *c)
 {
     FILE *drawing = tmpfile();
     int good = drawing != NULL;
@@ -192,6 +185,17 @@ static int put_chart(FILE *page, const chart *c)
     return good;
 }
 
+/* A column of texts has none. */
+static int has_numbers(const sheet *s, size_t k)
+{
+    const double *y = sheet_get_column(s, k);
+    size_t i = 0;
+    while (i < s->rows && !isfinite(y[i])) {
+        ++i;
+    }
+    return i < s->rows;
+}
+
 /* Curves of one quantity and unit share a frame, as far as it has room. */
 static int put_charts(FILE *page, const sheet *s)
 {
@@ -199,8 +203,8 @@ static int put_charts(FILE *page, const sheet *s)
     int good = done != NULL;
     for (size_t k = 1; k < s->t.count && good; ++k) {
         char quantity[400];
-        chart c = {.x = get_column(s, s->x), .count = s->rows};
-        if (done[k] || k == s->x) {
+        chart c = {.x = sheet_get_column(s, s->x), .count = s->rows};
+        if (done[k] || k == s->x || !has_numbers(s, k)) {
             continue;
         }
         table_get_quantity(s->t.names[k], quantity, sizeof quantity);
@@ -212,13 +216,13 @@ static int put_charts(FILE *page, const sheet *s)
             char label[200];
             table_get_quantity(s->t.names[i], other, sizeof other);
             make_label(s, other, s->t.names[i], label, sizeof label);
-            if (!done[i] && i != s->x && strcmp(label, c.y_label) == 0) {
+            if (!done[i] && i != s->x && strcmp(label, c.y_label) == 0 && has_numbers(s, i)) {
                 done[i] = 1;
                 c.names[c.curves] = s->t.names[i];
-                c.y[c.curves++] = get_column(s, i);
+                c.y[c.curves++] = sheet_get_column(s, i);
             }
         }
-        good = put_chart(page, &c);
+        good = report_put_chart(page, &c);
     }
     free(done);
     return good;
@@ -227,8 +231,8 @@ static int put_charts(FILE *page, const sheet *s)
 /* dy/dx where |x| is the least, from the rows beside it. */
 static double get_slope(const sheet *s, size_t k)
 {
-    const double *x = get_column(s, s->x);
-    const double *y = get_column(s, k);
+    const double *x = sheet_get_column(s, s->x);
+    const double *y = sheet_get_column(s, k);
     size_t at = 0;
     for (size_t i = 1; i < s->rows; ++i) {
         at = fabs(x[i]) < fabs(x[at]) ? i : at;
@@ -242,8 +246,8 @@ static double get_slope(const sheet *s, size_t k)
 static void put_row(FILE *page, const sheet *s, size_t k)
 {
     char unit[60];
-    const double *x = get_column(s, s->x);
-    const double *y = get_column(s, k);
+    const double *x = sheet_get_column(s, s->x);
+    const double *y = sheet_get_column(s, k);
     size_t least = 0;
     size_t most = 0;
     for (size_t i = 1; i < s->rows; ++i) {
@@ -257,10 +261,10 @@ static void put_row(FILE *page, const sheet *s, size_t k)
     fputs("</td>", page);
     const double cells[] = {y[0], y[least], x[least], y[most], x[most], y[s->rows - 1]};
     for (size_t i = 0; i < sizeof cells / sizeof *cells; ++i) {
-        put_number(page, cells[i]);
+        report_put_number(page, cells[i]);
     }
     if (s->x > 0) {
-        put_number(page, get_slope(s, k));
+        report_put_number(page, get_slope(s, k));
     }
     fputs("</tr>\n", page);
 }
@@ -275,7 +279,7 @@ static void put_table(FILE *page, const sheet *s)
     }
     fputs("</tr>\n", page);
     for (size_t k = 1; k < s->t.count; ++k) {
-        if (k != s->x) {
+        if (k != s->x && has_numbers(s, k)) {
             put_row(page, s, k);
         }
     }
@@ -296,19 +300,53 @@ static void put_link(FILE *page, const char *path)
     fputs("</a></p>\n", page);
 }
 
-/* What stands on the horizontal axis: as asked; the first channel of kinematics; else the time. */
-static size_t choose_x(report *r, const se3d_model *model, const table *t)
+/* Whether nothing but kinematics is run. */
+static int is_still(const se3d_model *model)
 {
-    int still = 1; /* nothing but kinematics */
-    for (size_t k = 0; k < se3d_model_count_analyses(model); ++k) {
+    int still = model != NULL;
+    for (size_t k = 0; model && k < se3d_model_count_analyses(model); ++k) {
         se3d_model_analysis analysis;
         still =
             still && !SE3D_FAILED(se3d_model_get_analysis(model, k, &analysis)) &&
             (strcmp(analysis.type, "kinematics") == 0 || strcmp(analysis.type, "assembly") == 0);
     }
+    return still;
+}
+
+/* What stands on the horizontal axis: as asked; the first channel of kinematics; else the time. */
+static size_t choose_x(report *r, const se3d_model *model, const table *t)
+{
     const size_t asked = r->x ? table_find(t, r->x) : t->count;
     r->has_x = r->has_x || asked < t->count;
-    return asked < t->count ? asked : still && t->count > 2 ? 1 : 0;
+    return asked < t->count ? asked : is_still(model) && t->count > 2 ? 1 : 0;
+}
+
+/* One file: samples of a study, its derivatives, or rows of a run (`model`: of which, NULL: not
+ * known). */
+static int put_file(report *r, se3d_model *model, const char *path)
+{
+    sheet s = {.model = model};
+    if (!table_read(&s.t, "report", path)) {
+        return 0;
+    }
+    const int is_study = s.t.remark && strncmp(s.t.remark, "# se3d study ", 13) == 0;
+    int good = 1;
+    s.x = choose_x(r, is_study ? NULL : model, &s.t);
+    if (strcmp(s.t.names[0], "measure") == 0) {
+        good = report_put_cells(r->page, path);
+    } else if (is_study) {
+        good = sheet_read(&s, SAMPLES_MAX) && report_put_samples(r->page, &s, r->x);
+    } else {
+        good = (!model || !SE3D_FAILED(se3d_model_list_channels(model, &s.channels))) &&
+               sheet_read(&s, ROWS_MAX);
+        if (good && s.rows > 0) {
+            put_table(r->page, &s);
+            good = s.rows < 2 || put_charts(r->page, &s);
+        }
+    }
+    free(s.columns);
+    table_destroy(&s.t);
+    return good;
 }
 
 static int put_results(report *r, se3d_model *model, const char *folder, const char *below,
@@ -316,24 +354,11 @@ static int put_results(report *r, se3d_model *model, const char *folder, const c
 {
     char path[2 * PATH_SIZE];
     char link[PATH_SIZE];
-    sheet s = {.model = model};
-    int good = 1;
     snprintf(path, sizeof path, "%s/%s", folder, file);
     snprintf(link, sizeof link, "%s%s", below, file);
-    put_tag(r->page, "h3", file);
+    report_put_tag(r->page, "h3", file);
     put_link(r->page, link);
-    if (!table_read(&s.t, "report", path)) {
-        return 0;
-    }
-    s.x = choose_x(r, model, &s.t);
-    good = !SE3D_FAILED(se3d_model_list_channels(model, &s.channels)) && read_sheet(&s);
-    if (good && s.rows > 0) {
-        put_table(r->page, &s);
-        good = s.rows < 2 || put_charts(r->page, &s);
-    }
-    free(s.columns);
-    table_destroy(&s.t);
-    return good;
+    return put_file(r, model, path);
 }
 
 /* ---- one model -------------------------------------------------------------------------------*/
@@ -359,15 +384,94 @@ static int run_one(const report *r, char *model, char *folder)
     return run_entry.run(3 + add_words(r, model, set, end, words + 3), words);
 }
 
+/* The file that a study writes if nothing else is asked; NULL: none. */
+static const char *get_study_file(const se3d_study *study)
+{
+#if defined(SE3D_HAS_NLOPT)
+    const int seeks = se3d_study_count_unknowns(study) > 0;
+#else
+    const int seeks = 0;
+#endif
+    return se3d_study_count_samples(study) > 0         ? "study.csv"
+           : seeks                                     ? "optimize.csv"
+           : se3d_study_count_sensitivities(study) > 0 ? "sensitivities.csv"
+                                                       : NULL;
+}
+
+/* Whether a table has all samples, some of which may have failed. */
+static int has_samples(se3d_study *study, const char *path)
+{
+    se3d_study_table_def def = se3d_study_table_def_default();
+    se3d_study_table *samples = NULL;
+    def.path = path;
+    def.resume = 1;
+    if (SE3D_FAILED(se3d_study_table_open(study, &def, &samples, NULL))) {
+        return 0;
+    }
+    uint64_t k = 0;
+    while (k < se3d_study_count_samples(study) && se3d_study_table_has(samples, k)) {
+        ++k;
+    }
+    se3d_study_table_close(samples);
+    return k == se3d_study_count_samples(study);
+}
+
+/* `se3d study` with the settings of the report; samples that are there already are not run again.
+ */
+static int run_samples(const report *r, char *model, se3d_study *study, char *folder,
+                       const char *file)
+{
+    char set[] = "--set", end[] = "--", output[] = "-o", quiet[] = "-q", jobs[] = "--jobs",
+         resume[] = "--resume", sensitivities[] = "--sensitivities";
+    char *words[WORDS_MAX] = {quiet, output, folder};
+    char path[2 * PATH_SIZE];
+    int count = 3;
+    const int has_rows = se3d_study_count_samples(study) > 0;
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    if (has_rows) {
+        words[count++] = resume;
+    } else {
+        remove(path);
+    }
+    if (strcmp(file, "sensitivities.csv") == 0) {
+        words[count++] = sensitivities;
+    }
+    if (r->jobs) {
+        words[count++] = jobs;
+        words[count++] = r->jobs;
+    }
+    const int code = study_entry.run(count + add_words(r, model, set, end, words + count), words);
+    const int is_there = has_rows ? has_samples(study, path) : !file_is_missing(path);
+    return code == EXIT_FAILED && is_there && !interrupt_came() ? EXIT_DONE : code;
+}
+
+/* Run the study of a model, if it has one: *file is what it wrote, or NULL. */
+static int run_study(const report *r, char *path, se3d_model *model, char *folder,
+                     const char **file)
+{
+    se3d_study *study = NULL;
+    int code = EXIT_DONE;
+    *file = NULL;
+    if (SE3D_FAILED(se3d_study_create(model, &study, NULL))) {
+        return EXIT_DONE;
+    }
+    *file = get_study_file(study);
+    if (*file) {
+        code = run_samples(r, path, study, folder, *file);
+    }
+    se3d_study_destroy(study);
+    return code;
+}
+
 static int put_model(report *r, se3d_model *model, const char *path, const char *folder,
-                     const char *below)
+                     const char *below, const char *study)
 {
     const char *title = se3d_model_get_title(model);
     int good = 1;
-    put_tag(r->page, "h2", title[0] ? title : se3d_model_get_name(model));
-    put_tag(r->page, "p", path);
+    report_put_tag(r->page, "h2", title[0] ? title : se3d_model_get_name(model));
+    report_put_tag(r->page, "p", path);
     for (size_t k = 0; k < r->setting_count; ++k) {
-        put_tag(r->page, "p", r->settings[k]);
+        report_put_tag(r->page, "p", r->settings[k]);
     }
     good = put_sketch(r->page, model);
     put_parameters(r->page, model);
@@ -378,7 +482,7 @@ static int put_model(report *r, se3d_model *model, const char *path, const char 
             good = put_results(r, model, folder, below, output.file);
         }
     }
-    return good;
+    return good && (!study || put_results(r, model, folder, below, study));
 }
 
 static int read_model(const report *r, char *path, se3d_model **model)
@@ -420,6 +524,7 @@ static int report_model(report *r, size_t index)
     char folder[PATH_SIZE + BELOW_SIZE];
     char *path = r->models[index];
     const char *below = r->below[index];
+    const char *study = NULL;
     se3d_model *model = NULL;
     int code = read_model(r, path, &model);
     if (code == EXIT_DONE && se3d_model_count_analyses(model) == 0) {
@@ -432,13 +537,31 @@ static int report_model(report *r, size_t index)
         }
         snprintf(folder, sizeof folder, "%s%s%s", r->place, r->count > 1 ? "/" : "", below);
         code = run_one(r, path, folder);
+        code = code == EXIT_DONE ? run_study(r, path, model, folder, &study) : code;
     }
-    if (code == EXIT_DONE && !put_model(r, model, path, folder, below)) {
+    if (code == EXIT_DONE && !put_model(r, model, path, folder, below, study)) {
         fputs("se3d report: out of memory, or of room for temporary files\n", stderr);
         code = EXIT_FAILED;
     }
     se3d_model_destroy(model);
     return code;
+}
+
+static int is_results(const char *path)
+{
+    const size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".csv") == 0;
+}
+
+/* A file of results by itself, which is linked if it lies beside the page. */
+static int report_file(report *r, const char *path)
+{
+    char folder[PATH_SIZE];
+    report_put_tag(r->page, "h2", path);
+    if (path_get_folder(path, folder, sizeof folder) && strcmp(folder, r->place) == 0) {
+        put_link(r->page, path_get_name(path));
+    }
+    return put_file(r, NULL, path) ? EXIT_DONE : EXIT_FAILED;
 }
 
 /* ---- the command -----------------------------------------------------------------------------*/
@@ -452,6 +575,9 @@ static int find_place(report *r)
         length = snprintf(r->place, sizeof r->place, "%s", r->folder);
     } else if (r->count > 1) {
         length = snprintf(r->place, sizeof r->place, "results/report");
+    } else if (is_results(r->models[0])) {
+        length =
+            path_get_folder(r->models[0], r->place, sizeof r->place) ? (int)strlen(r->place) : -1;
     } else {
         const int code = read_model(r, r->models[0], &model);
         if (code != EXIT_DONE) {
@@ -483,7 +609,7 @@ static int write_page(report *r)
     if (r->page) {
         fputs(head, r->page);
         for (size_t k = 0; k < r->count && code == EXIT_DONE; ++k) {
-            code = report_model(r, k);
+            code = is_results(r->models[k]) ? report_file(r, r->models[k]) : report_model(r, k);
         }
         if (code == EXIT_DONE && r->x && !r->has_x) {
             code = usage("no file of results has the channel of -x,", r->x);
@@ -515,6 +641,8 @@ static int take_value(report *r, const char *name, char *value)
         r->settings[r->setting_count++] = value;
     } else if (strcmp(name, "-x") == 0) {
         r->x = value;
+    } else if (strcmp(name, "--jobs") == 0) {
+        r->jobs = value;
     } else {
         r->folder = value;
     }
@@ -535,7 +663,7 @@ static int add_model(report *r, char *word)
 
 static int takes_value(const char *word)
 {
-    static const char *const names[] = {"--set", "-x", "-o", "--output"};
+    static const char *const names[] = {"--set", "-x", "--jobs", "-o", "--output"};
     for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
         if (strcmp(word, names[k]) == 0) {
             return 1;
@@ -605,19 +733,24 @@ const command_entry report_entry = {
     .name = "report",
     .run = command_report,
     .operands = "MODEL...",
-    .files = "yaml yml json",
+    .files = "yaml yml json csv",
     .summary = "run models and write one page of curves and tables",
     .text = "Runs the models and writes report.html: of each a sketch, its parameters, and for "
             "every file of results a table and curves, one frame for each quantity. Curves of "
             "kinematics are drawn over their first channel (the travel of a wheel, the angle of "
             "the hand wheel), the others over time. The CSV files lie beside the page, which "
-            "needs no network.",
+            "needs no network.\n\n"
+            "What `se3d study` makes of `study` of a model is run, too, and shown: tables of the "
+            "samples and curves of measures over parameters. In place of a model, a CSV file is "
+            "shown as it is: study.csv, sensitivities.csv or rows of a run.",
     .options =
         (const command_option[]){
             {"--output", "-o", "DIR",
              "folder for the page and the results (default: results/<model>, of several models "
              "results/report)"},
-            {"-x", NULL, "CHANNEL", "horizontal axis of the files that have it"},
+            {"-x", NULL, "CHANNEL",
+             "horizontal axis of the files that have it; of a study, the parameter"},
+            {"--jobs", NULL, "N", "run studies by this many processes, or `all`"},
             COMMAND_OPTION_SET,
             COMMAND_OPTION_QUIET,
             {0}},
@@ -625,6 +758,7 @@ const command_entry report_entry = {
         (const command_example[]){
             {"report travel.yaml roll.yaml steer.yaml", "kinematics of a suspension on one page"},
             {"report corner.yaml --set rack_z=152", "with another hardpoint"},
+            {"report results/damper/study.csv", "samples that were run"},
             {0}},
     .exits = "0 done; 1 a run or a file failed; 2 bad usage or model.",
 };

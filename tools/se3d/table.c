@@ -47,6 +47,22 @@ static char *read_line(FILE *file)
     return line;
 }
 
+/* The line with the names of columns; NULL: there is none. A remark before it goes to *remark, or
+ * nowhere. */
+static char *read_header(FILE *file, char **remark)
+{
+    char *line = read_line(file);
+    if (!line || line[0] != '#') {
+        return line;
+    }
+    if (remark) {
+        *remark = line;
+    } else {
+        free(line);
+    }
+    return read_line(file);
+}
+
 /* Names come from anywhere, and go into scripts, pages and messages. */
 static int split_header(table *t)
 {
@@ -120,7 +136,7 @@ int table_read(table *t, const char *command, const char *path)
     t->path = path;
     errno = 0;
     FILE *file = se3di_file_open(path);
-    t->header = file ? read_line(file) : NULL;
+    t->header = file ? read_header(file, &t->remark) : NULL;
     if (!file || !t->header || !split_header(t)) {
         const char *why = !file && errno ? strerror(errno) : "is empty";
         fprintf(stderr, "se3d %s: %s: %s\n", command, path, why);
@@ -151,6 +167,7 @@ void table_destroy(table *t)
 {
     free(t->names);
     free(t->header);
+    free(t->remark);
     free(t->scene);
     memset(t, 0, sizeof *t);
 }
@@ -169,7 +186,7 @@ size_t table_find(const table *t, const char *name)
 static size_t read_numbers(const table *t, size_t only, size_t stride, double *values, size_t size)
 {
     FILE *file = se3di_file_open(t->path);
-    char *line = file ? read_line(file) : NULL;
+    char *line = file ? read_header(file, NULL) : NULL;
     size_t rows = 0;
     for (size_t row = 0; line && rows < size; ++row) {
         free(line);

@@ -11,6 +11,7 @@ typedef struct table {
     size_t count; /* of columns */
     size_t rows;
     char *header; /* the memory of the names */
+    char *remark; /* a first line that begins with #, or NULL */
     char *scene;  /* the description in scene.glb beside the file, or NULL */
 } table;
 

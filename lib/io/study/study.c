@@ -55,11 +55,12 @@ static bool make_head(se3d_study *study)
     if (!head) {
         return false;
     }
-    size_t used =
-        (size_t)snprintf(head, size,
-                         "# se3d study 1, se3d %s, model %016" PRIx64 ", %" PRIu64 " samples",
-                         se3d_version_get_text(), hash_study(study), se3di_design_count(entry)) +
-        1;
+    size_t used = (size_t)snprintf(head, size,
+                                   "# se3d study 1, se3d %s, model %016" PRIx64
+                                   ", %zu parameters, %" PRIu64 " samples",
+                                   se3d_version_get_text(), hash_study(study),
+                                   entry->variable_count, se3di_design_count(entry)) +
+                  1;
     used += (size_t)snprintf(head + used, size - used, "sample");
     for (size_t k = 0; k < entry->variable_count; ++k) {
         used += (size_t)snprintf(head + used, size - used, ",%s", entry->variables[k].name);
