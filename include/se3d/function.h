@@ -87,8 +87,8 @@ typedef struct se3d_function_def {
     const se3d_expression *compiled; /* copied; as `expression`, of variable_count variables */
     const se3d_signal *signals; /* [signal_count] numbers of the state, copied: the last variables
                                    of the function, which may only be the law of a force element (h,
-                                   function) or the rate of a state. Its elements live as long as
-                                   it. */
+                                   function), the rate of a state, or the value of a driver. Its
+                                   elements live as long as it. */
     size_t signal_count;        /* default 0, at most variable_count */
     int32_t integrate; /* 1: what is given above is the rate f; the function is the integral F(t) =
                           start + integral of f over the time from start_time to t, with the exact

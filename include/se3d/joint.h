@@ -233,7 +233,12 @@ SE3D_API se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const ch
 SE3D_API se3d_status se3d_coupler_get_def(const se3d_system *system, se3d_constraint coupler,
                                           se3d_coupler_def *def);
 
-/* The definition of a driver: coordinate of `joint` = f(t). @since 0.1 */
+/* The definition of a driver: coordinate of `joint` = f(t), or f(t, s_1, s_2, ...), where the s_k
+ * are signals of positions (se3d/function.h): coordinates of other joints, lengths and angles of
+ * force elements, positions of points, Euler parameters. Such a driver ties the coordinate to the
+ * signals as an ideal cam does: what moves them feels its effort, too, and it does work only if f
+ * depends on the time. Its first bodies are those of the joint; with those of the signals they are
+ * at most 8. @since 0.1 */
 typedef struct se3d_driver_def {
     size_t struct_size;
     const char *name;      /* copied; NULL or unique among constraints */
@@ -241,7 +246,8 @@ typedef struct se3d_driver_def {
     int32_t coordinate;    /* se3d_joint_coordinate */
     int32_t reserved;
     double value;           /* f if `function` is null [m, rad] */
-    se3d_function function; /* f(t), or null */
+    se3d_function function; /* f, or null; with signals an expression whose only variable beside
+                               them is the time */
 } se3d_driver_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_driver_def_default. @since 0.1 */
@@ -268,9 +274,10 @@ SE3D_API se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constra
                                          se3d_driver_def *def);
 
 /* Get the prescribed value f of a driver, or of any constraint of one equation, at the present
- * time.
+ * time and positions.
  * @param[out] value  as in the definition [rad, m]
- * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (more than one equation), NOT_FINITE, CALLBACK.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (more than one equation), NOT_FINITE, SINGULAR
+ * (the points of a length among its signals coincide), CALLBACK.
  * @since 0.1 */
 SE3D_API se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint driver,
                                            double *value);

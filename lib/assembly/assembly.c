@@ -139,7 +139,7 @@ static void count_users(se3di_assembly *assembly)
     for (uint32_t k = 0; k < assembly->constraint_count; ++k) {
         assembly->user_count += (uint32_t)se3di_is_user(&assembly->model->constraints[k]);
     }
-    assembly->place_count += assembly->user_count * (SE3D_USER_BODIES_MAX / 2);
+    assembly->place_count += assembly->user_count * (SE3DI_NODE_BODIES_MAX / 2);
 }
 
 static se3d_status build(se3di_assembly *assembly)

@@ -623,7 +623,7 @@ void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, 
 static se3d_status add_user_curvature(se3di_tangent *tangent, const se3di_constraint *constraint,
                                       double t, const double *lambda)
 {
-    enum { NUMBERS = 6 * SE3D_USER_BODIES_MAX };
+    enum { NUMBERS = 6 * SE3DI_NODE_BODIES_MAX };
     const double zero[72] = {0.0};
     double H[NUMBERS * NUMBERS], g[NUMBERS], K[72];
     const uint32_t *bodies = constraint->bodies + constraint->user_first;

@@ -23,6 +23,11 @@ se3d_status se3di_user_report(se3di_model *model, se3di_error *error)
     const char *name = model->constraints[failure.constraint].name;
     char number[32];
     snprintf(number, sizeof number, "%u", failure.constraint);
+    if (model->constraints[failure.constraint].law_class) {
+        return se3di_error_set(error, failure.status,
+                               "t = %g s: the value of driver %.80s is not finite", failure.time,
+                               name ? name : number);
+    }
     return se3di_error_set(
         error, failure.status, "t = %g s: the callback of user constraint %.80s %s", failure.time,
         name ? name : number,

@@ -9,7 +9,7 @@
 void se3di_draft_init(se3di_draft *draft, const char *type, const char *name, uint32_t body_i,
                       uint32_t body_j)
 {
-    *draft = (se3di_draft){.constraint = {.type = type, .body_count = 2, .angle = -1}};
+    *draft = (se3di_draft){.constraint = {.type = type, .body_count = 2, .angle = -1, .law = -1}};
     memcpy(&draft->constraint.name, &name, sizeof name); /* copied by the model, never written */
     draft->constraint.bodies[0] = body_i;
     draft->constraint.bodies[1] = body_j;

@@ -48,6 +48,9 @@ se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *co
                             int wanted, se3di_user_values *values)
 {
     se3d_body_motion motion[SE3D_USER_BODIES_MAX];
+    if (constraint->law_class) {
+        return constraint->law_class->eval(model, constraint, t, wanted, values);
+    }
     get_motion(model, constraint, motion);
     return call(constraint, t, motion, wanted, values);
 }
@@ -86,6 +89,9 @@ se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constrain
     se3d_body_motion motion[SE3D_USER_BODIES_MAX];
     se3d_body_motion moved[SE3D_USER_BODIES_MAX];
     se3di_user_values values;
+    if (constraint->law_class) {
+        return constraint->law_class->curvature(model, constraint, t, lambda, H, g);
+    }
     get_motion(model, constraint, motion);
     SE3DI_TRY(call(constraint, t, motion, SE3DI_USER_JACOBIAN, &values));
     memset(g, 0, n * sizeof *g);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* User-defined constraints: equations without terms, whose values a callback computes.
+/* User-defined constraints: equations without terms, whose values a callback computes, or the
+ * class of a driver whose value is a function of signals.
  *
  *     Phi(q, t),  Phi_q (r-omega),  nu = -Phi_t,
  *     gamma = -(Phi_q qdot)_q qdot - 2 Phi_qt qdot - Phi_tt
@@ -23,9 +24,19 @@ typedef struct se3di_user_values {
     double jacobian[SE3D_USER_EQUATIONS_MAX * SE3D_USER_BODIES_MAX * 6]; /* as the callback's */
 } se3di_user_values;
 
+/* How equations that are a function of signals are computed, see se3di_user_eval and
+ * se3di_user_curvature; signals are of the layers below. */
+typedef struct se3di_user_class {
+    se3d_status (*eval)(const se3di_model *model, const se3di_constraint *constraint, double t,
+                        int wanted, se3di_user_values *values);
+    se3d_status (*curvature)(const se3di_model *model, const se3di_constraint *constraint, double t,
+                             const double *lambda, double *H, double *g);
+} se3di_user_class;
+
+/* Whether its equations are not made of terms. */
 static inline int se3di_is_user(const se3di_constraint *constraint)
 {
-    return constraint->callback != NULL;
+    return constraint->callback != NULL || constraint->law_class != NULL;
 }
 
 /* Bodies that the callback sees; the first of them is bodies[user_first]. */
@@ -46,7 +57,8 @@ se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *co
                             int wanted, se3di_user_values *values);
 
 /* The derivative of Phi_pi^T lambda and Phi_r^T lambda to (dr, dtheta) of the bodies, by central
- * differences of the Jacobian: H [n * n], g [n] = Phi_q^T lambda, n = 6 * bodies. */
+ * differences of the Jacobian if it is a callback's: H [n * n], g [n] = Phi_q^T lambda,
+ * n = 6 * bodies. */
 se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constraint *constraint,
                                  double t, const double *lambda, double *H, double *g);
 

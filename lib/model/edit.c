@@ -285,6 +285,9 @@ void se3di_model_remove_function(se3di_model *model, uint32_t function)
     for (size_t k = 0; k < model->row_count; ++k) {
         lower_signed(&model->rows[k].function, function);
     }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        lower_signed(&model->constraints[k].law, function);
+    }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         for (int c = 0; c < SE3DI_FORCE_FUNCTIONS; ++c) {
             lower_signed(&model->forces[k].function[c], function);
@@ -315,6 +318,9 @@ static void count_constraint_users(se3di_model *model, const se3di_constraint *c
         if (function >= 0) {
             model->functions[function].users += by;
         }
+    }
+    if (constraint->law >= 0) {
+        model->functions[constraint->law].users += by;
     }
 }
 

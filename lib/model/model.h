@@ -114,9 +114,13 @@ typedef struct se3di_constraint {
     double pitch, distance;            /* joints: of the definition, the distance resolved */
     se3d_constraint_callback callback; /* user constraints; their rows have no terms */
     void *ctx;
-    uint32_t user_first; /* the callback's bodies begin here in `bodies` */
-    int32_t has_value;   /* one row, whose prescribed value is the user's */
-    int32_t pattern;     /* se3di_row_pattern */
+    const struct se3di_user_class *law_class; /* the same of a driver whose value is a function of
+                                                 signals (force/driver_law.h); NULL: none */
+    int32_t law;                              /* that function, dense index; -1: none */
+    int32_t coordinate;                       /* and the coordinate of joints[0] that follows it */
+    uint32_t user_first;                      /* the callback's bodies begin here in `bodies` */
+    int32_t has_value;                        /* one row, whose prescribed value is the user's */
+    int32_t pattern;                          /* se3di_row_pattern */
 } se3di_constraint;
 
 /* The first callback of a user constraint that failed since an analysis began. */

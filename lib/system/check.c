@@ -167,7 +167,7 @@ static se3d_status find_function(se3d_system *system, const char *what, se3d_fun
     if (found->signal_count > 0 && !takes_signals) {
         return SE3DI_FAIL_OF(system, what, SE3D_ERR_INVALID_ARGUMENT,
                              " is a function of %u signals, which only the law of a force element "
-                             "(h, function) may be",
+                             "(h, function) and the value of a driver may be",
                              found->signal_count);
     }
     if (count > variables) {

@@ -152,9 +152,10 @@ se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constraint drive
     full.struct_size = def->struct_size;
     full.name = data->name;
     full.joint = se3di_constraint_handle(model, data->joints[0]);
-    full.coordinate = coordinate_of(&model->terms[row->term_begin]);
+    full.coordinate =
+        data->law >= 0 ? data->coordinate : coordinate_of(&model->terms[row->term_begin]);
     full.value = row->value;
-    full.function = se3di_function_handle(model, row->function);
+    full.function = se3di_function_handle(model, data->law >= 0 ? data->law : row->function);
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }
 

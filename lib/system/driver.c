@@ -2,7 +2,10 @@
 /* Public layer: drivers, coordinate of a joint = f(t). One row of one term: the joint's angle (Phi
  * is taken modulo 2 pi: regular at every angle, no constraint is ever exchanged) or displacement.
  * The effort is -lambda, because the driver's virtual work on body j is -lambda per unit of the
- * coordinate.  docs/theory/reactions.md */
+ * coordinate. If the value is a function of signals, too, the row is that of force/driver_law.h.
+ *                                              docs/theory/reactions.md, docs/theory/signals.md */
+#include "expression/expression.h"
+#include "force/driver_law.h"
 #include "joint/draft.h"
 #include "joint/equation.h"
 #include "system/coordinate.h"
@@ -12,6 +15,52 @@ void se3d_driver_def_init(se3d_driver_def *def, size_t size)
 {
     se3d_driver_def full = {.struct_size = size};
     se3di_def_init(def, size, &full, sizeof full);
+}
+
+/* A signal that a prescribed coordinate may follow: one of positions, and not the coordinate. */
+static se3d_status check_signal(se3d_system *system, const se3di_signal *signal, uint32_t joint,
+                                int32_t coordinate)
+{
+    if (signal->kind == SE3D_SIGNAL_STATE) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function depends on a state, which is integrated: the value of a driver "
+                          "may depend on the time, coordinates, positions and orientations");
+    }
+    if (signal->kind == SE3D_SIGNAL_JOINT_RATE || signal->kind == SE3D_SIGNAL_FORCE_RATE ||
+        signal->kind == SE3D_SIGNAL_POINT_VELOCITY ||
+        signal->kind == SE3D_SIGNAL_ANGULAR_VELOCITY) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function depends on a velocity: the value of a driver may depend on the "
+                          "time, coordinates, positions and orientations");
+    }
+    if (signal->kind == SE3D_SIGNAL_JOINT_COORDINATE && signal->joint == joint &&
+        signal->component == coordinate) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function depends on the coordinate that the driver prescribes");
+    }
+    return SE3D_OK;
+}
+
+static se3d_status draft_law(se3d_system *system, const se3d_driver_def *def, uint32_t joint,
+                             int32_t function, se3di_draft *draft)
+{
+    const se3di_function *law = &system->model.functions[function];
+    if (!law->expression || law->variable_count != law->signal_count + 1) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function with signals must be an expression of the time and of them: "
+                          "its second derivatives are needed");
+    }
+    for (uint32_t k = 0; k < law->signal_count; ++k) {
+        SE3DI_TRY(check_signal(system, &law->signals[k], joint, def->coordinate));
+    }
+    if (!se3di_driver_law_draft(&system->model, joint, def->coordinate, function, def->name,
+                                draft)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function has signals of too many bodies, with those of the joint at "
+                          "most %d",
+                          SE3DI_NODE_BODIES_MAX);
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
@@ -27,17 +76,21 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
         se3di_check_new_name(system, &system->model.constraint_slots, 0, "constraint", def.name));
     SE3DI_TRY(se3di_find_constraint(system, "joint", def.joint, &joint));
     SE3DI_TRY(se3di_check_coordinate(system, "coordinate", joint, def.coordinate, &term));
-    SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
+    SE3DI_TRY(se3di_find_law(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
     se3di_draft draft;
+    if (function >= 0 && system->model.functions[function].signal_count > 0) {
+        SE3DI_TRY(draft_law(system, &def, joint, function, &draft));
+        return se3di_constraint_add(system, &draft, driver);
+    }
     se3di_driver_draft(&system->model, joint, def.coordinate, def.name,
                        (se3di_prescribed){def.value, function}, &draft);
     return se3di_constraint_add(system, &draft, driver);
 }
 
-/* The single row of a constraint. */
-static se3d_status find_row(const se3d_system *system, se3d_constraint driver, const double *output,
-                            uint32_t *row)
+/* A constraint of a single row. */
+static se3d_status find_single(const se3d_system *system, se3d_constraint driver,
+                               const double *output, const se3di_constraint **found)
 {
     if (!system || !output) {
         return SE3D_ERR_NULL;
@@ -47,8 +100,8 @@ static se3d_status find_row(const se3d_system *system, se3d_constraint driver, c
     if (index == SE3DI_NO_INDEX) {
         return SE3D_ERR_STALE_HANDLE;
     }
-    *row = model->constraints[index].row_begin;
-    return model->constraints[index].row_count == 1 ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
+    *found = &model->constraints[index];
+    return (*found)->row_count == 1 ? SE3D_OK : SE3D_ERR_INVALID_ARGUMENT;
 }
 
 se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint driver, double *value)
@@ -56,13 +109,16 @@ se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint dri
     if (value) {
         *value = 0.0;
     }
-    uint32_t index;
-    SE3DI_TRY(find_row(system, driver, value, &index));
+    const se3di_constraint *found;
+    SE3DI_TRY(find_single(system, driver, value, &found));
+    const se3di_model *model = &system->model;
     double jet[3];
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     SE3DI_TRY(se3di_read_end(
-        &reading, se3di_row_prescribed(&system->model, &system->model.rows[index], jet)));
+        &reading, found->law >= 0
+                      ? se3di_driver_law_value(model, found, jet)
+                      : se3di_row_prescribed(model, &model->rows[found->row_begin], jet)));
     *value = jet[0];
     return SE3D_OK;
 }
@@ -73,9 +129,9 @@ se3d_status se3d_driver_get_effort(const se3d_system *system, se3d_constraint dr
     if (effort) {
         *effort = 0.0;
     }
-    uint32_t index;
-    SE3DI_TRY(find_row(system, driver, effort, &index));
+    const se3di_constraint *found;
+    SE3DI_TRY(find_single(system, driver, effort, &found));
     SE3DI_TRY(se3di_check_solved(system));
-    *effort = -system->model.lambda[index];
+    *effort = -system->model.lambda[found->row_begin];
     return SE3D_OK;
 }

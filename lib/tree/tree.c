@@ -7,6 +7,7 @@
 #include "tree/tree.h"
 
 #include "joint/joint.h"
+#include "joint/user.h"
 #include "model/state.h"
 #include "tree/core.h"
 
@@ -285,7 +286,8 @@ static void find_drivers(se3di_tree *tree)
     const se3di_model *model = tree->model;
     for (uint32_t k = 0; k < tree->constraint_count; ++k) {
         const se3di_constraint *c = &model->constraints[k];
-        const int32_t joint = strcmp(c->type, "driver") == 0 ? c->joints[0] : -1;
+        const int32_t joint =
+            strcmp(c->type, "driver") == 0 && !se3di_is_user(c) ? c->joints[0] : -1;
         const int32_t node = joint >= 0 ? tree->tree_of[joint] : -1;
         if (node < 0 || model->rows[c->row_begin].left_out) {
             continue;

@@ -127,7 +127,7 @@ static void elements_of_signals_are_in_use(void)
     driver.joint = pin;
     driver.function = law;
     CHECK(se3d_driver_create(m.system, &driver, &rail) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(m.system), "signals, which only the law");
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "an expression of the time and of them");
     CHECK(!se3d_constraint_find(m.system, "rail", &rail));
     CHECK(!se3d_constraint_destroy(m.system, rail)); /* the others move up */
     se3d_load_def load = se3d_load_def_default();
@@ -150,8 +150,177 @@ static void elements_of_signals_are_in_use(void)
     text_model_close(&m);
 }
 
+#define CAM                                                                                        \
+    "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"                                                       \
+    "  - {name: arm, mass: 1, inertia: [1, 1, 2], angular_velocity: [0, 0, 1]}\n"                  \
+    "  - {name: cart, mass: 2, inertia: [1, 1, 1], position: [1, 0, 0], velocity: [2, 0, 0]}\n"    \
+    "joints:\n"                                                                                    \
+    "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, 0, "    \
+    "1]}\n"                                                                                        \
+    "  - {name: rail, type: prismatic, body_i: ground, body_j: cart, at: [1, 0, 0], axis: [1, 0, " \
+    "0]}\n"
+#define FOLLOW                                                                                     \
+    "drivers:\n  - {name: cam, joint: rail, value: 2*sin(pin.angle)}\n%s" TAIL                     \
+    "output: [{file: r.csv, channels: [pin.angle, rail.displacement, cam.effort, cam.value%s]}]\n"
+
+typedef struct way {
+    int32_t method, formulation;
+    double step, tolerance;
+} way;
+
+static const way ways[] = {
+    {SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-8},
+    {SE3D_METHOD_DOP853, SE3D_FORMULATION_RP, 0.0, 1e-8},
+    {SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.0, 1e-8},
+    {SE3D_METHOD_GAUSS, SE3D_FORMULATION_JOINT, 0.0, 1e-8},
+    {SE3D_METHOD_RK45, SE3D_FORMULATION_RP, 0.0, 1e-7},
+    {SE3D_METHOD_RADAU, SE3D_FORMULATION_ROMEGA, 0.0, 1e-6},
+    {SE3D_METHOD_BDF, SE3D_FORMULATION_RP, 0.0, 1e-5},
+    {SE3D_METHOD_RATTLE, SE3D_FORMULATION_ROMEGA, 1e-3, 2e-5},
+    {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_FORMULATION_ROMEGA, 1e-3, 2e-5},
+    {SE3D_METHOD_HHT, SE3D_FORMULATION_RP, 1e-3, 2e-5},
+};
+
+/* t(theta) of the free cam: the energy theta'^2 (1 + 4 cos^2 theta) stays 5. */
+static double time_of(double theta)
+{
+    enum { CELLS = 2000 };
+    double sum = 0.0;
+    for (int k = 0; k <= CELLS; ++k) {
+        const double c = cos(theta * k / CELLS);
+        const double weight = k == 0 || k == CELLS ? 1.0 : k % 2 ? 4.0 : 2.0;
+        sum += weight * sqrt((1.0 + 4.0 * c * c) / 5.0);
+    }
+    return sum * theta / CELLS / 3.0;
+}
+
+/* A cart that follows 2 sin(angle) of an arm that turns freely, as by an ideal cam. */
+static void a_driver_follows_an_angle_that_is_free(void)
+{
+    char text[3000];
+    snprintf(text, sizeof text, CAM FOLLOW, "", "");
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+        text_model m = text_model_open(text, ways[k].method, ways[k].formulation, ways[k].step);
+        text_model_run(&m, 1.7);
+        const double theta = text_model_get(&m, 0, 0);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 2.0 * sin(theta), 1e-9);
+        CHECK_NEAR(text_model_get(&m, 3, 0), 2.0 * sin(theta), 1e-9);
+        CHECK_NEAR(time_of(theta), 1.7, ways[k].tolerance);
+        text_model_close(&m);
+    }
+}
+
+/* With a motor on the arm, angle = 3 t: the cart needs -36 sin(3 t) N, which the motor feels as
+ * 2 cos(3 t) times that. */
+static void a_driver_follows_a_driven_angle(void)
+{
+    const double t = 1.1, force = -36.0 * sin(3.0 * t);
+    char text[3000];
+    snprintf(text, sizeof text, CAM FOLLOW, "  - {name: motor, joint: pin, value: 3*t}\n",
+             ", motor.effort");
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+        text_model m = text_model_open(text, ways[k].method, ways[k].formulation, ways[k].step);
+        const double tolerance = ways[k].step > 0.0 ? 1e-2 : 1e-4;
+        text_model_run(&m, t);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 2.0 * sin(3.0 * t), 1e-9);
+        CHECK_NEAR(text_model_get(&m, 2, 0), force, tolerance);
+        CHECK_NEAR(text_model_get(&m, 4, 0), 2.0 * cos(3.0 * t) * force, tolerance);
+        text_model_close(&m);
+    }
+}
+
+#define CHAIN                                                                                      \
+    "se3d: 1\nbodies:\n  - {name: arm, mass: 1, inertia: [1, 1, 2]}\n"                             \
+    "  - {name: cart, mass: 2, inertia: [1, 1, 1]}\n"                                              \
+    "  - {name: block, mass: 2, inertia: [1, 1, 1]}\njoints:\n"                                    \
+    "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, 0, "    \
+    "1]}\n"                                                                                        \
+    "  - {name: rail, type: prismatic, body_i: ground, body_j: cart, at: [0, 0, 0], axis: [1, 0, " \
+    "0]}\n"                                                                                        \
+    "  - {name: slider, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [0, " \
+    "1, 0]}\n"
+
+/* Followers of the length of a spring, of an orientation and the time, and of a follower. */
+static void drivers_follow_lengths_positions_and_followers(void)
+{
+    const double t = 1.9, a = 0.5 * t, length = sqrt(5.0 - 4.0 * cos(a));
+    const double rate = 4.0 * sin(a) * 0.5 / (2.0 * length);
+    text_model m = text_model_open(
+        CHAIN "drivers:\n"
+              "  - {name: cam, joint: rail, value: (gauge.length - 1)^2 + 0.1*t}\n"
+              "  - {name: motor, joint: pin, value: 0.5*t}\n"
+              "  - {name: last, joint: slider, value: cart.position.x*arm.orientation.e0}\n"
+              "forces: [{name: gauge, type: tsda, body_i: ground, body_j: arm, point_i: [2, 0, "
+              "0], point_j: [1, 0, 0]}]\nanalysis: {type: kinematics, duration: 2, step: 0.1}\n"
+              "output: [{file: r.csv, channels: [rail.displacement, slider.displacement, "
+              "rail.rate, slider.rate]}]\n",
+        -1, -1, 0.0);
+    const double x = (length - 1.0) * (length - 1.0) + 0.1 * t;
+    const double x_t = 2.0 * (length - 1.0) * rate + 0.1;
+    text_model_run(&m, t);
+    CHECK_NEAR(text_model_get(&m, 0, 0), x, 1e-10);
+    CHECK_NEAR(text_model_get(&m, 1, 0), x * cos(0.5 * a), 1e-10);
+    CHECK_NEAR(text_model_get(&m, 2, 0), x_t, 1e-9);
+    CHECK_NEAR(text_model_get(&m, 3, 0), x_t * cos(0.5 * a) - 0.25 * x * sin(0.5 * a), 1e-9);
+    text_model_close(&m);
+}
+
+/* Definitions are given as they were made, what cannot be followed is refused, and what is
+ * followed cannot be destroyed. */
+static void followers_are_checked_and_given_back(void)
+{
+    char text[3000];
+    snprintf(text, sizeof text, CAM FOLLOW, "", "");
+    text_model m = text_model_open(text, -1, -1, 0.0);
+    se3d_constraint cam, pin, rail, other;
+    se3d_driver_def def = se3d_driver_def_default();
+    static const char *const names[] = {"t", "a"};
+    static const int32_t refused[] = {SE3D_SIGNAL_JOINT_RATE, SE3D_SIGNAL_POINT_VELOCITY,
+                                      SE3D_SIGNAL_ANGULAR_VELOCITY};
+    char written[4000];
+    size_t length = 0;
+    se3d_write_options how = se3d_write_options_default();
+    se3d_model_error error;
+    how.partial = 1;
+    CHECK(se3d_model_write_text(m.model, &how, written, sizeof written, &length, &error) >= 0);
+    CHECK_CONTAINS(written, "{name: cam, joint: rail, value: \"2*sin(pin.angle)\"}");
+    CHECK(!se3d_constraint_find(m.system, "cam", &cam));
+    CHECK(!se3d_constraint_find(m.system, "pin", &pin));
+    CHECK(!se3d_constraint_find(m.system, "rail", &rail));
+    CHECK(!se3d_driver_get_def(m.system, cam, &def));
+    CHECK(def.joint.index1 == rail.index1 && def.function.index1 != 0);
+    CHECK(def.coordinate == SE3D_JOINT_COORDINATE_DISPLACEMENT);
+    CHECK(se3d_constraint_set_value(m.system, cam, 1.0) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_constraint_destroy(m.system, pin) == SE3D_ERR_IN_USE);
+    for (size_t k = 0; k < sizeof refused / sizeof *refused; ++k) {
+        se3d_signal signal = {.kind = refused[k], .joint = pin};
+        se3d_function_def law = se3d_function_def_default();
+        se3d_driver_def driver = se3d_driver_def_default();
+        CHECK(!se3d_body_find(m.system, "arm", &signal.body));
+        law.expression = "a";
+        law.variables = names;
+        law.variable_count = 2;
+        law.signals = &signal;
+        law.signal_count = 1;
+        CHECK(!se3d_function_create(m.system, &law, &driver.function));
+        driver.joint = rail;
+        driver.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
+        CHECK(se3d_driver_create(m.system, &driver, &other) == SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), "function depends on a velocity");
+        CHECK(!se3d_function_destroy(m.system, driver.function));
+    }
+    CHECK(!se3d_constraint_destroy(m.system, cam));
+    CHECK(!se3d_function_destroy(m.system, def.function));
+    CHECK(!se3d_constraint_destroy(m.system, pin));
+    text_model_close(&m);
+}
+
 int main(void)
 {
+    RUN(a_driver_follows_an_angle_that_is_free);
+    RUN(a_driver_follows_a_driven_angle);
+    RUN(drivers_follow_lengths_positions_and_followers);
+    RUN(followers_are_checked_and_given_back);
     RUN(a_torque_of_an_angle_is_a_spring);
     RUN(bodies_that_no_element_joins_are_coupled);
     RUN(a_length_of_another_spring_is_as_good_as_its_own);

@@ -176,6 +176,12 @@ static bool take_mention(se3d_model *model, const se3di_component *part, const c
     return true;
 }
 
+bool se3di_text_has_mention(const se3di_component *part, const char *text)
+{
+    size_t length = 0;
+    return find_mention(text, part ? part->scope : NULL, &length) != NULL;
+}
+
 bool se3di_mentions_find(se3d_model *model, const se3di_component *part, const char *text,
                          const char *const *taken, se3di_mentions *mentions, size_t *where,
                          char *problem, size_t size)

@@ -19,6 +19,8 @@ typedef struct se3di_mentions {
 
 /* Whether a text has operators and is not the name of a channel all the same. */
 bool se3di_text_is_combination(se3d_model *model, const char *text);
+/* Whether a text has a name that may be a channel's; unlike the next one it looks up none. */
+bool se3di_text_has_mention(const se3di_component *part, const char *text);
 /* Find the channels that a text names, `taken` (NULL at the end) variables before them; of a part
  * (NULL: none) its own before those of the model. If it cannot, `problem` gets why and *where the
  * place in the text. */

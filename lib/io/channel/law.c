@@ -132,8 +132,33 @@ static bool convert(se3di_reader *reader, const se3di_node *node, const se3di_me
     return true;
 }
 
+/* What a coordinate that is prescribed may follow. */
+static bool check_position(se3di_reader *reader, const se3di_node *node, const char *name,
+                           const se3d_signal *signal)
+{
+    switch (signal->kind) {
+    case SE3D_SIGNAL_JOINT_COORDINATE:
+    case SE3D_SIGNAL_FORCE_COORDINATE:
+    case SE3D_SIGNAL_POINT_POSITION:
+    case SE3D_SIGNAL_ORIENTATION:
+        return true;
+    case SE3D_SIGNAL_STATE:
+        return se3di_reader_fail(reader, node,
+                                 "`%.100s` is integrated with the motion: the value of a driver "
+                                 "may depend on t, positions, angles and lengths; what a "
+                                 "controller moves is moved by an `effort`",
+                                 name);
+    default:
+        return se3di_reader_fail(reader, node,
+                                 "`%.100s` is a velocity: the value of a driver may depend on t, "
+                                 "positions, angles and lengths; what reacts to velocities is an "
+                                 "`effort` or another force",
+                                 name);
+    }
+}
+
 static bool create(se3di_reader *reader, const se3di_node *node, const se3di_mentions *m,
-                   size_t own, se3d_function *function)
+                   size_t own, bool prescribes, se3d_function *function)
 {
     se3d_signal signals[SE3D_FUNCTION_VARIABLES_MAX];
     se3d_expression_def def = se3d_expression_def_default();
@@ -141,6 +166,11 @@ static bool create(se3di_reader *reader, const se3di_node *node, const se3di_men
     se3d_expression *expression = NULL;
     if (!take_signals(reader, node, m, own, signals) || !convert(reader, node, m, &def.text)) {
         return false;
+    }
+    for (size_t k = own; prescribes && k < m->count; ++k) {
+        if (!check_position(reader, node, m->channels[k].name, &signals[k - own])) {
+            return false;
+        }
     }
     def.variables = m->variables;
     def.variable_count = m->count;
@@ -174,7 +204,7 @@ bool se3di_read_law(se3di_reader *reader, const se3di_node *node, const char *co
         ++own;
     }
     return m->count == own ? se3di_read_function(reader, node, variables, value, function)
-                           : create(reader, node, m, own, function);
+                           : create(reader, node, m, own, false, function);
 }
 
 static const char *const time_only[] = {"t", NULL};
@@ -195,9 +225,10 @@ bool se3di_check_of_time(se3di_reader *reader, const se3di_node *node)
         return true;
     }
     return se3di_reader_fail(reader, node,
-                             "depends on `%.80s`: what is prescribed is a function of t alone. A "
-                             "`coupler` ties coordinates of joints to each other; what reacts to "
-                             "the motion is an `effort` or another force, such as kp*(%.80s - q)",
+                             "depends on `%.80s`: it must be a function of t alone. The `value` of "
+                             "a driver may follow positions; a `coupler` ties coordinates of "
+                             "joints to each other; what reacts to the motion is an `effort` or "
+                             "another force, such as kp*(%.80s - q)",
                              m->channels[1].name, m->channels[1].name);
 }
 
@@ -206,4 +237,20 @@ bool se3di_read_prescribed(se3di_reader *reader, const se3di_node *node, double 
 {
     return se3di_check_of_time(reader, node) &&
            se3di_read_function(reader, node, time_only, value, function);
+}
+
+bool se3di_is_followed(const se3di_reader *reader, const se3di_node *node)
+{
+    return node && node->kind == SE3DI_NODE_SCALAR && !se3di_node_is_null(node) &&
+           se3di_text_has_mention(reader->part, node->text);
+}
+
+bool se3di_read_followed(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+{
+    se3di_mentions *m = se3di_iopool_alloc(reader->pool, sizeof *m);
+    if (!m) {
+        return se3di_reader_fail_memory(reader);
+    }
+    return se3di_mentions_read(reader, node, time_only, m) &&
+           create(reader, node, m, 1, true, function);
 }

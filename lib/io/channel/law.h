@@ -13,6 +13,10 @@ bool se3di_read_law(se3di_reader *reader, const se3di_node *node, const char *co
  * names channels is refused with what may take its place. */
 bool se3di_read_prescribed(se3di_reader *reader, const se3di_node *node, double *value,
                            se3d_function *function);
+/* Whether a value names channels, which se3di_read_followed reads when all of them are there. */
+bool se3di_is_followed(const se3di_reader *reader, const se3di_node *node);
+/* The value of a driver that names channels: a function of the time and of positions. */
+bool se3di_read_followed(se3di_reader *reader, const se3di_node *node, se3d_function *function);
 /* Whether a text, of a function of time alone, names no channel; reports one that does. */
 bool se3di_check_of_time(se3di_reader *reader, const se3di_node *node);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* `drivers`: joint coordinates that follow a function of time. */
+/* `drivers`: joint coordinates that follow a function of time, or of other positions. */
 #include "io/channel/law.h"
 #include "io/document/fields.h"
 #include "io/document/function.h"
@@ -25,7 +25,7 @@ static const se3di_key driver_keys[] = {
     {.key = NULL}};
 const se3di_object se3di_object_driver = {
     "driver",
-    "A joint coordinate that follows a function of time.",
+    "A joint coordinate that follows a function of time, or of other positions.",
     driver_keys, NULL,
     NULL};
 /* clang-format on */
@@ -71,7 +71,9 @@ static bool read_value(se3di_reader *reader, const se3di_node *node, se3d_driver
                                      "is missing, must be a number, an expression in t or "
                                      "{spline: [[t, value], ...]}; or give its rate");
     }
-    if (!se3di_read_prescribed(reader, value, &def->value, &def->function)) {
+    if (!(se3di_is_followed(reader, value)
+              ? se3di_read_followed(reader, value, &def->function)
+              : se3di_read_prescribed(reader, value, &def->value, &def->function))) {
         return false;
     }
     entry->settable = def->function.index1 == 0;
@@ -94,10 +96,14 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
     entry->coordinate = def.coordinate;
     entry->driven = def.joint;
     const se3d_status status = se3d_driver_create(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    const se3di_node *value = se3di_node_get(node, "value");
+    return status < 0 ? se3di_reader_fail_system(
+                            reader, se3di_is_followed(reader, value) ? value : node, status)
+                      : true;
 }
 
-bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
+/* Those that follow time alone, or the others, whose channels have to be there. */
+static bool read_drivers(se3di_reader *reader, const se3di_node *root, bool follows_time)
 {
     const se3di_node *list = NULL;
     if (!se3di_read_list(reader, root, "drivers", &list)) {
@@ -105,9 +111,24 @@ bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
+        const se3di_node *value =
+            node->kind == SE3DI_NODE_MAP ? se3di_node_get(node, "value") : NULL;
+        if (se3di_is_followed(reader, value) == follows_time) {
+            continue;
+        }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_driver(reader, node))) {
             return false;
         }
     }
     return true;
+}
+
+bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
+{
+    return read_drivers(reader, root, true);
+}
+
+bool se3di_read_followers(se3di_reader *reader, const se3di_node *root)
+{
+    return read_drivers(reader, root, false);
 }

@@ -68,7 +68,7 @@ static const se3di_key model_keys[] = {
      .text = "moving and fixed bodies; ground is always there"},
     {"joints", SE3DI_KIND_LIST, .object = "joint", .text = "joints"},
     {"drivers", SE3DI_KIND_LIST, .object = "driver",
-     .text = "joint coordinates that follow a function of time"},
+     .text = "joint coordinates that follow a function of time or of other positions"},
     {"constraints", SE3DI_KIND_LIST, .object = "constraint", .text = "constraint primitives"},
     {"forces", SE3DI_KIND_LIST, .object = "force",
      .text = "springs, dampers, friction, stops, loads"},
@@ -194,7 +194,8 @@ static bool read_mechanism(se3di_reader *reader)
            read_section(reader, se3di_read_constraints) &&
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_states) &&
            read_section(reader, se3di_read_roads) && read_section(reader, se3di_read_forces) &&
-           se3di_read_state_laws(reader) && read_section(reader, se3di_read_wheels);
+           read_section(reader, se3di_read_followers) && se3di_read_state_laws(reader) &&
+           read_section(reader, se3di_read_wheels);
 }
 
 /* Whether the analyses, of which there is one, compute motions from constraints alone. */
