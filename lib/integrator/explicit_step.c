@@ -560,12 +560,13 @@ static se3d_status adopt(se3di_explicit *m)
  * that finds all of them, where there is one. */
 static se3d_status find_all(se3di_explicit *m, double t)
 {
-    if (!m->motion->finds_all(m->equations)) {
-        return se3di_acceleration_solve(m->equations, t);
+    if (m->motion->may_report(m->equations)) {
+        SE3DI_TRY(evaluate(m, t, m->sum));
+        if (m->motion->report(m->equations)) {
+            return SE3D_OK;
+        }
     }
-    SE3DI_TRY(evaluate(m, t, m->sum));
-    m->motion->report(m->equations);
-    return SE3D_OK;
+    return se3di_acceleration_solve(m->equations, t);
 }
 
 /* The model's state is y, at t. */
@@ -670,7 +671,7 @@ static se3d_status adopt_evaluated(se3di_explicit *m)
     m->step.integration->owes = 0;
     SE3DI_TRY(evaluate(m, model->time, m->f1));
     if (!waits_for_readers(m)) { /* else a step follows at once, which ends elsewhere */
-        m->motion->report(m->equations);
+        (void)m->motion->report(m->equations);
     }
     se3di_work_take(model, 0.0, m->f1 + work);
     memcpy(m->y1 + work, model->work, sizeof model->work);
@@ -708,6 +709,12 @@ static int reports_end(const se3di_explicit *m)
 static se3d_status solve_end(se3di_explicit *m, double t)
 {
     SE3DI_TRY(project(m, t));
+    if (m->motion->may_report(m->equations)) {
+        SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+        if (m->motion->report(m->equations)) {
+            return SE3D_OK;
+        }
+    }
     se3di_state_end(m->equations, &m->kkt);
     SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
     return m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m));
@@ -717,7 +724,7 @@ static se3d_status solve_end(se3di_explicit *m, double t)
 static se3d_status evaluate_end(se3di_explicit *m, double t)
 {
     SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
-    m->motion->report(m->equations);
+    (void)m->motion->report(m->equations);
     return SE3D_OK;
 }
 
@@ -747,7 +754,7 @@ static void complete(void *ctx)
         model->history_tag = 0;
         return;
     }
-    m.motion->report(m.equations);
+    (void)m.motion->report(m.equations);
     memcpy(model->power, m.f1 + m.count - SE3DI_STATE_WORK, sizeof model->power);
 }
 

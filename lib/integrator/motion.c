@@ -101,6 +101,7 @@ const se3di_motion se3di_motion_bodies = {
     .accept_angles = accept_angles,
     .show = show,
     .finds_all = finds_all,
+    .may_report = finds_all,
     .can_wait = finds_all,
     .count_dependent = count_dependent,
 };

@@ -45,14 +45,17 @@ typedef struct se3di_motion {
     void (*accept_angles)(se3di_equations *equations);
     /* y in the places of state.h; the model is left alone. */
     void (*show)(se3di_equations *equations, const double *y, double *bodies);
-    /* Whether `evaluate` finds all that a model shows of its accelerations and multipliers, and
-     * whether it can do so later, when only efforts have changed and nobody's code is called, */
+    /* Whether `evaluate` finds all that a model shows of its accelerations and multipliers: at
+     * every state, or at most of them; and whether it can do so later, when only efforts have
+     * changed and nobody's code is called, */
     int (*finds_all)(const se3di_equations *equations);
+    int (*may_report)(const se3di_equations *equations);
     int (*can_wait)(const se3di_equations *equations);
-    /* and then: those of the last evaluation become the model's; `evaluate` with the efforts of the
-     * last evaluation, whatever they are by now; what it needs to do so after other evaluations is
-     * kept, and comes back. NULL: it never does. */
-    void (*report)(se3di_equations *equations);
+    /* and then: those of the last evaluation become the model's (0: at that state it has not found
+     * them, the model's stay); `evaluate` with the efforts of the last evaluation, whatever they
+     * are by now; what it needs to do so after other evaluations is kept, and comes back. NULL: it
+     * never does. */
+    int (*report)(se3di_equations *equations);
     se3d_status (*evaluate_again)(se3di_equations *equations, double t, double *derivative);
     void (*keep_efforts)(se3di_equations *equations);
     void (*come_back)(se3di_equations *equations);

@@ -289,25 +289,33 @@ static int is_loaded(const se3di_equations *equations)
            (equations->has_loops && !equations->takes_rows);
 }
 
-/* Multipliers of all rows into equations->l, if drivers have a power. */
-static const double *find_multipliers(se3di_equations *equations)
+/* Multipliers of all rows, from those of the loops and what joints transmit. */
+static void transmit(se3di_equations *equations, double *l)
 {
     const se3di_tree *tree = equations->tree;
+    double *joint = equations->joint_moves, *wrench = joint + 6 * (size_t)tree->count;
+    const double *acting = tree->acts ? tree->wrench : NULL;
+    if (equations->has_loops) {
+        const double *lambda = equations->loops.lambda;
+        memcpy(l, lambda, equations->assembly.row_count * sizeof *lambda);
+        memset(wrench, 0, 6 * (size_t)tree->count * sizeof *wrench);
+        if (acting) {
+            memcpy(wrench, acting, 6 * (size_t)tree->count * sizeof *wrench);
+        }
+        se3di_tree_loops_add_wrenches(&equations->loops, lambda, wrench);
+        acting = wrench;
+    }
+    tree->core->transmit(tree, acting, joint);
+    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), l);
+}
+
+/* The same into equations->l, if drivers have a power. */
+static const double *find_multipliers(se3di_equations *equations)
+{
     if (equations->assembly.timed_count == 0 && equations->assembly.user_count == 0) {
         return NULL;
     }
-    double *joint = equations->joint_moves, *wrench = joint + 6 * (size_t)tree->count;
-    memset(wrench, 0, 6 * (size_t)tree->count * sizeof *wrench);
-    if (tree->acts) {
-        memcpy(wrench, tree->wrench, 6 * (size_t)tree->count * sizeof *wrench);
-    }
-    if (equations->has_loops) {
-        const double *lambda = equations->loops.lambda;
-        memcpy(equations->l, lambda, equations->assembly.row_count * sizeof *lambda);
-        se3di_tree_loops_add_wrenches(&equations->loops, lambda, wrench);
-    }
-    tree->core->transmit(tree, wrench, joint);
-    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), equations->l);
+    transmit(equations, equations->l);
     return equations->l;
 }
 
@@ -565,14 +573,23 @@ static void show(se3di_equations *equations, const double *y, double *bodies)
     memcpy(bodies, y + tree->q_count + tree->v_count, SE3DI_STATE_WORK * sizeof *bodies);
 }
 
-static void report(se3di_equations *equations)
+/* Also with drivers, and with loops none of whose rows the tree implies: where the rows are clear
+ * of each other they have one solution. */
+static int may_report(const se3di_equations *equations)
 {
-    const se3di_tree *tree = equations->tree;
+    return is_open(equations) ||
+           (!is_loaded(equations) && (!equations->has_loops || equations->loops.is_whole));
+}
+
+static int report(se3di_equations *equations)
+{
     se3di_model *model = equations->assembly.model;
-    double *joint = equations->joint_moves;
-    se3di_tree_get_accelerations(tree, model->frames, model->acceleration);
-    tree->core->transmit(tree, tree->acts ? tree->wrench : NULL, joint);
-    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), model->lambda);
+    if (equations->has_loops && se3di_tree_loops_is_near(&equations->loops)) {
+        return 0;
+    }
+    se3di_tree_get_accelerations(equations->tree, model->frames, model->acceleration);
+    transmit(equations, model->lambda);
+    return 1;
 }
 
 /* A force element without functions and memory. */
@@ -647,6 +664,7 @@ const se3di_motion se3di_motion_joints = {
     .accept_angles = accept_angles,
     .show = show,
     .finds_all = is_open,
+    .may_report = may_report,
     .can_wait = can_wait,
     .report = report,
     .evaluate_again = evaluate_again,

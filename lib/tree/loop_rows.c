@@ -48,6 +48,39 @@ static void mark_rows(se3di_tree_loops *loops, uint32_t loop)
     }
 }
 
+/* Points coincide, and no row of it is empty: what is along another direction may still be. */
+static int is_full(const se3di_tree_loops *loops, uint32_t loop)
+{
+    const int32_t *mark = loops->kept + loops->row_begin[loop];
+    return loops->rows[loop] >= 3 && !is_asked(loops, loop) && mark[0] && mark[1] && mark[2];
+}
+
+/* Turn the rows of loops in which that is so; before: all marks are known. */
+static void turn_rows(se3di_tree_loops *loops)
+{
+    for (int looks = 0; looks < 2; ++looks) {
+        uint64_t state = 1;
+        for (int pose = 0; pose < POSES; ++pose) {
+            place_somewhere(loops->tree, &state);
+            for (uint32_t k = 0; k < loops->count; ++k) {
+                if (is_full(loops, k) && (!looks || loops->turns[k].is_turned)) {
+                    se3di_assembly_eval_some_rows(loops->assembly, &loops->constraints[k], 1,
+                                                  loops->gamma);
+                    se3di_tree_loops_watch_turn(loops, k, looks);
+                }
+            }
+        }
+        for (uint32_t k = 0; k < loops->count; ++k) {
+            if (looks && loops->turns[k].is_turned) {
+                se3di_tree_loops_decide_turn(loops, k);
+                loops->kept[loops->row_begin[k] + 2] = !loops->turns[k].is_turned;
+            } else if (!looks && is_full(loops, k)) {
+                loops->turns[k].is_turned = se3di_tree_loops_foresee_turn(loops, k);
+            }
+        }
+    }
+}
+
 /* Marks -> the list of rows. */
 static void list_rows(se3di_tree_loops *loops, uint32_t loop)
 {
@@ -82,6 +115,7 @@ void se3di_tree_loops_keep_rows(se3di_tree_loops *loops)
             }
         }
     }
+    turn_rows(loops);
     come_back(loops);
     int32_t kept = 0;
     for (uint32_t k = 0; k < loops->count; ++k) {
@@ -89,6 +123,7 @@ void se3di_tree_loops_keep_rows(se3di_tree_loops *loops)
         loops->kept_begin[k] = kept;
         kept += loops->kept_count[k];
     }
+    loops->is_whole = kept == (int32_t)loops->row_count;
 }
 
 /* ---- freedoms ---- */
@@ -165,8 +200,7 @@ void se3di_tree_loops_refresh(se3di_tree_loops *loops)
     for (int pose = 0; pose < POSES && loops->assembly->user_count == 0; ++pose) {
         place_somewhere(tree, &state);
         if (se3di_tree_factor(tree, NULL) >= 0) {
-            se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count,
-                                          loops->gamma);
+            se3di_tree_loops_eval_rows(loops);
             se3di_tree_loops_carry(loops);
             se3di_loop_system_learn(&loops->system, tree);
         }

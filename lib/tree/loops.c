@@ -20,7 +20,7 @@
 #define TOLERANCE   1e-15
 #define REFINEMENTS 3
 
-#define LOOPS_STRUCTURE 12
+#define LOOPS_STRUCTURE 13
 #define LOOPS_VALUES    12
 
 static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE])
@@ -39,6 +39,7 @@ static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE
         {(void **)&l->member_begin, n + 1, sizeof *l->member_begin},
         {(void **)&l->member, l->member_count, sizeof *l->member},
         {(void **)&l->place_of, l->tree->count, sizeof *l->place_of},
+        {(void **)&l->turns, n, sizeof *l->turns},
     };
     _Static_assert(sizeof arrays == LOOPS_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -495,6 +496,18 @@ static void gather_rows(const se3di_tree_loops *loops, const double *values, dou
     }
 }
 
+/* Multipliers of turned rows as those of the rows. */
+static void turn_back(const se3di_tree_loops *loops, double *lambda)
+{
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        if (loops->turns[k].is_turned) {
+            const uint32_t constraint = loops->constraints[k];
+            se3di_tree_loops_turn_back(
+                loops, k, lambda + loops->tree->model->constraints[constraint].row_begin);
+        }
+    }
+}
+
 /* The other way; rows that the tree implies get none. */
 static void scatter_rows(const se3di_tree_loops *loops, const double *values, double *out)
 {
@@ -505,6 +518,7 @@ static void scatter_rows(const se3di_tree_loops *loops, const double *values, do
             out[begin + (uint32_t)loops->kept[loops->row_begin[k] + (uint32_t)r]] = *values++;
         }
     }
+    turn_back(loops, out);
 }
 
 /* With the rows evaluated, by all of them and the KKT solver. */
@@ -536,6 +550,7 @@ static se3d_status factor_all(se3di_tree_loops *loops)
 void se3di_tree_loops_eval_rows(se3di_tree_loops *loops)
 {
     se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
+    se3di_tree_loops_turn_rows(loops);
 }
 
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
@@ -580,6 +595,7 @@ static se3d_status scatter_strips(se3di_tree_loops *loops)
             sum += 0.0 * lambda[kept[r]];
         }
     }
+    turn_back(loops, loops->lambda);
     return sum == 0.0 ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
@@ -605,19 +621,31 @@ se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot)
 
 /* ---- corrections ---- */
 
+/* Phi of the rows that are kept, and of all that are turned, into gamma. */
+static void eval_phi(se3di_tree_loops *loops)
+{
+    const se3di_model *model = loops->tree->model;
+    for (uint32_t k = 0; k < loops->count; ++k) {
+        const uint32_t begin = model->constraints[loops->constraints[k]].row_begin;
+        const int is_turned = loops->turns[k].is_turned;
+        for (int32_t r = 0; r < (is_turned ? loops->rows[k] : loops->kept_count[k]); ++r) {
+            const int32_t own = is_turned ? r : loops->kept[loops->row_begin[k] + (uint32_t)r];
+            const size_t row = begin + (size_t)own;
+            loops->gamma[row] =
+                se3di_row_violation(model, &model->rows[row], loops->assembly->f[3 * row]);
+        }
+        if (is_turned) {
+            se3di_tree_loops_turn(loops, k, loops->gamma + begin, 1);
+        }
+    }
+    se3di_user_eval_phi(loops->assembly, loops->gamma);
+}
+
 double se3di_tree_loops_eval_gap(se3di_tree_loops *loops, double length, double *c)
 {
     const se3di_model *model = loops->tree->model;
     double worst = 0.0;
-    for (uint32_t k = 0; k < loops->count; ++k) {
-        const uint32_t begin = model->constraints[loops->constraints[k]].row_begin;
-        for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
-            const size_t row = begin + (size_t)loops->kept[loops->row_begin[k] + (uint32_t)r];
-            loops->gamma[row] =
-                se3di_row_violation(model, &model->rows[row], loops->assembly->f[3 * row]);
-        }
-    }
-    se3di_user_eval_phi(loops->assembly, loops->gamma);
+    eval_phi(loops);
     for (uint32_t k = 0; k < loops->count; ++k) {
         const uint32_t begin = model->constraints[loops->constraints[k]].row_begin;
         for (int32_t r = 0; r < loops->kept_count[k]; ++r) {
@@ -696,13 +724,20 @@ void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *
     for (uint32_t loop = 0; loop < loops->count; ++loop) {
         const uint32_t constraint = loops->constraints[loop];
         const double *l = lambda + tree->model->constraints[constraint].row_begin;
+        const int32_t turned = loops->turns[loop].is_turned ? 3 : 0;
+        double head[3];
+        if (turned > 0) {
+            se3di_copy(l, head);
+            se3di_tree_loops_turn(loops, loop, head, 1);
+        }
         for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
             const uint32_t body = a->free_body[a->joint_body[k]];
             const int32_t node = tree->node_of[body];
             double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, K[6];
             for (int32_t r = 0; r < loops->rows[loop]; ++r) {
+                const double own = r < turned ? head[r] : l[r];
                 for (size_t i = 0; i < 6; ++i) {
-                    sum[i] += l[r] * a->C[a->block_offset[k] + 6 * (size_t)r + i];
+                    sum[i] += own * a->C[a->block_offset[k] + 6 * (size_t)r + i];
                 }
             }
             row_to_link(&tree->links[node], tree->model->frames[body].A, sum, K);

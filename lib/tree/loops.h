@@ -20,6 +20,13 @@
 #include "tree/loop_system.h"
 #include "tree/tree.h"
 
+/* How the rows of a loop whose joint points coincide are turned (tree/loop_turns.c). */
+typedef struct se3di_loop_turn {
+    double Q[9];       /* [u w n]^T, axes of body i; before: sums of products of the rows */
+    double size, rest; /* of the rows, in all directions and along n */
+    int32_t is_turned, reserved;
+} se3di_loop_turn;
+
 typedef struct se3di_tree_loops {
     se3di_tree *tree;
     se3di_assembly *assembly; /* r-omega, of the same model */
@@ -38,6 +45,7 @@ typedef struct se3di_tree_loops {
     int32_t *path_parent;  /* place of the node's parent in the same path, -1: the ground */
     int32_t *member_begin; /* [count + 1] freedoms of those nodes that are not prescribed */
     int32_t *member;
+    se3di_loop_turn *turns; /* of each */
     size_t path_count, member_count, value_count, scratch_count;
     double *Y;              /* [values]: rows x 1 for each member */
     double *gamma;          /* [rows of the model] */
@@ -51,6 +59,7 @@ typedef struct se3di_tree_loops {
     double *size;           /* and the sizes of their halves before parts cancel */
     double *noise;          /* [velocities]: rounding of a row */
     int32_t *place_of;      /* [nodes]: scratch of the building */
+    int32_t is_whole;       /* all rows are kept */
     int32_t is_clear;       /* the last factors are those of `system`, not of `kkt` */
     int32_t leaves_freedom; /* each loop, and all that share freedoms with it, can move: more
                                freedoms than rows, in a loop no fewer */
@@ -90,7 +99,7 @@ static inline int se3di_tree_loops_is_near(const se3di_tree_loops *loops)
 {
     return !loops->is_clear || loops->system.is_near;
 }
-/* Evaluate the rows at the model's frames, functions evaluated. */
+/* Evaluate the rows at the model's frames, functions evaluated, and turn them. */
 void se3di_tree_loops_eval_rows(se3di_tree_loops *loops);
 /* c [rows of the loops that are kept] = -Phi at the model's frames; returns the largest violation
  * relative to its scale, with `length` for lengths. */
@@ -106,6 +115,16 @@ void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *
                                    double *wrench);
 /* Add a row of a loop, rows evaluated, to the Jacobian's [velocities]. */
 void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G);
+/* Turned rows, at the model's frames: the sums of products of a loop's plain rows in one pose more,
+ * or (looks) what is left along n; n from the sums of all poses, 0: there is none; whether it is
+ * to be taken. Then three numbers of the rows, to turned ones and back; all rows, as evaluated. */
+void se3di_tree_loops_watch_turn(se3di_tree_loops *loops, uint32_t loop, int looks);
+int se3di_tree_loops_foresee_turn(se3di_tree_loops *loops, uint32_t loop);
+void se3di_tree_loops_decide_turn(se3di_tree_loops *loops, uint32_t loop);
+void se3di_tree_loops_turn(const se3di_tree_loops *loops, uint32_t loop, double x[3],
+                           size_t stride);
+void se3di_tree_loops_turn_back(const se3di_tree_loops *loops, uint32_t loop, double x[3]);
+void se3di_tree_loops_turn_rows(const se3di_tree_loops *loops);
 /* Find the rows that the tree does not imply (tree/loop_rows.c). */
 void se3di_tree_loops_keep_rows(se3di_tree_loops *loops);
 /* Whether they leave a freedom. @return OK, NO_MEMORY */
