@@ -131,13 +131,17 @@ static void discharge_through_a_slot_follows_beverloo(void)
     /* narrower ones than 6 d pass less than the law says */
     const double d = 0.006, D[2] = {6.5 * d, 8.0 * d};
     double scaled[2] = {0.0, 0.0}, ratio[2] = {0.0, 0.0};
-    for (int k = 0; k < 2; ++k) {
+    const int slots = check_is_long() ? 2 : 1; /* ten seconds each */
+    for (int k = 0; k < slots; ++k) {
         for (b.seed = 1; b.seed <= 2; ++b.seed) { /* 4 % from seed to seed */
             double one;
             ratio[k] += 0.5 * discharge(D[k], &one);
             scaled[k] += 0.5 * one;
         }
         CHECK_NEAR(ratio[k], 1.0, 0.15);
+    }
+    if (slots == 1) {
+        return;
     }
     /* C by itself follows badly from two slots: a rate that is off by 1 % moves it by 6 %. */
     CHECK_NEAR(ratio[0], ratio[1], 0.05);

@@ -84,7 +84,9 @@ static int audit_model(const char *path, const char *name)
         CHECK(!se3d_model_get_analysis(model, k, &analysis));
         if (strcmp(analysis.type, "dynamics") == 0 && !support_is_chaotic_example(model, k)) {
             double romega = audit_analysis(path, k, SE3D_FORMULATION_ROMEGA, 1e-9);
-            double rp = audit_analysis(path, k, SE3D_FORMULATION_RP, 1e-9);
+            /* contact at rest takes dop853 17 s for each */
+            const int both = check_is_long() || strcmp(name, "incline.yaml") != 0;
+            double rp = both ? audit_analysis(path, k, SE3D_FORMULATION_RP, 1e-9) : romega;
             double usual = audit_analysis(path, k, SE3D_FORMULATION_ROMEGA, 1e-6);
             printf("%-30s %.1e (rp %.1e, at the default tolerance %.1e)\n", name, romega, rp,
                    usual);
