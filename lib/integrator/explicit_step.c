@@ -868,7 +868,7 @@ static se3d_status measure_gap(se3di_explicit *m)
         double gap;
         m->methods->interpolate(m, t, m->y);
         m->motion->set(m->equations, m->y);
-        SE3DI_TRY(se3di_state_measure_gap(m->equations, t, &m->past->scale, &gap));
+        SE3DI_TRY(m->motion->measure_gap(m->equations, t, &m->past->scale, &gap));
         worst = se3di_larger(worst, gap);
     }
     m->past->gap = worst;
@@ -876,14 +876,14 @@ static se3d_status measure_gap(se3di_explicit *m)
 }
 
 /* *needed: a row of the motion within the last step is to be projected onto the constraints; of
- * bodies that a step keeps well within them all along it is not even compared with them. */
+ * a motion that a step keeps well within them all along it is not even compared with them. */
 static se3d_status needs_projection(se3di_explicit *m, int *needed)
 {
     const se3di_integration *integration = m->step.integration;
     const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
                                            integration->settings.tolerance);
     *needed = 1;
-    if (m->motion != &se3di_motion_bodies || !(rough > 0.0)) {
+    if (!(rough > 0.0)) {
         return SE3D_OK;
     }
     SE3DI_TRY(m->past->gap < 0.0 ? measure_gap(m) : SE3D_OK);

@@ -8,7 +8,10 @@
  * the accelerations: dq = M^-1 G^T (G M^-1 G^T)^-1 (-Phi).  docs/theory/joint_coordinates.md */
 #include "integrator/joint_projection.h"
 
+#include "assembly/user.h"
+#include "math/larger.h"
 #include "math/vec3.h"
+#include "primitive/scale.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -17,7 +20,7 @@
 #define RATES_MAX  3
 #define FASTER     1e-2 /* Newton by factors from near falls by more, */
 #define SLOWER     0.5
-#define ROUNDING   1e-15 /* unless what is left is rounding: of the mechanism's reach */
+#define ROUNDING   1e-15 /* unless what is left is rounding: of the mechanism's reach, or a turn */
 
 static void place(se3di_equations *equations)
 {
@@ -52,25 +55,44 @@ static se3d_status correct(se3di_equations *equations, double t)
                       : SE3D_OK;
 }
 
-/* A prescribed coordinate is what its driver says: its equation is linear in it. */
+/* How far a prescribed coordinate is off, and the rate that it is to have: its equation is linear
+ * in it. @return the factor of the equation */
+static double eval_prescribed(const se3di_equations *equations, const se3di_tree_node *n,
+                              double *off, double *rate)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    const size_t row = model->constraints[n->driver].row_begin;
+    const double coefficient = model->terms[model->rows[row].term_begin].coefficient;
+    const double *f = assembly->f + 3 * row;
+    *rate = f[1] / coefficient;
+    *off = se3di_row_violation(model, &model->rows[row], f[0]) / coefficient;
+    return coefficient;
+}
+
+/* What the frames make of a coordinate that is right. */
+static int is_rounding(double off, double q)
+{
+    return fabs(off) <= ROUNDING * fmax(1.0, fabs(q));
+}
+
+/* A prescribed coordinate is what its driver says. */
 static void take_prescribed(se3di_equations *equations)
 {
     se3di_tree *tree = equations->tree;
-    const se3di_assembly *assembly = &equations->assembly;
-    const se3di_model *model = assembly->model;
     int has_moved = 0;
     for (uint32_t k = 0; tree->given_count > 0 && k < tree->count; ++k) {
         const se3di_tree_node *n = &tree->nodes[k];
+        double off, rate;
         if (!(n->flags & SE3DI_TREE_GIVEN)) {
             continue;
         }
-        const size_t row = model->constraints[n->driver].row_begin;
-        const double coefficient = model->terms[model->rows[row].term_begin].coefficient;
-        const double *f = assembly->f + 3 * row;
-        const double rate = f[1] / coefficient;
-        const double off = se3di_row_violation(model, &model->rows[row], f[0]) / coefficient;
-        has_moved |= off != 0.0 || rate != tree->qdot[n->v];
-        tree->q[n->q] -= off;
+        (void)eval_prescribed(equations, n, &off, &rate);
+        if (!is_rounding(off, tree->q[n->q])) {
+            tree->q[n->q] -= off;
+            has_moved = 1;
+        }
+        has_moved |= rate != tree->qdot[n->v];
         tree->qdot[n->v] = rate;
     }
     if (has_moved) {
@@ -183,4 +205,41 @@ se3d_status se3di_joint_project(se3di_equations *equations, double t,
     const se3d_status status =
         project_positions(equations, t, scale->length, accuracy, &is_factored);
     return status != SE3D_OK ? status : project_rates(equations, t, scale, accuracy, is_factored);
+}
+
+/* The largest of prescribed coordinates and their rates. */
+static double measure_prescribed(const se3di_equations *equations, double length, double rate)
+{
+    const se3di_tree *tree = equations->tree;
+    const se3di_model *model = equations->assembly.model;
+    double worst = 0.0;
+    for (uint32_t k = 0; tree->given_count > 0 && k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        double off, wanted;
+        if (n->flags & SE3DI_TREE_GIVEN) {
+            const double factor = eval_prescribed(equations, n, &off, &wanted);
+            const double faster = fabs(wanted - tree->qdot[n->v]) / rate;
+            const uint32_t row = model->constraints[n->driver].row_begin;
+            const double unit = fabs(factor) / se3di_row_get_scale(model, row, length);
+            worst = se3di_larger(worst, unit * se3di_larger(fabs(off), faster));
+        }
+    }
+    return worst;
+}
+
+se3d_status se3di_joint_measure_gap(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale, double *gap)
+{
+    const double rate = fmax(scale->speed / scale->length, scale->spin);
+    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    *gap = measure_prescribed(equations, scale->length, rate);
+    if (!equations->has_loops) {
+        return SE3D_OK;
+    }
+    se3di_tree_loops *loops = &equations->loops;
+    *gap = se3di_larger(*gap, se3di_tree_loops_eval_gap(loops, scale->length, equations->c));
+    se3di_tree_loops_eval_rows(loops);
+    const double rates = se3di_tree_loops_eval_rate_gap(loops, scale->length, rate, equations->c);
+    *gap = se3di_larger(*gap, rates);
+    return se3di_user_report(equations->assembly.model, equations->error);
 }

@@ -12,4 +12,8 @@
 se3d_status se3di_joint_project(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double accuracy, int is_factored);
 
+/* *gap: how far that state is off, as of se3di_state_measure_gap. */
+se3d_status se3di_joint_measure_gap(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale, double *gap);
+
 #endif

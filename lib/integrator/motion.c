@@ -96,6 +96,7 @@ const se3di_motion se3di_motion_bodies = {
     .move = move,
     .spread = pass,
     .project = se3di_state_project,
+    .measure_gap = se3di_state_measure_gap,
     .keep = get,
     .stand = stand,
     .accept_angles = accept_angles,

@@ -37,6 +37,9 @@ typedef struct se3di_motion {
     /* The state that was set onto its constraints at t, see se3di_state_project. */
     se3d_status (*project)(se3di_equations *equations, double t, const se3di_state_scale *scale,
                            double accuracy, int is_factored);
+    /* How far it is off, see se3di_state_measure_gap. */
+    se3d_status (*measure_gap)(se3di_equations *equations, double t, const se3di_state_scale *scale,
+                               double *gap);
     /* That state as a vector: all but the works. */
     void (*keep)(se3di_equations *equations, double *y);
     /* The frames of the model are at y, as kept: it becomes the state that was set last. */

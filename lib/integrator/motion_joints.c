@@ -486,6 +486,15 @@ static se3d_status project(se3di_equations *equations, double t, const se3di_sta
     return status > 0 ? project_bodies(equations, t, scale, accuracy, 0) : status;
 }
 
+static se3d_status measure_gap(se3di_equations *equations, double t, const se3di_state_scale *scale,
+                               double *gap)
+{
+    *gap = 0.0;
+    return is_open(equations)     ? SE3D_OK
+           : is_loaded(equations) ? se3di_state_measure_gap(equations, t, scale, gap)
+                                  : se3di_joint_measure_gap(equations, t, scale, gap);
+}
+
 /* ---- what a change is for the bodies ---- */
 
 /* A change of positions as one along the freedoms: turns of quaternions in the child's frame. */
@@ -659,6 +668,7 @@ const se3di_motion se3di_motion_joints = {
     .move = move,
     .spread = spread,
     .project = project,
+    .measure_gap = measure_gap,
     .keep = keep,
     .stand = stand,
     .accept_angles = accept_angles,

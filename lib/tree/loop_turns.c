@@ -95,7 +95,7 @@ int se3di_tree_loops_foresee_turn(se3di_tree_loops *loops, uint32_t loop)
 {
     static const double axes[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     se3di_loop_turn *turn = &loops->turns[loop];
-    double *Q = turn->Q, n[3];
+    double *Q = turn->Q, n[3] = {0.0, 0.0, 0.0};
     turn->size = sqrt(Q[0] + Q[4] + Q[8]);
     if (!is_point(loops, loop) || !find_normal(Q, n)) {
         return 0;

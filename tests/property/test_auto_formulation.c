@@ -3,6 +3,8 @@
  * the coordinates of bodies elsewhere, and decides again when the structure has changed. */
 #include "check.h"
 
+#include "integrator/joint_projection.h"
+#include "integrator/motion.h"
 #include "math/vec3.h"
 #include "nonlinear/equations.h"
 #include "support/tree_world.h"
@@ -388,6 +390,39 @@ static void what_loops_show_is_what_the_bodies_have(void)
     CHECK(tried > 25);
 }
 
+/* Off its loops and its driver, a tree is as far as its bodies are from all their rows. */
+static void gaps_of_trees_are_those_of_the_bodies(void)
+{
+    const se3di_state_scale scale = {.length = 1.3, .speed = 2.0, .spin = 3.0};
+    int tried = 0;
+    for (uint64_t seed = 0; seed < 40; ++seed) {
+        tree_world w;
+        se3di_equations e;
+        double state[16 * TREE_BODIES_MAX], own, all;
+        se3d_driver_def drive = se3d_driver_def_default();
+        se3d_constraint driver;
+        tree_world_init(&w, seed, 5, 1 + (int)(seed % 2));
+        CHECK(!se3d_function_create_expression(w.system, "3 + 2*t", &drive.function));
+        drive.joint = w.joints[0];
+        const int drives = w.joint_count > 0 && se3d_driver_create(w.system, &drive, &driver) >= 0;
+        CHECK(!se3di_equations_init(&e, &w.system->model, &se3di_formulation_joint, 1, NULL));
+        const size_t count = (size_t)e.tree->q_count + e.tree->v_count;
+        CHECK(count + SE3DI_STATE_WORK < sizeof state / sizeof *state);
+        se3di_motion_joints.get(&e, state);
+        for (size_t k = 0; k < count; ++k) {
+            state[k] += tree_uniform(&w, -1e-3, 1e-3);
+        }
+        se3di_motion_joints.set(&e, state);
+        CHECK(!se3di_joint_measure_gap(&e, 0.1, &scale, &own));
+        CHECK(!se3di_state_measure_gap(&e, 0.1, &scale, &all));
+        CHECK_NEAR(own, all, 1e-11 * (1.0 + all));
+        tried += own > 1e-4 && drives;
+        se3di_equations_destroy(&e);
+        tree_world_destroy(&w);
+    }
+    CHECK(tried > 10);
+}
+
 static void gauss_moves_the_bodies_of_loops(void)
 {
     se3d_system *system = make_five_bar(0.0);
@@ -507,6 +542,7 @@ int main(void)
     RUN(rows_that_nearly_depend_at_every_pose_are_not_clear);
     RUN(loops_in_planes_of_their_own_are_clear);
     RUN(what_loops_show_is_what_the_bodies_have);
+    RUN(gaps_of_trees_are_those_of_the_bodies);
     RUN(gauss_moves_the_bodies_of_loops);
     RUN(loops_apart_are_counted_apart);
     RUN(nothing_large_is_built_to_be_left);
