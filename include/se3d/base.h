@@ -126,7 +126,8 @@ typedef enum se3d_log_kind {
     SE3D_LOG_FILE = 8,       /* a file that a model names has or lacks something */
     SE3D_LOG_CHECKPOINT = 9, /* a checkpoint could not be written: se3d_run_options */
     SE3D_LOG_MOVED = 10,     /* as START, which it replaces: a body by more than its size */
-    SE3D_LOG_MODEL = 11      /* a model file says what is probably a mistake */
+    SE3D_LOG_MODEL = 11,     /* a model file says what is probably a mistake */
+    SE3D_LOG_BROKEN = 12     /* a joint broke: se3d_joint_set_break */
 } se3d_log_kind;
 
 /* Receives what happens to a system, one sentence a call: every message of a failure (ERROR);

@@ -33,12 +33,14 @@ typedef se3d_status (*se3d_event_value)(void *ctx, const se3d_system *system, do
 /* An event that happened. The state of the system was then consistent: constraints, accelerations
  * and multipliers are those of `time`. @since 0.1 */
 typedef struct se3d_event_record {
-    double time;       /* [s] */
-    double value;      /* of the quantity [its unit]: the level, to rounding, or just beyond */
-    const char *name;  /* of the event, "" for none; owned by the event */
-    se3d_event event;  /* which one */
-    int32_t direction; /* RISING or FALLING */
-    int32_t action;    /* STOP if the run ended with it */
+    double time;           /* [s] */
+    double value;          /* of the quantity [its unit]: the level, to rounding, or just beyond */
+    const char *name;      /* of the event, "" for none; owned by the event */
+    se3d_event event;      /* which one */
+    int32_t direction;     /* RISING or FALLING */
+    int32_t action;        /* STOP if the run ended with it */
+    se3d_constraint joint; /* a joint that broke (se3d_joint_set_break), `name` is its name and
+                              `value` the part of its limit, `event` is null; null: an event */
 } se3d_event_record;
 
 /* Called at every event with the system in its state there. It may read everything, copy the system

@@ -14,20 +14,22 @@ extern "C" {
 /* The definition of a joint between two bodies: a point and an axis on each. @since 0.1 */
 typedef struct se3d_joint_def {
     size_t struct_size;
-    const char *name;  /* copied; NULL or unique among constraints */
-    se3d_body body_i;  /* the reference */
-    se3d_body body_j;  /* moves relative to body i */
-    double point_i[3]; /* joint point, frame of body i [m] */
-    double point_j[3]; /* joint point, frame of body j [m] */
-    double axis_i[3];  /* direction of the axis, frame of body i; not zero, default (0,0,1) */
-    double axis_j[3];  /* direction of the axis, frame of body j; not zero, default (0,0,1) */
-    double ref_i[3];   /* direction from which the angle counts, frame of body i; zero: chosen */
-    double ref_j[3];   /* direction to which it counts, frame of body j; zero: so that the angle at
+    const char *name;   /* copied; NULL or unique among constraints */
+    se3d_body body_i;   /* the reference */
+    se3d_body body_j;   /* moves relative to body i */
+    double point_i[3];  /* joint point, frame of body i [m] */
+    double point_j[3];  /* joint point, frame of body j [m] */
+    double axis_i[3];   /* direction of the axis, frame of body i; not zero, default (0,0,1) */
+    double axis_j[3];   /* direction of the axis, frame of body j; not zero, default (0,0,1) */
+    double ref_i[3];    /* direction from which the angle counts, frame of body i; zero: chosen */
+    double ref_j[3];    /* direction to which it counts, frame of body j; zero: so that the angle at
                           the present pose is angle0 */
-    double angle0;     /* angle when ref_i and ref_j coincide or, without ref_j, at the present
+    double angle0;      /* angle when ref_i and ref_j coincide or, without ref_j, at the present
                           pose [rad] */
-    double pitch;      /* screw: advance per turn [m] */
-    double distance;   /* distance, revolute_spherical, revolute_cylindrical [m] */
+    double pitch;       /* screw: advance per turn [m] */
+    double distance;    /* distance, revolute_spherical, revolute_cylindrical [m] */
+    double break_force; /* see se3d_joint_set_break [N]; 0: no limit */
+    double break_moment; /* the same [N m] */
 } se3d_joint_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_joint_def_default. @since 0.1 */
@@ -155,6 +157,37 @@ SE3D_API se3d_status se3d_joint_create_perpendicular2(se3d_system *system,
  * @since 0.1 */
 SE3D_API se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
                                         se3d_joint_def *def);
+
+/* Set the limits at which a joint breaks: where the force or the moment of its reaction
+ * (se3d_constraint_get_reaction) passes its limit in a run of dynamics, its equations are left out
+ * from there on, and so are those of drivers and couplers of its coordinates; force elements on
+ * them do nothing any more. The state goes on as it is, the bodies stay unable to touch each other.
+ * The event is found in time as those of se3d/event.h, at the end of a step by convex and in
+ * systems with particle sets, is on the record of the solver and told to the log
+ * (SE3D_LOG_BROKEN). Several joints break one after the other if the first one's load is too much
+ * for the next. Kinematics and inverse dynamics are refused as long as a joint may break, and so
+ * are batches and joints with an armature. docs/theory/events.md
+ * @param[in] force   >= 0, 0: no limit [N]
+ * @param[in] moment  >= 0, 0: no limit; about the joint point on body j [N m]
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no joint between two bodies, a limit), STATE
+ * (within a callback). @since 0.1 */
+SE3D_API se3d_status se3d_joint_set_break(se3d_system *system, se3d_constraint joint, double force,
+                                          double moment);
+
+/* Get whether a joint is broken; what acts on a broken joint is so, too (drivers, couplers).
+ * @param[out] broken  1 or 0
+ * @return OK, NULL, STALE_HANDLE. @since 0.1 */
+SE3D_API se3d_status se3d_joint_get_broken(const se3d_system *system, se3d_constraint joint,
+                                           int32_t *broken);
+
+/* Break a joint as it is, or make it whole again: bodies that are apart by then come together when
+ * the next analysis begins, as at any start. What was computed of forces and accelerations is void
+ * until then. Snapshots, clones and checkpoints keep which joints are broken.
+ * @param[in] broken  1 or 0
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no joint between two bodies, another number),
+ * STATE (within a callback). @since 0.1 */
+SE3D_API se3d_status se3d_joint_set_broken(se3d_system *system, se3d_constraint joint,
+                                           int32_t broken);
 
 /* Coordinates of a joint: of j relative to i, about or along its axis. @since 0.1 */
 typedef enum se3d_joint_coordinate {

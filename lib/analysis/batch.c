@@ -21,6 +21,11 @@ static se3d_status check_constraints(const se3di_tree *tree, se3di_error *error)
     for (uint32_t k = 0; k < tree->constraint_count; ++k) {
         const se3di_constraint *c = &model->constraints[k];
         const int is_driver = tree->tree_of[k] >= 0 && strcmp(c->type, "driver") == 0;
+        if (c->break_limit[0] > 0.0 || c->break_limit[1] > 0.0) {
+            return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
+                                   "'%.64s' (%s) may break: a batch has no such joints",
+                                   name_of(c->name), c->type);
+        }
         if (tree->tree_of[k] < 0 || is_driver) {
             return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
                                    "'%.64s' (%s) is not a joint of a tree: a batch has no loops, "

@@ -389,6 +389,9 @@ static se3d_status report_redundant(inspection *in, const se3di_rank *rank, int3
     char name[NAME_SIZE];
     char list[TEXT_SIZE - 512];
     uint32_t row = in->row[rank->redundant[k]];
+    if (in->model->rows[row].left_out == SE3DI_ROW_BROKEN) {
+        return SE3D_OK;
+    }
     const char *unit = se3di_row_get_unit(in->model, row);
     double scale = se3di_row_get_scale(in->model, row, in->size);
     double gap = contradiction(in, rank, k, in->equations->phi, 1);
@@ -488,7 +491,7 @@ static se3d_status count_by_factor(inspection *in, size_t rows)
     const se3di_kkt_values values = se3di_equations_values(equations);
     se3di_kkt_factor_info info = {0};
     SE3DI_TRY(se3di_kkt_factor(equations->kkt, &values, &info));
-    in->check->rank = in->model->row_count - (size_t)info.dependent_rows;
+    in->check->rank = in->model->row_count - (size_t)info.dependent_rows; /* what broke is one */
     return add_message(in->check,
                        "%zu equations depend on each other's bodies: too many to name redundant "
                        "ones (the limit is %d); their number is an estimate",
@@ -649,7 +652,7 @@ se3d_status se3di_check_init(se3di_check *check, se3di_model *model, se3di_error
     SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, 0, error));
     equations.error = &own;
     check->bodies = equations.assembly.body_count;
-    check->equations = model->row_count;
+    check->equations = model->row_count - model->broken_count;
     inspection in = {.check = check,
                      .equations = &equations,
                      .model = model,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/events.h"
 
+#include "analysis/breaks.h"
 #include "analysis/run.h"
 #include "base/busy.h"
 #include "contact/bodies/body_contacts.h"
@@ -31,6 +32,8 @@ void se3di_events_destroy(se3di_events *events)
     for (size_t k = 0; k < events->slots.count; ++k) {
         se3di_text_free(allocator, events->list[k].name);
     }
+    se3di_events_clear(events);
+    se3di_free(allocator, events->names, events->name_capacity, sizeof *events->names);
     se3di_free(allocator, events->list, events->capacity, sizeof *events->list);
     se3di_free(allocator, events->records, events->record_capacity, sizeof *events->records);
     se3di_free(allocator, events->hits, events->hit_capacity, sizeof *events->hits);
@@ -59,6 +62,7 @@ se3d_status se3di_events_add(se3di_events *events, const char *name, const se3di
     events->list[count] = *event;
     events->list[count].name = copy;
     *handle = se3di_slots_add(&events->slots);
+    events->break_count = 0; /* they are listed anew before a run */
     events->looked = 0;
     return SE3D_OK;
 }
@@ -78,6 +82,7 @@ void se3di_events_remove(se3di_events *events, uint32_t event)
     memmove(&events->list[event], &events->list[event + 1],
             (events->slots.count - event - 1) * sizeof *events->list);
     se3di_slots_remove(&events->slots, event);
+    events->break_count = 0;
     events->looked = 0;
 }
 
@@ -92,7 +97,8 @@ static se3d_status reserve(se3di_events *events, double **data, size_t *capacity
 
 se3d_status se3di_events_prepare(se3di_events *events)
 {
-    const size_t count = events->slots.count;
+    SE3DI_TRY(se3di_breaks_list(events));
+    const size_t count = se3di_events_count(events);
     const se3di_model *model = events->run->model;
     const size_t states = se3di_state_count(&events->run->equations.assembly);
     void *hits = events->hits;
@@ -133,7 +139,11 @@ static se3d_status eval_shown(se3di_events *events, uint32_t k, double *g)
     const se3di_event *event = &events->list[k];
     const double t = events->run->model->time;
     double value = 0.0;
-    SE3DI_TRY(call_value(events, event, &value));
+    if (event->joint > 0) {
+        value = se3di_break_measure(events->run->model, event->joint - 1);
+    } else {
+        SE3DI_TRY(call_value(events, event, &value));
+    }
     if (!isfinite(value)) {
         return se3di_error_set(events->run->error, SE3D_ERR_NOT_FINITE,
                                "t = %g s: the value of the event %.100s is not finite", t,
@@ -309,6 +319,9 @@ static se3d_status eval_exact(void *ctx, double t, double *g)
 /* The event is on record at t: what it does from there is new. */
 static int has_happened_at(const se3di_events *events, uint32_t k, double t)
 {
+    if (events->list[k].joint > 0) {
+        return 0;
+    }
     const se3di_handle handle = se3di_slots_handle(&events->slots, k);
     for (size_t n = events->record_count; n > 0 && events->records[n - 1].time >= t; --n) {
         const se3d_event_record *record = &events->records[n - 1];
@@ -322,7 +335,7 @@ static int has_happened_at(const se3di_events *events, uint32_t k, double t)
 /* Values of all events at node `node`, which is the state of the model. */
 static se3d_status eval_node(se3di_events *events, int node)
 {
-    const uint32_t count = (uint32_t)events->slots.count;
+    const uint32_t count = se3di_events_count(events);
     double *g = &events->g[node];
     SE3DI_TRY(eval_kind(events, 0, count, 1, g, SE3DI_CROSSING_NODES));
     return eval_kind(events, 0, count, 0, g, SE3DI_CROSSING_NODES);
@@ -386,12 +399,13 @@ static void choose_nodes(se3di_events *events, double begin, double end)
 {
     const int goes_on = follows(events, begin);
     int fine = 0;
-    for (uint32_t k = 0; k < events->slots.count; ++k) {
+    for (uint32_t k = 0; k < se3di_events_count(events); ++k) {
         double *g = &events->g[SE3DI_CROSSING_NODES * k];
         se3di_event *event = &events->list[k];
         const int happened = has_happened_at(events, k, begin);
         *g = happened ? 0.0 : *g;
         event->side = goes_on && !happened ? event->side : 0;
+        event->side = event->joint > 0 ? -1 : event->side;
         fine |= !(fabs(*g) > band_of(event));
     }
     const double *s = fine ? fine_nodes : plain_nodes;
@@ -401,6 +415,15 @@ static void choose_nodes(se3di_events *events, double begin, double end)
         events->t[k] = begin + s[k] * (end - begin);
     }
     events->t[events->node_count - 1] = end;
+}
+
+static void add_hit(se3di_events *events, double t, uint32_t event, int32_t direction)
+{
+    size_t at = events->hit_count++;
+    for (; at > 0 && events->hits[at - 1].time > t; --at) {
+        events->hits[at] = events->hits[at - 1];
+    }
+    events->hits[at] = (se3di_event_hit){t, event, direction};
 }
 
 /* Crossings of one event, into the list of hits. */
@@ -421,12 +444,26 @@ static se3d_status find_hits(se3di_events *events, uint32_t k)
     SE3DI_TRY(se3di_crossings_find(&function, &found));
     event->side = found.side;
     for (int n = 0; n < found.count; ++n) {
-        const se3di_crossing *crossing = &found.list[n];
-        size_t at = events->hit_count++;
-        for (; at > 0 && events->hits[at - 1].time > crossing->t; --at) {
-            events->hits[at] = events->hits[at - 1];
-        }
-        events->hits[at] = (se3di_event_hit){crossing->t, k, crossing->direction};
+        add_hit(events, found.list[n].t, k, found.list[n].direction);
+    }
+    return SE3D_OK;
+}
+
+/* The joint holds what it is loaded with at the beginning of a step, or breaks there, as one does
+ * that is loaded with what others held which broke. */
+static se3d_status find_break(se3di_events *events, uint32_t k)
+{
+    const double *g = &events->g[SE3DI_CROSSING_NODES * k];
+    const int last = events->node_count - 1;
+    if (g[0] > 0.0) {
+        add_hit(events, events->t[0], k, 1);
+        return SE3D_OK;
+    }
+    if (!se3di_breaks_end_steps(events)) {
+        return find_hits(events, k);
+    }
+    if (g[last] > 0.0) {
+        add_hit(events, events->t[last], k, 1);
     }
     return SE3D_OK;
 }
@@ -434,8 +471,8 @@ static se3d_status find_hits(se3di_events *events, uint32_t k)
 static se3d_status find_all_hits(se3di_events *events)
 {
     events->hit_count = 0;
-    for (uint32_t k = 0; k < events->slots.count; ++k) {
-        SE3DI_TRY(find_hits(events, k));
+    for (uint32_t k = 0; k < se3di_events_count(events); ++k) {
+        SE3DI_TRY(events->list[k].joint > 0 ? find_break(events, k) : find_hits(events, k));
     }
     events->looked_time = events->t[events->node_count - 1];
     events->looked_stamp = events->run->model->history_stamp;
@@ -456,24 +493,17 @@ static se3d_status add_record(se3di_events *events, const se3di_event_hit *hit,
 {
     const se3di_event *event = &events->list[hit->event];
     const se3di_handle handle = se3di_slots_handle(&events->slots, hit->event);
-    void *records = events->records;
     double g = 0.0;
-    se3d_status status =
-        se3di_array_reserve(&events->run->model->allocator, &records, &events->record_capacity,
-                            events->record_count + 1, sizeof *events->records);
-    events->records = records;
-    if (status < 0) {
-        return se3di_error_set(events->run->error, status, "no memory for an event");
-    }
     SE3DI_TRY(set_exact(events, hit->time));
     SE3DI_TRY(eval_one(events, hit->event, &g));
-    *record = &events->records[events->record_count++];
-    **record = (se3d_event_record){.time = hit->time,
-                                   .value = g + event->level,
-                                   .name = event->name ? event->name : "",
-                                   .event = {handle.index1, handle.generation},
-                                   .direction = hit->direction,
-                                   .action = event->action};
+    const se3d_event_record happened = {.time = hit->time,
+                                        .value = g + event->level,
+                                        .name = event->name ? event->name : "",
+                                        .event = {handle.index1, handle.generation},
+                                        .direction = hit->direction,
+                                        .action = event->action};
+    SE3DI_TRY(se3di_events_add_record(events, &happened));
+    *record = &events->records[events->record_count - 1];
     return SE3D_OK;
 }
 
@@ -523,6 +553,11 @@ static se3d_status happen(se3di_events *events, const se3di_event_hit *hit, int 
 {
     se3d_event_record *record = NULL;
     const se3di_event *event = &events->list[hit->event];
+    if (event->joint > 0) {
+        *changed = 1;
+        SE3DI_TRY(set_exact(events, hit->time));
+        return se3di_breaks_happen(events);
+    }
     SE3DI_TRY(add_record(events, hit, &record));
     if (event->callback) {
         const se3d_event_record shown = *record;
@@ -549,7 +584,9 @@ static se3d_status report(se3di_events *events, double t0, double t_end)
         if (hit->time > t_end && hit->time - t_end <= 4.0 * DBL_EPSILON * fabs(t_end)) {
             hit->time = t_end; /* but for rounding: what follows may begin anew there */
         }
-        if (hit->time > t0 && hit->time <= last) {
+        const int comes =
+            hit->time > t0 || (events->list[hit->event].joint > 0 && !(hit->time < t0));
+        if (comes && hit->time <= last) {
             SE3DI_TRY(happen(events, hit, &stop, &changed));
             last = stop ? hit->time : last; /* what happens at the same time does so too */
         }
@@ -564,7 +601,7 @@ static se3d_status report(se3di_events *events, double t0, double t_end)
 /* Values of all events at t, as eval_rough: the state is set once for all of a kind. */
 static se3d_status eval_ahead(se3di_events *events, int node, double t)
 {
-    const uint32_t count = (uint32_t)events->slots.count;
+    const uint32_t count = se3di_events_count(events);
     double *g = &events->g[node];
     if (count_kind(events, 0, count, 1) > 0) {
         SE3DI_TRY(set_rough(events, t));
@@ -643,7 +680,7 @@ se3d_status se3di_events_begin_step(void *ctx)
 {
     se3di_events *events = ctx;
     const se3di_model *model = events->run->model;
-    if (events->slots.count == 0) {
+    if (se3di_events_count(events) == 0) {
         return SE3D_OK;
     }
     events->dense = 0;
@@ -669,7 +706,7 @@ se3d_status se3di_events_end_step(void *ctx)
     se3di_events *events = ctx;
     se3di_run *run = events->run;
     const se3di_model *model = run->model;
-    if (events->slots.count == 0) {
+    if (se3di_events_count(events) == 0) {
         return SE3D_OK;
     }
     if (se3di_saved_fill(&events->to, model, &model->allocator) < 0) {

@@ -26,7 +26,9 @@ typedef struct se3di_event {
     double hysteresis;
     int32_t direction, action; /* se3d_event_direction, se3d_event_action */
     int32_t motion_only;
-    int32_t side; /* where the last step ended near the level: the side it came from, 0: none */
+    int32_t side;   /* where the last step ended near the level: the side it came from, 0: none */
+    uint32_t joint; /* 1 + the constraint that breaks there; 0: the user's event */
+    uint32_t reserved;
 } se3di_event;
 
 /* A crossing in the step that was looked at last. */
@@ -40,8 +42,11 @@ typedef struct se3di_events {
     struct se3di_run *run;
     se3d_system *system; /* for callbacks */
     se3di_slots slots;
-    se3di_event *list;
+    se3di_event *list; /* the user's, and behind them those of joints that may break */
     size_t capacity;
+    size_t break_count; /* of the latter */
+    char **names;       /* of joints in records, kept as long as these */
+    size_t name_count, name_capacity;
     se3d_event_record *records;
     size_t record_count, record_capacity;
 
@@ -73,6 +78,16 @@ se3d_status se3di_events_add(se3di_events *events, const char *name, const se3di
                              se3di_handle *handle);
 void se3di_events_remove(se3di_events *events, uint32_t event);
 
+/* The user's, and those of joints that may break. */
+static inline uint32_t se3di_events_count(const se3di_events *events)
+{
+    return (uint32_t)(events->slots.count + events->break_count);
+}
+
+/* Forget all records. */
+void se3di_events_clear(se3di_events *events);
+/* @return OK, NO_MEMORY */
+se3d_status se3di_events_add_record(se3di_events *events, const se3d_event_record *record);
 /* Before a run: room for what a step needs. @return OK, NO_MEMORY */
 se3d_status se3di_events_prepare(se3di_events *events);
 /* Steps of a method with dense output to t_end. @return OK, INFO_EVENT (the model is at the event),

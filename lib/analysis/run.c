@@ -3,6 +3,7 @@
 #include "analysis/run.h"
 #include "analysis/run_end.h"
 
+#include "analysis/breaks.h"
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
@@ -240,8 +241,8 @@ static se3d_status build(se3di_run *run)
 
 static se3d_status prepare(se3di_run *run)
 {
-    if (!run->prepared ||
-        run->equations.assembly.topology_version != run->model->topology_version) {
+    SE3DI_TRY(se3di_breaks_check(run));
+    if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly)) {
         choose_method(run);
         SE3DI_TRY(build(run));
     }
@@ -250,11 +251,12 @@ static se3d_status prepare(se3di_run *run)
         se3di_assembly_take_values(&run->equations.assembly);
         run->values_version = run->model->values_version;
     }
-    run->equations.watch = run->events.slots.count > 0 ? &run->watch : NULL;
     run->equations.guard = &run->guard;
-    return se3di_events_prepare(&run->events) < 0
-               ? se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events")
-               : SE3D_OK;
+    if (se3di_events_prepare(&run->events) < 0) {
+        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events");
+    }
+    run->equations.watch = se3di_events_count(&run->events) > 0 ? &run->watch : NULL;
+    return SE3D_OK;
 }
 
 se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method)

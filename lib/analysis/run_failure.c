@@ -112,7 +112,7 @@ static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
     }
     if (status < 0 && status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_CALLBACK &&
         run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->refused &&
-        run->equations.assembly.topology_version == model->topology_version) {
+        se3di_assembly_fits(&run->equations.assembly)) {
         blame_jump(run, t_end);
     }
     return status;
@@ -129,7 +129,7 @@ se3d_status se3di_run_fail(se3di_run *run, se3d_status status, double t_end)
     }
     recover(run, t_end);
     if (run->analysis == SE3D_ANALYSIS_DYNAMICS && run->prepared &&
-        run->equations.assembly.topology_version == run->model->topology_version) {
+        se3di_assembly_fits(&run->equations.assembly)) {
         return se3di_dead_point_explain(&run->equations, t_end, status); /* from where it is now */
     }
     return status;

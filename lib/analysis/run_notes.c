@@ -83,7 +83,8 @@ static void warn_of_rows(se3di_run *run)
 static void tell_rows(se3di_run *run)
 {
     char rows[400];
-    if (run->model->left_out_count == 0 || run->told_redundant) {
+    const unsigned count = run->model->left_out_count - run->model->broken_count;
+    if (count == 0 || run->told_redundant) {
         return;
     }
     run->told_redundant = 1;
@@ -92,16 +93,14 @@ static void tell_rows(se3di_run *run)
         run->error, SE3D_LOG_INFO, SE3D_LOG_LEFT_OUT,
         "t = %g s: %u equation%s redundant but for the digits of %s data, and left out: "
         "%s",
-        run->model->time, (unsigned)run->model->left_out_count,
-        run->model->left_out_count == 1 ? " is" : "s are",
-        run->model->left_out_count == 1 ? "its" : "their", rows);
+        run->model->time, count, count == 1 ? " is" : "s are", count == 1 ? "its" : "their", rows);
 }
 
 se3d_status se3di_run_inform(se3di_run *run)
 {
     tell_rows(run);
     warn_of_rows(run);
-    run->equations.redundant |= run->model->left_out_count > 0;
+    run->equations.redundant |= run->model->left_out_count > run->model->broken_count;
     if (run->equations.redundant && !run->told_redundant) {
         run->told_redundant = 1;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_REDUNDANT,

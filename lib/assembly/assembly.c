@@ -124,7 +124,8 @@ static void sort_rows(se3di_assembly *assembly)
 {
     se3di_assembly_take_values(assembly);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        if (assembly->model->rows[k].function >= 0) {
+        const se3di_row *row = &assembly->model->rows[k];
+        if (row->function >= 0 && row->left_out != SE3DI_ROW_BROKEN) {
             assembly->timed_rows[assembly->timed_count++] = k;
         }
     }
@@ -171,6 +172,7 @@ se3d_status se3di_assembly_init(se3di_assembly *assembly, se3di_model *model,
         .moves_states = moves_states,
         .formulation = formulation,
         .topology_version = model->topology_version,
+        .break_version = model->break_version,
         .row_count = (uint32_t)model->row_count,
         .constraint_count = (uint32_t)model->constraint_slots.count,
         .place_count = (uint32_t)model->term_count,

@@ -32,7 +32,8 @@ typedef struct se3di_armature_place {
 typedef struct se3di_assembly {
     se3di_model *model;
     const se3di_formulation *formulation;
-    uint64_t topology_version; /* of the model this was built for */
+    uint64_t topology_version; /* of the model this was built for, */
+    uint64_t break_version;    /* and that, too */
     uint32_t body_count;       /* free bodies */
     uint32_t row_count;        /* constraint equations */
     uint32_t unknown_count;    /* body_count * block */
@@ -133,6 +134,13 @@ void se3di_assembly_get_velocity(const se3di_assembly *assembly, double *qdot);
 void se3di_assembly_set_velocity(se3di_assembly *assembly, const double *qdot);
 void se3di_assembly_get_acceleration(const se3di_assembly *assembly, double *qddot);
 void se3di_assembly_set_acceleration(se3di_assembly *assembly, const double *qddot);
+
+/* The model's structure is still the one that this was built for. */
+static inline int se3di_assembly_fits(const se3di_assembly *assembly)
+{
+    return assembly->topology_version == assembly->model->topology_version &&
+           assembly->break_version == assembly->model->break_version;
+}
 
 /* Name of a row: "pin.cd_x", or "joint 3.cd_x" if the constraint has no name. */
 void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size);

@@ -27,7 +27,7 @@ se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force,
     int32_t wants = effect->wants_derivative;
     memset(effect, 0, size);
     effect->wants_derivative = wants;
-    return classes[force->type]->eval(model, force, t, effect);
+    return force->released ? SE3D_OK : classes[force->type]->eval(model, force, t, effect);
 }
 
 int se3di_force_is_number(const se3di_force *force)

@@ -31,7 +31,8 @@ enum {
 
 double se3di_friction_limit(const se3di_force *force, int slips)
 {
-    return (slips ? force->mu : force->mu_static) * force->state[LOAD] + force->limit;
+    const double mu = slips ? force->mu : force->mu_static;
+    return force->released ? 0.0 : mu * force->state[LOAD] + force->limit;
 }
 
 static double stick_force(const se3di_force *force, double x)

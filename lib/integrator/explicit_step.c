@@ -29,7 +29,8 @@
 /* As motion->count has it. */
 size_t se3di_explicit_history_count(const se3di_assembly *assembly)
 {
-    const int has_tree = assembly->tree_count > 0 && assembly->model->left_out_count == 0;
+    const int has_tree = assembly->tree_count > 0 &&
+                         assembly->model->left_out_count == assembly->model->broken_count;
     const size_t count =
         has_tree ? assembly->tree_count + SE3DI_STATE_WORK : se3di_state_count(assembly);
     return PAST + VECTORS * count;

@@ -109,6 +109,7 @@ const se3di_motion se3di_motion_bodies = {
 
 const se3di_motion *se3di_motion_find(const se3di_equations *equations)
 {
-    return equations->tree && equations->assembly.model->left_out_count == 0 ? &se3di_motion_joints
-                                                                             : &se3di_motion_bodies;
+    const se3di_model *model = equations->assembly.model;
+    return equations->tree && model->left_out_count == model->broken_count ? &se3di_motion_joints
+                                                                           : &se3di_motion_bodies;
 }

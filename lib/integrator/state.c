@@ -142,7 +142,9 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     settings.any_multipliers = !has_power(&equations->assembly);
     se3di_kkt_set_settings(equations->kkt, &settings);
     equations->takes_rows = equations->has_loops && !(eps > ROWS_EPS);
-    const int needs_bodies = !equations->is_open_tree || equations->assembly.model->left_out_count;
+    const se3di_model *model = equations->assembly.model;
+    const int needs_bodies =
+        !equations->is_open_tree || model->left_out_count > model->broken_count;
     if (equations->assembly.formulation->block == 6 && needs_bodies) {
         se3di_assembly_eval_mass(&equations->assembly);
     }

@@ -85,14 +85,75 @@ void se3di_model_touch_state(se3di_model *model)
     model->contacts.step = 0.0;
 }
 
+void se3di_model_follow_breaks(se3di_model *model)
+{
+    model->left_out_count = model->broken_count = 0;
+    for (size_t k = 0; k < model->row_count; ++k) {
+        model->left_out_count += model->rows[k].left_out != 0;
+        model->broken_count += model->rows[k].left_out == SE3DI_ROW_BROKEN;
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const int32_t joint = model->forces[k].joint;
+        model->forces[k].released =
+            joint >= 0 && se3di_is_broken(&model->constraints[joint], model->rows);
+    }
+    ++model->break_version;
+}
+
 void se3di_model_take_all_rows(se3di_model *model)
 {
     for (size_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
-        model->rows[k].left_out = 0;
+        model->rows[k].left_out &= SE3DI_ROW_BROKEN;
     }
-    model->left_out_count = model->left_out_row = 0;
+    model->left_out_count = model->broken_count;
+    model->left_out_row = 0;
     model->left_out_gap = 0.0;
     model->ranks_known = 0;
+}
+
+/* It prescribes a coordinate of the joint, or couples it to others. */
+static int acts_on(const se3di_constraint *constraint, uint32_t joint)
+{
+    int acts = 0;
+    for (int k = 0; k < SE3D_COUPLER_TERMS_MAX; ++k) {
+        acts |= constraint->joints[k] == (int32_t)joint;
+    }
+    return acts;
+}
+
+/* Of what acts on several joints, one that is broken is enough. */
+static int acts_on_broken(const se3di_model *model, const se3di_constraint *constraint)
+{
+    int broken = 0;
+    for (int k = 0; k < SE3D_COUPLER_TERMS_MAX; ++k) {
+        const int32_t joint = constraint->joints[k];
+        broken |= joint >= 0 && se3di_is_broken(&model->constraints[joint], model->rows);
+    }
+    return broken;
+}
+
+static void leave_out(se3di_model *model, const se3di_constraint *constraint, int broken)
+{
+    for (uint32_t k = 0; k < constraint->row_count; ++k) {
+        const uint32_t row = constraint->row_begin + k;
+        model->rows[row].left_out = broken ? SE3DI_ROW_BROKEN : 0;
+        model->lambda[row] = 0.0;
+    }
+}
+
+void se3di_model_break(se3di_model *model, uint32_t joint, int32_t broken)
+{
+    leave_out(model, &model->constraints[joint], broken);
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        if (acts_on(constraint, joint)) {
+            leave_out(model, constraint, acts_on_broken(model, constraint));
+        }
+    }
+    se3di_model_follow_breaks(model);
+    se3di_model_take_all_rows(model);
+    model->history_tag = 0;
+    ++model->history_stamp;
 }
 
 void se3di_model_touch_poses(se3di_model *model)

@@ -80,9 +80,12 @@ typedef struct se3di_row {
     int32_t function; /* dense index, -1: `value` */
     int32_t wrap;     /* 1: one angle; Phi is taken modulo 2 pi into (-pi, pi] */
     double value;     /* f if there is no function */
-    int32_t left_out; /* 1: not among the equations, see nonlinear/ranks.h */
+    int32_t left_out; /* not 0: not among the equations, SE3DI_ROW_DEPENDENT or _BROKEN */
     int32_t reserved;
 } se3di_row;
+
+/* Why a row is left out: it depends on others (nonlinear/ranks.h), or its joint broke. */
+enum { SE3DI_ROW_DEPENDENT = 1, SE3DI_ROW_BROKEN = 2 };
 
 typedef struct se3di_joint_frames {
     double point_i[3], point_j[3];          /* body frames */
@@ -121,6 +124,10 @@ typedef struct se3di_constraint {
     uint32_t user_first;                      /* the callback's bodies begin here in `bodies` */
     int32_t has_value;                        /* one row, whose prescribed value is the user's */
     int32_t pattern;                          /* se3di_row_pattern */
+    uint32_t user_first;   /* the callback's bodies begin here in `bodies` */
+    int32_t has_value;     /* one row, whose prescribed value is the user's */
+    int32_t pattern;       /* se3di_row_pattern */
+    double break_limit[2]; /* joints: of the reaction force [N] and moment [N m]; 0: none */
 } se3di_constraint;
 
 /* The first callback of a user constraint that failed since an analysis began. */
@@ -129,6 +136,12 @@ typedef struct se3di_user_failure {
     int32_t status; /* se3d_status; 0: none */
     uint32_t constraint;
 } se3di_user_failure;
+
+/* The constraint is a joint that broke, or acts on one. */
+static inline int se3di_is_broken(const se3di_constraint *constraint, const se3di_row *rows)
+{
+    return constraint->row_count > 0 && rows[constraint->row_begin].left_out == SE3DI_ROW_BROKEN;
+}
 
 /* The turn counter of a joint angle. */
 typedef struct se3di_angle {
@@ -200,6 +213,8 @@ typedef struct se3di_force {
     void *ctx;
     se3di_tyre *tyre;                 /* owned; NULL: no tyre */
     double state[SE3DI_FORCE_STATES]; /* friction, stop: see their files */
+    int32_t released;                 /* 1: its joint broke, it does nothing */
+    int32_t reserved;
 } se3di_force;
 
 #define SE3DI_FORCE_LENGTH 2 /* se3di_force.coordinate */
@@ -229,6 +244,8 @@ typedef struct se3di_model {
     int32_t remembers;       /* an analysis may have left something in forces, shapes, contacts */
     int32_t ranks_known;     /* which rows are left out was decided; 0 after edits, new poses */
     uint32_t left_out_count; /* rows that are */
+    uint32_t broken_count;   /* those of them whose joint broke */
+    uint64_t break_version;  /* changes when joints break or are whole again */
     double left_out_gap;     /* the largest violation of those in an accepted state, relative, */
     uint32_t left_out_row;   /* its row; 0 after it was told */
     int32_t shows_before;    /* 1: the halves of what force elements remember are exchanged, see
@@ -391,6 +408,12 @@ void se3di_model_touch_state(se3di_model *model);
 void se3di_model_touch_poses(se3di_model *model);
 /* No row is left out of the equations; which ones are has to be decided. */
 void se3di_model_take_all_rows(se3di_model *model);
+
+/* A joint breaks (1) or is whole again (0), and with it what prescribes or couples its coordinates:
+ * their rows are left out, or not; the state stays, what steps remember of it does not hold. */
+void se3di_model_break(se3di_model *model, uint32_t joint, int32_t broken);
+/* Which rows are left out was set: count them, and tell the force elements of broken joints. */
+void se3di_model_follow_breaks(se3di_model *model);
 
 /* Other things act on the state from here on; what is remembered of it stays. */
 void se3di_model_touch_inputs(se3di_model *model);

@@ -46,7 +46,7 @@ static void save_ranks(se3di_saved *saved, const se3di_model *model)
 {
     uint8_t *left_out = saved->left_out.data;
     for (size_t k = 0; k < saved->left_out.count; ++k) {
-        left_out[k] = model->rows[k].left_out != 0;
+        left_out[k] = (uint8_t)model->rows[k].left_out;
     }
     saved->ranks_known = model->ranks_known;
     saved->left_out_count = model->left_out_count;
@@ -57,9 +57,17 @@ static void save_ranks(se3di_saved *saved, const se3di_model *model)
 static void restore_ranks(const se3di_saved *saved, se3di_model *model)
 {
     const uint8_t *left_out = saved->left_out.data;
-    se3di_model_take_all_rows(model);
+    int other = 0; /* joints were whole or broken */
+    for (size_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
+        other |= saved->left_out.count == 0 && model->rows[k].left_out == SE3DI_ROW_BROKEN;
+        model->rows[k].left_out &= saved->left_out.count > 0 ? SE3DI_ROW_BROKEN : 0;
+    }
     for (size_t k = 0; k < saved->left_out.count; ++k) {
+        other |= (model->rows[k].left_out ^ left_out[k]) & SE3DI_ROW_BROKEN;
         model->rows[k].left_out = left_out[k];
+    }
+    if (other) {
+        se3di_model_follow_breaks(model);
     }
     model->ranks_known = saved->ranks_known;
     model->left_out_count = saved->left_out_count;

@@ -93,7 +93,7 @@ static int has_loops(const se3di_tree *tree)
 {
     int found = 0;
     for (uint32_t k = 0; k < tree->constraint_count; ++k) {
-        found |= tree->tree_of[k] < 0;
+        found |= se3di_tree_leaves(tree, k);
     }
     return found;
 }
@@ -163,7 +163,7 @@ static int prefers_joints(const se3di_equations *equations)
         joints |= tree->nodes[k].constraint >= 0;
     }
     if (!joints || equations->joints == LEFT || equations->friction.count > 0 ||
-        tree->foreign_armature >= 0 || equations->assembly.model->left_out_count > 0) {
+        tree->foreign_armature >= 0 || tree->model->left_out_count > tree->model->broken_count) {
         return 0;
     }
     return !equations->has_loops ||
@@ -587,7 +587,9 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
         assembly->levels ? solve_driven(equations, t) : solve_free(equations, t);
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
-    equations->redundant |= status == SE3D_INFO_REDUNDANT;
+    equations->redundant |=
+        status == SE3D_INFO_REDUNDANT &&
+        se3di_kkt_get_dependent_rows(equations->kkt) > (int32_t)assembly->model->broken_count;
     SE3DI_TRY(se3di_friction_system_finish(equations, t));
     if (assembly->row_count > 0) {
         memcpy(assembly->model->lambda, equations->l, assembly->row_count * sizeof *equations->l);

@@ -43,7 +43,8 @@ typedef struct decision {
 /* Rows of drivers and functions of time move the mechanism, callbacks' are the user's. */
 static int is_geometric(const se3di_model *model, const se3di_constraint *constraint)
 {
-    int geometric = strcmp(constraint->type, "driver") != 0;
+    int geometric =
+        strcmp(constraint->type, "driver") != 0 && !se3di_is_broken(constraint, model->rows);
     for (uint32_t r = 0; r < constraint->row_count; ++r) {
         const se3di_row *row = &model->rows[constraint->row_begin + r];
         geometric = geometric && row->function < 0 && row->term_count > 0;
@@ -51,6 +52,7 @@ static int is_geometric(const se3di_model *model, const se3di_constraint *constr
     return geometric;
 }
 
+/* Rows that broke are among them: nothing takes them back. */
 static int is_driving(const se3di_model *model, const se3di_constraint *constraint)
 {
     return !is_geometric(model, constraint) && model->rows[constraint->row_begin].term_count > 0;
@@ -58,8 +60,10 @@ static int is_driving(const se3di_model *model, const se3di_constraint *constrai
 
 static void leave_out(se3di_model *model, uint32_t row, int32_t left_out)
 {
-    model->left_out_count += (uint32_t)(left_out - model->rows[row].left_out);
-    model->rows[row].left_out = left_out;
+    if (model->rows[row].left_out != SE3DI_ROW_BROKEN) {
+        model->left_out_count += (uint32_t)(left_out - model->rows[row].left_out);
+        model->rows[row].left_out = left_out;
+    }
 }
 
 static void put_back(const decision *d, const se3di_frame *frames)
@@ -430,7 +434,7 @@ void se3di_ranks_describe(const se3di_model *model, char *text, size_t size)
     for (uint32_t k = 0; k < model->row_count; ++k) {
         const size_t used = strlen(text);
         char name[128];
-        if (!model->rows[k].left_out || used + 64 > size) {
+        if (model->rows[k].left_out != SE3DI_ROW_DEPENDENT || used + 64 > size) {
             continue;
         }
         se3di_row_name(model, k, name, sizeof name);

@@ -69,7 +69,8 @@ void se3di_left_out_follow(se3di_model *model)
 {
     const double size = model->left_out_count > 0 ? se3di_model_get_size(model) : 0.0;
     for (uint32_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
-        const double gap = model->rows[k].left_out ? se3di_row_measure(model, k, size) : 0.0;
+        const int depends = model->rows[k].left_out == SE3DI_ROW_DEPENDENT;
+        const double gap = depends ? se3di_row_measure(model, k, size) : 0.0;
         if (gap > model->left_out_gap) {
             model->left_out_gap = gap;
             model->left_out_row = k;

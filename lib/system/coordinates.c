@@ -171,12 +171,14 @@ size_t se3d_coordinates_count_loop_rows(const se3d_coordinates *coordinates)
 /* The structure is still the one that the tree was built for. */
 static se3d_status check_structure(const se3d_coordinates *c)
 {
-    if (c->tree.topology_version == c->system->model.topology_version) {
+    const se3di_model *model = &c->system->model;
+    if (c->tree.topology_version == model->topology_version &&
+        c->tree.break_version == model->break_version) {
         return SE3D_OK;
     }
     return SE3DI_FAIL(c->system, SE3D_ERR_STATE,
-                      "elements of the system came, went or changed since these coordinates were "
-                      "made: make them anew");
+                      "elements of the system came, went, changed or broke since these coordinates "
+                      "were made: make them anew");
 }
 
 static const se3di_tree_node *find_node(const se3di_tree *tree, size_t velocity)

@@ -70,7 +70,7 @@ static se3d_status find(const se3d_system *system, se3d_constraint handle, const
     return SE3D_OK;
 }
 
-static int is_joint(const char *type)
+int se3di_is_joint_type(const char *type)
 {
     int found = 0;
     for (int k = 0; k < SE3DI_JOINT_TYPE_COUNT; ++k) {
@@ -84,7 +84,7 @@ se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
 {
     const se3di_constraint *data;
     SE3DI_TRY(find(system, joint, def, &data));
-    if (!is_joint(data->type)) {
+    if (!se3di_is_joint_type(data->type)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_model *model = &system->model;
@@ -103,6 +103,8 @@ se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
     full.angle0 = data->angle >= 0 ? se3di_angle_origin(model, (uint32_t)data->angle) : 0.0;
     full.pitch = data->pitch;
     full.distance = data->distance;
+    full.break_force = data->break_limit[0];
+    full.break_moment = data->break_limit[1];
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }
 

@@ -14,6 +14,8 @@ se3d_material se3di_material_handle(const se3di_model *model, int32_t material);
 se3d_road se3di_road_handle(const se3di_model *model, int32_t road);
 se3d_wheel se3di_wheel_handle(const se3di_model *model, int32_t wheel);
 
+/* The type is that of a joint between two bodies. */
+int se3di_is_joint_type(const char *type);
 /* The angle of a definition with a second reference direction: at creation the joint has this one
  * again, turns included. */
 double se3di_angle_origin(const se3di_model *model, uint32_t angle);

@@ -144,6 +144,6 @@ se3d_status se3d_solver_get_event_record_sized(se3d_solver *solver, size_t index
 se3d_status se3d_solver_clear_event_records(se3d_solver *solver)
 {
     SE3DI_EDIT_OF(solver);
-    solver->run.events.record_count = 0;
+    se3di_events_clear(&solver->run.events);
     return SE3D_OK;
 }

@@ -5,7 +5,10 @@
 #include "joint/rows.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
+#include "system/definition.h"
 #include "system/system_internal.h"
+
+#include <float.h>
 
 void se3d_joint_def_init(se3d_joint_def *def, size_t size)
 {
@@ -83,6 +86,12 @@ static se3d_status check_parameters(se3d_system *system, uint32_t flags, const u
     return SE3D_OK;
 }
 
+static se3d_status check_limits(se3d_system *system, double force, double moment)
+{
+    SE3DI_TRY(se3di_check_range(system, "break_force", force, 0.0, DBL_MAX));
+    return se3di_check_range(system, "break_moment", moment, 0.0, DBL_MAX);
+}
+
 static se3d_status joint_create(se3d_system *system, const char *function, se3di_joint_type_id id,
                                 const se3d_joint_def *user, se3d_constraint *joint)
 {
@@ -104,7 +113,10 @@ static se3d_status joint_create(se3d_system *system, const char *function, se3di
     se3di_draft_init(&draft, type->name, def.name, bodies[0], bodies[1]);
     SE3DI_TRY(check_frames(system, &def, type->flags, bodies, &draft.constraint.frames));
     SE3DI_TRY(check_parameters(system, type->flags, bodies, &draft.constraint.frames, &def));
+    SE3DI_TRY(check_limits(system, def.break_force, def.break_moment));
     se3di_joint_draft(&system->model, type, &def, &draft);
+    draft.constraint.break_limit[0] = def.break_force;
+    draft.constraint.break_limit[1] = def.break_moment;
     return se3di_constraint_add(system, &draft, joint);
 }
 
@@ -137,6 +149,62 @@ se3d_status se3d_joint_def_set_frame(const se3d_system *system, se3d_joint_def *
     return se3di_joint_def_place(&frames[i], &frames[j], at, unit, ref, def)
                ? SE3D_OK
                : SE3D_ERR_INVALID_ARGUMENT;
+}
+
+/* A joint between two bodies. */
+static se3d_status find_pair(se3d_system *system, se3d_constraint joint, uint32_t *index)
+{
+    SE3DI_TRY(se3di_find_constraint(system, "joint", joint, index));
+    const char *type = system->model.constraints[*index].type;
+    return se3di_is_joint_type(type)
+               ? SE3D_OK
+               : SE3DI_FAIL_OF(system, "joint", SE3D_ERR_INVALID_ARGUMENT,
+                               " is a %s, must be a joint between two bodies", type);
+}
+
+se3d_status se3d_joint_set_break(se3d_system *system, se3d_constraint joint, double force,
+                                 double moment)
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    SE3DI_TRY(find_pair(system, joint, &index));
+    SE3DI_TRY(check_limits(system, force, moment));
+    system->model.constraints[index].break_limit[0] = force;
+    system->model.constraints[index].break_limit[1] = moment;
+    se3di_model_touch_inputs(&system->model);
+    return SE3D_OK;
+}
+
+se3d_status se3d_joint_get_broken(const se3d_system *system, se3d_constraint joint, int32_t *broken)
+{
+    uint32_t index;
+    if (broken) {
+        *broken = 0;
+    }
+    SE3DI_TRY(
+        se3di_read_index(SE3DI_SLOTS(system, constraint), SE3DI_HANDLE(joint), broken, &index));
+    *broken = se3di_is_broken(&system->model.constraints[index], system->model.rows);
+    return SE3D_OK;
+}
+
+se3d_status se3d_joint_set_broken(se3d_system *system, se3d_constraint joint, int32_t broken)
+{
+    SE3DI_SET(system);
+    uint32_t index;
+    SE3DI_TRY(find_pair(system, joint, &index));
+    if (broken != 0 && broken != 1) {
+        return SE3DI_FAIL_OF(system, "broken", SE3D_ERR_INVALID_ARGUMENT, " = %d, must be 0 or 1",
+                             (int)broken);
+    }
+    se3di_model *model = &system->model;
+    if (se3di_is_broken(&model->constraints[index], model->rows) == broken) {
+        return SE3D_OK;
+    }
+    se3di_model_break(model, index, broken);
+    if (!broken) {
+        se3di_model_touch_poses(model);
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3d_joint_get_coordinate(const se3d_system *system, se3d_constraint joint,

@@ -105,10 +105,11 @@ static void code_array(se3di_coder *c, const saved_array *a, size_t numbers)
         } else if (a->size == sizeof *indices) {
             se3di_code_uint32(c, indices + k);
         } else if (a->size == sizeof *bytes) {
-            int32_t flag = bytes[k];
-            se3di_code_flag(c, &flag);
+            uint32_t flag = bytes[k];
+            se3di_code_uint32(c, &flag);
+            c->failed |= flag > SE3DI_ROW_BROKEN;
             if (c->in) {
-                bytes[k] = flag != 0;
+                bytes[k] = (uint8_t)(flag & UINT8_MAX);
             }
         } else {
             se3di_code_numbers(c, (double *)a->array->data + k * numbers, numbers);
@@ -269,15 +270,33 @@ static int are_near(const se3di_snapshot_near *near, const se3di_model *model)
     return isfinite(near->margin) && are_finite(&near->reference, 1);
 }
 
+/* What broke did so with all of its rows. */
+static int break_whole(const se3di_saved *state, const se3di_model *model)
+{
+    const uint8_t *flags = state->left_out.data;
+    for (size_t k = 0; state->left_out.count > 0 && k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        uint32_t broken = 0;
+        for (uint32_t r = 0; r < c->row_count; ++r) {
+            broken += flags[c->row_begin + r] == SE3DI_ROW_BROKEN;
+        }
+        if (broken > 0 && broken < c->row_count) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static int are_left_out(const se3di_saved *state, const se3di_model *model)
 {
     const uint8_t *flags = state->left_out.data;
     size_t count = 0;
     for (size_t k = 0; k < state->left_out.count; ++k) {
-        count += flags[k];
+        count += flags[k] != 0;
     }
     return count == state->left_out_count &&
            (state->left_out.count == 0 || state->left_out.count == model->row_count) &&
+           break_whole(state, model) &&
            (state->left_out_row < model->row_count ||
             (state->left_out_row == 0 && !(state->left_out_gap > 0.0)));
 }

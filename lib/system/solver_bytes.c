@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What a solver knows beside the state of its system, as bytes: what it has counted and told, the
  * method it has come to, its events with their records and what was seen of the step under way. */
+#include "analysis/breaks.h"
 #include "base/coder.h"
 #include "base/hash.h"
 #include "system/solver.h"
@@ -8,7 +9,7 @@
 #include <math.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(5)
+#define VERSION UINT64_C(6)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
@@ -72,23 +73,48 @@ static void code_start(se3di_coder *c, se3di_run *run)
     code_body(c, &run->model->body_slots, &start->deflected);
 }
 
-static void code_record(se3di_coder *c, se3di_events *events, se3d_event_record *record)
+/* Of a joint that broke, which may be gone since. */
+static void code_broken(se3di_coder *c, se3di_events *events, se3d_event_record *record)
 {
-    const uint32_t found =
+    const se3di_slots *slots = &events->run->model->constraint_slots;
+    uint32_t joint = se3di_slots_find(slots, record->joint.index1, record->joint.generation);
+    se3di_code_uint32(c, &joint);
+    if (c->in) {
+        record->event = (se3d_event){0, 0};
+        record->joint = (se3d_constraint){0, 0};
+        record->name = "";
+        c->failed |= joint < slots->count && se3di_breaks_name_record(events, joint, record) < 0;
+    }
+}
+
+static void code_event(se3di_coder *c, const se3di_events *events, se3d_event_record *record)
+{
+    uint32_t event =
         se3di_slots_find(&events->slots, record->event.index1, record->event.generation);
-    uint32_t event = found;
     se3di_code_uint32(c, &event);
-    se3di_code_numbers(c, &record->time, 1);
-    se3di_code_numbers(c, &record->value, 1);
-    se3di_code_int32(c, &record->direction);
-    se3di_code_int32(c, &record->action);
     if (c->in && event < events->slots.count) {
         const se3di_handle handle = se3di_slots_handle(&events->slots, event);
         const char *name = events->list[event].name;
         record->event = (se3d_event){handle.index1, handle.generation};
+        record->joint = (se3d_constraint){0, 0};
         record->name = name ? name : "";
     }
     c->failed |= event >= events->slots.count;
+}
+
+static void code_record(se3di_coder *c, se3di_events *events, se3d_event_record *record)
+{
+    int32_t broke = !c->in && record->joint.index1 != 0;
+    se3di_code_flag(c, &broke);
+    if (broke) {
+        code_broken(c, events, record);
+    } else {
+        code_event(c, events, record);
+    }
+    se3di_code_numbers(c, &record->time, 1);
+    se3di_code_numbers(c, &record->value, 1);
+    se3di_code_int32(c, &record->direction);
+    se3di_code_int32(c, &record->action);
 }
 
 /* The step that was looked at last. */
@@ -103,7 +129,7 @@ static void code_look(se3di_coder *c, se3di_events *events)
     se3di_code_numbers(c, &events->looked_time, 1);
     se3di_code_numbers(c, events->t, SE3DI_CROSSING_NODES);
     if (events->node_count != 0) { /* of a solver that has run */
-        se3di_code_numbers(c, events->g, SE3DI_CROSSING_NODES * events->slots.count);
+        se3di_code_numbers(c, events->g, (size_t)SE3DI_CROSSING_NODES * se3di_events_count(events));
     }
     if (c->in) {
         events->looked_stamp =
@@ -115,7 +141,7 @@ static void code_look(se3di_coder *c, se3di_events *events)
         se3di_code_numbers(c, &hit->time, 1);
         se3di_code_uint32(c, &hit->event);
         se3di_code_int32(c, &hit->direction);
-        c->failed |= hit->event >= events->slots.count;
+        c->failed |= hit->event >= se3di_events_count(events);
     }
 }
 
@@ -123,15 +149,19 @@ static void code_look(se3di_coder *c, se3di_events *events)
 static se3d_status code_lengths(se3di_coder *c, se3di_events *events)
 {
     size_t count = events->slots.count, hits = events->hit_count, records = events->record_count;
+    size_t breaks = events->break_count;
     se3di_code_count(c, &count, 1.0);
+    se3di_code_count(c, &breaks, 0.0);
     se3di_code_count(c, &hits, 3.0);
     se3di_code_count(c, &records, 5.0);
     if (!c->in) {
         return SE3D_OK;
     }
-    if (c->failed || count != events->slots.count || hits > SE3DI_CROSSINGS_MAX * count) {
+    if (c->failed || count != events->slots.count || breaks != events->break_count ||
+        hits > SE3DI_CROSSINGS_MAX * (count + breaks)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    se3di_events_clear(events);
     void *memory = events->records;
     const se3d_status status =
         se3di_array_reserve(&events->run->model->allocator, &memory, &events->record_capacity,
@@ -149,7 +179,7 @@ static se3d_status code_events(se3di_coder *c, se3di_events *events)
     for (size_t k = 0; k < events->slots.count; ++k) {
         se3di_code_int32(c, &events->list[k].side);
     }
-    if (events->slots.count > 0) {
+    if (se3di_events_count(events) > 0) {
         code_look(c, events);
     }
     for (size_t k = 0; k < events->record_count; ++k) {
@@ -226,7 +256,8 @@ static se3d_status check_frame(se3d_system *system, se3di_coder *c)
 static void forget(se3di_run *run)
 {
     run->equations.counters = (se3di_counters){0};
-    run->events.record_count = run->events.hit_count = 0;
+    se3di_events_clear(&run->events);
+    run->events.hit_count = 0;
     run->events.looked = run->events.node_count = 0;
     run->events.looked_stamp = run->model->history_stamp - 1;
     run->left = NULL;

@@ -100,7 +100,7 @@ se3d_status se3di_tree_loops_count_members(se3di_tree *tree, se3di_assembly *ass
     int32_t *mark = se3di_alloc(allocator, tree->count, sizeof *mark);
     *members = 0;
     for (uint32_t k = 0; mark && k < tree->constraint_count; ++k) {
-        if (tree->tree_of[k] < 0) {
+        if (se3di_tree_leaves(tree, k)) {
             (void)mark_path(&loops, k, mark, members);
         }
     }
@@ -114,7 +114,7 @@ static void measure_paths(se3di_tree_loops *loops, int32_t *mark)
     const se3di_tree *tree = loops->tree;
     const se3di_model *model = tree->model;
     for (uint32_t k = 0; k < tree->constraint_count; ++k) {
-        if (tree->tree_of[k] >= 0) {
+        if (!se3di_tree_leaves(tree, k)) {
             continue;
         }
         const size_t rows = model->constraints[k].row_count;
@@ -195,7 +195,7 @@ static se3d_status build(se3di_tree_loops *loops)
     list_structure(loops, structure);
     se3d_status status = se3di_arrays_alloc(allocator, structure, LOOPS_STRUCTURE);
     for (uint32_t k = 0; status >= 0 && k < tree->constraint_count; ++k) {
-        if (tree->tree_of[k] < 0) {
+        if (se3di_tree_leaves(tree, k)) {
             add_loop(loops, k, mark);
         }
     }

@@ -401,6 +401,7 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
 {
     *tree = (se3di_tree){.model = model,
                          .topology_version = model->topology_version,
+                         .break_version = model->break_version,
                          .moves_states = moves_states,
                          .acts = 1,
                          .body_count = (uint32_t)model->body_slots.count,

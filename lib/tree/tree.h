@@ -106,8 +106,8 @@ struct se3di_tree_core;
 
 typedef struct se3di_tree {
     se3di_model *model;
-    uint64_t topology_version;
-    uint32_t count; /* nodes */
+    uint64_t topology_version, break_version; /* of the model this was built for */
+    uint32_t count;                           /* nodes */
     uint32_t q_count, v_count;
     uint32_t branch_count;
     uint32_t body_count;  /* dense */
@@ -146,6 +146,14 @@ typedef struct se3di_tree {
     se3di_frame *frames; /* [bodies]: scratch */
     const struct se3di_tree_core *core;
 } se3di_tree;
+
+/* The constraint is a loop's: neither on the tree nor broken. */
+static inline int se3di_tree_leaves(const se3di_tree *tree, uint32_t constraint)
+{
+    const se3di_model *model = tree->model;
+    return tree->tree_of[constraint] < 0 &&
+           !se3di_is_broken(&model->constraints[constraint], model->rows);
+}
 
 /* Build the tree of a model; on failure nothing is held. Coordinates can be read at once.
  * @return OK, NO_MEMORY */

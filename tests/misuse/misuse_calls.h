@@ -67,6 +67,9 @@ CALL(driver_get_effort, a->system, a->use.driver, a->out[0])
 CALL(driver_create, a->system, a->def, a->out[0])
 CALL(joint_get_coordinate, a->system, a->use.pin, SE3D_JOINT_COORDINATE_ANGLE, a->out[0], a->out[1],
      a->out[2])
+CALL(joint_set_break, a->system, a->use.pin, a->number, 0.0)
+CALL(joint_set_broken, a->system, a->use.pin, 0)
+CALL(joint_get_broken, a->system, a->use.pin, a->out[0])
 /* What the lists create: the call and its definition. */
 #define CREATE_WITH(function, name)                                                                \
     CALL(function, a->system, a->def, a->out[0])                                                   \
@@ -558,6 +561,9 @@ static const row rows[] = {
     {"se3d_driver_get_effort", call_driver_get_effort, "sco0", NULL, NULL},
     {"se3d_driver_create", call_driver_create, "SDh0", define_driver, driver_fields},
     {"se3d_joint_get_coordinate", call_joint_get_coordinate, "sc", NULL, NULL},
+    {"se3d_joint_set_break", call_joint_set_break, "Scn", NULL, NULL},
+    {"se3d_joint_set_broken", call_joint_set_broken, "Sc", NULL, NULL},
+    {"se3d_joint_get_broken", call_joint_get_broken, "sco0", NULL, NULL},
     {"se3d_joint_create_coupler", call_joint_create_coupler, "SDh0", define_coupler,
      coupler_fields},
     {"se3d_joint_create_rack_pinion", call_joint_create_rack_pinion, "Scdnh0", NULL, NULL},

@@ -327,6 +327,21 @@ static const bad_input table[] = {
      3,
      66,
      {"`tip` is not a marker of `ground`"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, at: [0,0,0], break: "
+     "{}}]\n",
+     3,
+     77,
+     {"joints[0].break: has no limit, must have `force`, `moment` or both"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, at: [0,0,0], break: "
+     "{force: 0}}]\n",
+     3,
+     85,
+     {"joints[0].break.force: is 0, must be finite and > 0"}},
+    {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, at: [0,0,0], break: "
+     "{torque: 3}}]\n",
+     3,
+     78,
+     {"joints[0].break: the key `torque` is unknown"}},
     {"se3d: 1\n" BAR "joints: [{type: spherical, body_i: ground, body_j: bar, at: [0,0,0], pitch: "
      "1}]\n",
      3,

@@ -236,6 +236,9 @@ static void offer_element(offer *o, const se3d_model *model, const se3di_element
         } else {
             offer_coordinates(o, model->system, entry->constraint);
         }
+        if (entry->break_channel) {
+            offer_one(o, "broken", SE3DI_JOINT_BROKEN);
+        }
         break;
     case SE3DI_ELEMENT_CONSTRAINT:
         offer_names(o, reaction_names);

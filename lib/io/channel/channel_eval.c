@@ -95,6 +95,14 @@ static se3d_status ask_wrench(const se3di_channel *c, const se3d_system *system,
     return SE3D_OK;
 }
 
+static se3d_status ask_broken(const se3di_channel *c, const se3d_system *system, double *number)
+{
+    int32_t broken = 0;
+    const se3d_status status = se3d_joint_get_broken(system, c->constraint, &broken);
+    *number = broken;
+    return status;
+}
+
 static se3d_status ask_element(se3di_question question, const se3di_channel *c,
                                const se3d_system *system, double numbers[SE3DI_ANSWER_NUMBERS])
 {
@@ -107,6 +115,8 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
     case SE3DI_ASK_JOINT_DISPLACEMENT:
         return se3d_joint_get_coordinate(system, c->constraint, SE3D_JOINT_COORDINATE_DISPLACEMENT,
                                          numbers, numbers + 1, NULL);
+    case SE3DI_ASK_JOINT_BROKEN:
+        return ask_broken(c, system, numbers);
     case SE3DI_ASK_DRIVER_VALUE:
         return se3d_driver_get_value(system, c->constraint, numbers);
     case SE3DI_ASK_DRIVER_EFFORT:

@@ -64,6 +64,7 @@ typedef struct se3di_element_entry {
     double point_j[3];
     double axis_i[3]; /* 0: it has none */
     double axis_j[3];
+    const char *break_channel; /* joint with limits: the channel that tells whether it broke */
 } se3di_element_entry;
 
 /* What `modes` writes. */

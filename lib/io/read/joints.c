@@ -54,6 +54,8 @@ static const se3di_key joint_keys[] = {
      .types = " distance revolute_spherical ", .text = "[m]"},
     {"distance", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_joint_def, distance),
      .types = " revolute_cylindrical ", .text = "[m]"},
+    {"break", SE3DI_KIND_OBJECT, .types = PAIRS, .object = "breakage",
+     .text = "it breaks where its reaction passes one of these limits, in dynamics"},
     {"joint_1", SE3DI_KIND_JOINT, .types = " gear ", .text = "a joint with an angle"},
     {"joint_2", SE3DI_KIND_JOINT, .types = " gear ", .text = "another joint with an angle"},
     {"ratio", SE3DI_KIND_NUMBER, .types = " gear ",
@@ -72,6 +74,17 @@ const se3di_object se3di_object_joint = {
     "A joint between two bodies, by a global frame at the given pose or by local ones; or "
          "between joints.",
     joint_keys, joint_types,
+    NULL};
+static const se3di_key breakage_keys[] = {
+    {"force", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_joint_def, break_force),
+     .standard = "no limit", .text = "of the force of the reaction [N]"},
+    {"moment", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_joint_def, break_moment),
+     .standard = "no limit", .text = "of its moment about the joint point on body j [N m]"},
+    {.key = NULL}};
+const se3di_object se3di_object_breakage = {
+    "breakage",
+    "Limits at which a joint breaks.",
+    breakage_keys, NULL,
     NULL};
 /* clang-format on */
 

@@ -28,6 +28,7 @@
     X(flow)                                                                                        \
     X(body)                                                                                        \
     X(term)                                                                                        \
+    X(breakage)                                                                                    \
     X(joint)                                                                                       \
     X(driver)                                                                                      \
     X(constraint)                                                                                  \

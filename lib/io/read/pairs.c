@@ -2,6 +2,7 @@
 /* Joints between two bodies, by a global frame or locally. */
 #include "io/read/pairs.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "io/base/rotation.h"
@@ -178,6 +179,29 @@ static const joint_type *find_type(const char *name)
     return NULL;
 }
 
+/* Its limits, and the channel that tells whether they were passed. */
+static bool read_break(se3di_reader *reader, const se3di_node *node, se3d_joint_def *def,
+                       se3di_element_entry *entry)
+{
+    const se3di_node *limits = se3di_node_get(node, "break");
+    char channel[400];
+    if (!limits) {
+        return true;
+    }
+    if (!se3di_read_keys(reader, limits, &se3di_object_breakage) ||
+        !se3di_read_fields(reader, limits, &se3di_object_breakage, NULL, "se3d_joint_def", def)) {
+        return false;
+    }
+    if (!(def->break_force > 0.0) && !(def->break_moment > 0.0)) {
+        return se3di_reader_fail(reader, limits,
+                                 "has no limit, must have `force`, `moment` or "
+                                 "both");
+    }
+    snprintf(channel, sizeof channel, "%s.broken", entry->name);
+    entry->break_channel = se3di_iopool_copy(reader->pool, channel, strlen(channel));
+    return entry->break_channel ? true : se3di_reader_fail_memory(reader);
+}
+
 bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *name,
                      se3di_element_entry *entry)
 {
@@ -193,7 +217,7 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     def.name = entry->name;
     def.body_i = bodies[0]->body;
     def.body_j = bodies[1]->body;
-    if (!read_sizes(reader, node, type, &def)) {
+    if (!read_sizes(reader, node, type, &def) || !read_break(reader, node, &def, entry)) {
         return false;
     }
     if (is_local(node) ? !read_local(reader, node, type, bodies, &def)

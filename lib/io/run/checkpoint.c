@@ -151,11 +151,23 @@ static void pack_analyses(se3di_coder *p, se3di_runner *r)
     }
 }
 
+/* The text, not a joint of that name. */
+static bool is_event(const se3d_model *model, const char *name)
+{
+    for (size_t k = 0; k < model->event_count; ++k) {
+        if (model->events[k].name == name) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void pack_event(se3di_coder *p, const se3d_model *model, se3d_run_event *event)
 {
     size_t entry = 0;
-    while (!p->in && entry + 1 < model->event_count && model->events[entry].name != event->name) {
-        ++entry;
+    if (!p->in) {
+        const bool broke = model->event_count == 0 || !is_event(model, event->name);
+        entry = se3di_run_event_find_kind(model, event->name, broke);
     }
     se3di_code_size(p, &entry);
     se3di_code_numbers(p, &event->time, 1);
@@ -163,11 +175,10 @@ static void pack_event(se3di_coder *p, const se3d_model *model, se3d_run_event *
     se3di_code_size(p, &event->analysis);
     se3di_code_int32(p, &event->direction);
     se3di_code_int32(p, &event->stopped);
-    if (entry >= model->event_count) {
+    if (entry >= se3di_run_event_count_kinds(model)) {
         p->failed = 1;
     } else if (p->in) {
-        event->name = model->events[entry].name;
-        event->channel = model->events[entry].channel;
+        se3di_run_event_set_kind(model, entry, event);
     }
 }
 

@@ -198,16 +198,6 @@ static se3d_status open_events(se3di_runner *r)
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
-/* If nothing moves there are no events. */
-static bool has_events(const se3d_model *model)
-{
-    bool moves = false;
-    for (size_t k = 0; k < model->analysis_count; ++k) {
-        moves = moves || se3di_analysis_has_motion(&model->analyses[k]);
-    }
-    return moves && model->event_count > 0;
-}
-
 static se3d_status open_files(se3di_runner *r)
 {
     se3d_model *model = r->model;
@@ -228,7 +218,7 @@ static se3d_status open_files(se3di_runner *r)
             return status;
         }
     }
-    return has_events(model) ? open_events(r) : SE3D_OK;
+    return se3di_event_list_is_wanted(model) ? open_events(r) : SE3D_OK;
 }
 
 /* Whether the rows of this analysis are what the watch wants. */

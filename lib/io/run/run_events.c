@@ -7,6 +7,18 @@
 #include "io/base/number.h"
 #include "io/channel/event.h"
 
+bool se3di_event_list_is_wanted(const se3d_model *model)
+{
+    bool moves = false, breaks = false;
+    for (size_t k = 0; k < model->analysis_count; ++k) {
+        moves = moves || se3di_analysis_has_motion(&model->analyses[k]);
+    }
+    for (size_t k = 0; k < model->element_count; ++k) {
+        breaks = breaks || model->elements[k].break_channel;
+    }
+    return moves && (breaks || model->event_count > 0);
+}
+
 se3d_status se3di_event_list_open(se3di_event_list *events, se3di_iopool *pool, const char *path,
                                   const se3di_csv_mark *mark)
 {
@@ -37,14 +49,33 @@ static void write_row(se3di_csv *csv, const se3d_run_event *event)
     ++csv->rows;
 }
 
-/* The model's event of that name: every event of its solvers is one. */
-static const se3di_event_entry *find(const se3d_model *model, const char *name)
+size_t se3di_run_event_count_kinds(const se3d_model *model)
 {
-    size_t k = 0;
-    while (k + 1 < model->event_count && strcmp(model->events[k].name, name) != 0) {
+    return model->event_count + model->element_count;
+}
+
+void se3di_run_event_set_kind(const se3d_model *model, size_t kind, se3d_run_event *event)
+{
+    if (kind < model->event_count) {
+        event->name = model->events[kind].name;
+        event->channel = model->events[kind].channel;
+        return;
+    }
+    const se3di_element_entry *joint = &model->elements[kind - model->event_count];
+    event->name = joint->name;
+    event->channel = joint->break_channel ? joint->break_channel : joint->name;
+}
+
+size_t se3di_run_event_find_kind(const se3d_model *model, const char *name, bool broke)
+{
+    const size_t begin = broke ? model->event_count : 0;
+    const size_t end = broke ? se3di_run_event_count_kinds(model) : model->event_count;
+    size_t k = begin;
+    while (k + 1 < end &&
+           strcmp(broke ? model->elements[k - begin].name : model->events[k].name, name) != 0) {
         ++k;
     }
-    return &model->events[k];
+    return k;
 }
 
 se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *pool,
@@ -60,14 +91,14 @@ se3d_status se3di_event_list_collect(se3di_event_list *events, se3di_iopool *poo
         }
         events->list = grown;
         se3d_solver_get_event_record(solver, k, &record);
-        const se3di_event_entry *entry = find(model, record.name);
-        events->list[events->count] = (se3d_run_event){.name = entry->name,
-                                                       .channel = entry->channel,
-                                                       .time = record.time,
-                                                       .value = record.value,
+        const bool broke = record.joint.index1 != 0;
+        events->list[events->count] = (se3d_run_event){.time = record.time,
+                                                       .value = broke ? 1.0 : record.value,
                                                        .analysis = analysis,
                                                        .direction = record.direction,
                                                        .stopped = record.action == SE3D_EVENT_STOP};
+        se3di_run_event_set_kind(model, se3di_run_event_find_kind(model, record.name, broke),
+                                 &events->list[events->count]);
         write_row(&events->csv, &events->list[events->count++]);
         events->collected = k + 1;
     }

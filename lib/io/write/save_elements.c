@@ -36,6 +36,13 @@ static void save_pair(se3di_save *s, se3d_constraint joint, const char *type)
     if (se3di_keys_contain(" distance revolute_spherical revolute_cylindrical ", type)) {
         se3di_save_number(s, "distance", def.distance);
     }
+    if (def.break_force > 0.0 || def.break_moment > 0.0) {
+        se3di_save_word(s, "break", "{");
+        s->is_first = true;
+        se3di_save_number_but(s, "force", def.break_force, 0.0);
+        se3di_save_number_but(s, "moment", def.break_moment, 0.0);
+        se3di_save_put(s, "}");
+    }
 }
 
 static void save_coupler(se3di_save *s, se3d_constraint joint)

@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Joints that break where their reaction passes a limit: when, what goes on from there, and who
+ * keeps it. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "support/mechanisms.h"
+#include "support/methods.h"
+
+#define G      9.81
+#define MASS   2.0
+#define LENGTH 1.5
+#define J_OWN  0.4 /* about the centre of mass */
+
+static se3d_constraint hang(world *w, joint_create create, const char *name, se3d_body i,
+                            se3d_body j, const double at[3], double force, double moment)
+{
+    se3d_joint_def def = se3d_joint_def_default();
+    const double axis[3] = {0.0, 0.0, 1.0};
+    se3d_constraint joint;
+    def.name = name;
+    def.body_i = i;
+    def.body_j = j;
+    def.break_force = force;
+    def.break_moment = moment;
+    MUST(w, se3d_joint_def_set_frame(w->system, &def, at, axis, NULL));
+    MUST(w, create(w->system, &def, &joint));
+    return joint;
+}
+
+/* A pendulum that is let go horizontally; the angle is from there. */
+static world swing_up(double force, se3d_constraint *pin, se3d_body *bob)
+{
+    world w = world_create();
+    const double origin[3] = {0.0, 0.0, 0.0};
+    se3d_body_def def = se3d_body_def_default();
+    def.mass = MASS;
+    def.inertia[0] = def.inertia[1] = def.inertia[2] = J_OWN;
+    def.position[0] = LENGTH;
+    MUST(&w, se3d_body_create(w.system, &def, bob));
+    *pin = hang(&w, se3d_joint_create_revolute, "pin", w.ground, *bob, origin, force, 0.0);
+    return w;
+}
+
+/* |R|^2 = (m g)^2 (s^2 (1 + 2 b)^2 + (1 - s^2) (1 - b)^2), s = sin(angle), b = m l^2/(J + m l^2) */
+static double break_angle(double force)
+{
+    const double b = MASS * LENGTH * LENGTH / (J_OWN + MASS * LENGTH * LENGTH);
+    const double f2 = force * force / (MASS * MASS * G * G), low = (1.0 - b) * (1.0 - b);
+    return asin(sqrt((f2 - low) / ((1.0 + 2.0 * b) * (1.0 + 2.0 * b) - low)));
+}
+
+static void use(world *w, int32_t method, int32_t formulation, double step)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = method;
+    def.formulation = formulation;
+    def.step = step;
+    se3d_solver_destroy(w->solver);
+    w->solver = NULL;
+    MUST(w, se3d_solver_create(w->system, &def, &w->solver));
+}
+
+static double energy_gap(const world *w)
+{
+    se3d_energy energy;
+    se3d_work work;
+    MUST(w, se3d_system_get_energy(w->system, &energy));
+    MUST(w, se3d_system_get_work(w->system, &work));
+    return energy.kinetic + energy.potential + work.dissipated - work.actuators - work.drivers;
+}
+
+/* The bob flies from the angle as it should. */
+static void check_flight(const world *w, se3d_body bob, double angle, double since,
+                         double tolerance)
+{
+    const double b = MASS * LENGTH * LENGTH / (J_OWN + MASS * LENGTH * LENGTH);
+    const double rate = sqrt(2.0 * G * b * sin(angle) / LENGTH), v = rate * LENGTH;
+    double r[3], u[3], spin[3];
+    MUST(w, se3d_body_get_position(w->system, bob, r));
+    MUST(w, se3d_body_get_velocity(w->system, bob, u));
+    MUST(w, se3d_body_get_angular_velocity(w->system, bob, spin));
+    CHECK_NEAR(r[0], LENGTH * cos(angle) - v * sin(angle) * since, tolerance);
+    CHECK_NEAR(r[1], -LENGTH * sin(angle) - v * cos(angle) * since - 0.5 * G * since * since,
+               tolerance);
+    CHECK_NEAR(u[0], -v * sin(angle), 4.0 * tolerance);
+    CHECK_NEAR(u[1], -v * cos(angle) - G * since, 4.0 * tolerance);
+    CHECK_NEAR(spin[2], -rate, 4.0 * tolerance);
+}
+
+static const struct {
+    int32_t method;
+    double step, tolerance;
+} methods[] = {{SE3D_METHOD_DOP853, 0.0, 1e-6},  {SE3D_METHOD_RADAU, 0.0, 1e-6},
+               {SE3D_METHOD_BDF, 0.0, 1e-4},     {SE3D_METHOD_GAUSS, 0.0, 1e-6},
+               {SE3D_METHOD_RK45, 0.0, 1e-4},    {SE3D_METHOD_RK4, 2e-3, 1e-6},
+               {SE3D_METHOD_HHT, 2e-3, 1e-3},    {SE3D_METHOD_GENERALIZED_ALPHA, 2e-3, 1e-3},
+               {SE3D_METHOD_RATTLE, 2e-3, 1e-3}, {SE3D_METHOD_VERLET, 2e-3, 1e-3},
+               {SE3D_METHOD_CONVEX, 5e-4, 2e-2}};
+
+static void a_pendulum_breaks_at_the_angle_of_its_limit_by_every_method(void)
+{
+    const double force = 2.2 * MASS * G, angle = break_angle(force), t_end = 1.2;
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        for (int32_t formulation = 0; *se3d_formulation_get_name(formulation); ++formulation) {
+            const double tolerance = methods[m].tolerance;
+            se3d_constraint pin;
+            se3d_body bob;
+            se3d_event_record record;
+            int32_t broken = -1;
+            double f[3], torque[3];
+            world w = swing_up(force, &pin, &bob);
+            use(&w, methods[m].method, formulation, methods[m].step);
+            const se3d_status status = se3d_solver_run(w.solver, t_end);
+            check_that(status == SE3D_OK, se3d_method_get_name(methods[m].method), __FILE__,
+                       __LINE__);
+            CHECK(se3d_solver_count_event_records(w.solver) == 1);
+            MUST(&w, se3d_solver_get_event_record(w.solver, 0, &record));
+            CHECK(strcmp(record.name, "pin") == 0 && record.joint.index1 == pin.index1);
+            CHECK(record.event.index1 == 0 && record.direction == SE3D_EVENT_RISING);
+            CHECK_NEAR(record.value, 1.0, methods[m].method == SE3D_METHOD_CONVEX ? 1e-2 : 1e-9);
+            MUST(&w, se3d_joint_get_broken(w.system, pin, &broken));
+            CHECK(broken == 1);
+            check_flight(&w, bob, angle, t_end - record.time, tolerance);
+            MUST(&w, se3d_constraint_get_reaction(w.system, pin, f, torque));
+            CHECK(f[0] == 0.0 && f[1] == 0.0 && torque[2] == 0.0);
+            CHECK_NEAR(energy_gap(&w), 0.0, 20.0 * tolerance);
+            world_destroy(&w);
+        }
+    }
+}
+
+/* The same by single steps, and from a copy, bytes and a snapshot of the way. */
+static void what_broke_stays_broken_in_copies_and_is_whole_in_what_was_before(void)
+{
+    const double force = 2.2 * MASS * G;
+    se3d_constraint pin;
+    se3d_body bob;
+    se3d_snapshot *whole = NULL, *apart = NULL;
+    se3d_system *copy = NULL;
+    int32_t broken = -1;
+    world w = swing_up(force, &pin, &bob);
+    use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.0);
+    MUST(&w, se3d_solver_run(w.solver, 0.3));
+    MUST(&w, se3d_snapshot_create(w.system, &whole));
+    const uint64_t before = se3d_system_hash(w.system);
+    MUST(&w, se3d_solver_run(w.solver, 1.0));
+    const uint64_t after = se3d_system_hash(w.system);
+    MUST(&w, se3d_snapshot_create(w.system, &apart));
+    MUST(&w, se3d_system_clone(w.system, &copy));
+    CHECK(se3d_joint_get_broken(copy, pin, &broken) == SE3D_OK && broken == 1);
+    CHECK(se3d_system_hash(copy) == after);
+    MUST(&w, se3d_snapshot_restore(whole, w.system));
+    MUST(&w, se3d_joint_get_broken(w.system, pin, &broken));
+    CHECK(broken == 0 && se3d_system_hash(w.system) == before);
+    MUST(&w, se3d_solver_run(w.solver, 1.0));
+    CHECK(se3d_system_hash(w.system) == after);
+    CHECK(se3d_snapshot_restore(whole, copy) == SE3D_OK);
+    CHECK(se3d_joint_get_broken(copy, pin, &broken) == SE3D_OK && broken == 0);
+    CHECK(se3d_snapshot_restore(apart, copy) == SE3D_OK);
+    CHECK(se3d_joint_get_broken(copy, pin, &broken) == SE3D_OK && broken == 1);
+    CHECK(se3d_system_hash(copy) == after);
+    se3d_system_destroy(copy);
+    se3d_snapshot_destroy(whole);
+    se3d_snapshot_destroy(apart);
+    world_destroy(&w);
+}
+
+static void a_solver_that_is_written_and_read_knows_what_broke_and_what_will(void)
+{
+    const double force = 2.2 * MASS * G;
+    static unsigned char bytes[1 << 16];
+    static unsigned char state[1 << 16];
+    for (int part = 0; part < 2; ++part) {
+        se3d_constraint pin, again;
+        se3d_body bob;
+        size_t size = 0, state_size = 0;
+        se3d_event_record record;
+        world w = swing_up(force, &pin, &bob), v = swing_up(force, &again, &bob);
+        se3d_snapshot *snapshot = NULL, *read = NULL;
+        use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+        use(&v, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+        MUST(&w, se3d_solver_run(w.solver, part ? 0.9 : 0.3));
+        MUST(&w, se3d_snapshot_create(w.system, &snapshot));
+        MUST(&w, se3d_snapshot_write(snapshot, NULL, 0, &state_size));
+        CHECK(state_size <= sizeof state);
+        MUST(&w, se3d_snapshot_write(snapshot, state, sizeof state, &state_size));
+        MUST(&w, se3d_solver_write(w.solver, bytes, sizeof bytes, &size));
+        MUST(&v, se3d_snapshot_read(v.system, state, state_size, &read));
+        MUST(&v, se3d_snapshot_restore(read, v.system));
+        MUST(&v, se3d_solver_read(v.solver, bytes, size));
+        MUST(&w, se3d_solver_run(w.solver, 1.1));
+        MUST(&v, se3d_solver_run(v.solver, 1.1));
+        CHECK(se3d_system_hash(w.system) == se3d_system_hash(v.system));
+        CHECK(se3d_solver_count_event_records(v.solver) == 1);
+        MUST(&v, se3d_solver_get_event_record(v.solver, 0, &record));
+        CHECK(strcmp(record.name, "pin") == 0 && record.joint.index1 == again.index1);
+        se3d_snapshot_destroy(snapshot);
+        se3d_snapshot_destroy(read);
+        world_destroy(&w);
+        world_destroy(&v);
+    }
+}
+
+#define LINKS 8
+
+/* A chain that hangs, pulled at its end by k t: the first pin carries all, and breaks. */
+static void the_first_link_of_a_chain_that_is_pulled_breaks(void)
+{
+    const double limit = 200.0, pull = 50.0, weight = LINKS * MASS * G;
+    const int32_t ways[] = {SE3D_FORMULATION_JOINT, SE3D_FORMULATION_ROMEGA, SE3D_FORMULATION_AUTO};
+    for (size_t way = 0; way < sizeof ways / sizeof *ways; ++way) {
+        world w = world_create();
+        se3d_body before = w.ground, body = w.ground;
+        se3d_constraint pin[LINKS];
+        se3d_event_record record;
+        for (int k = 0; k < LINKS; ++k) {
+            const double top[2] = {0.0, -0.5 * k}, at[3] = {0.0, -0.5 * k, 0.0};
+            body = add_bar(&w, NULL, top, -0.5 * PI, 0.5, MASS);
+            pin[k] = hang(&w, se3d_joint_create_revolute, NULL, before, body, at, limit, 0.0);
+            before = body;
+        }
+        se3d_load_def load = se3d_load_def_default();
+        se3d_force force;
+        MUST(&w, se3d_function_create_expression(w.system, "-50*t", &load.function[1]));
+        load.body = body;
+        MUST(&w, se3d_force_create_load(w.system, &load, &force));
+        use(&w, SE3D_METHOD_AUTO, ways[way], 0.0);
+        const double when = (limit - weight) / pull, t_end = when + 0.5;
+        CHECK(se3d_solver_run(w.solver, t_end) == SE3D_OK);
+        CHECK(se3d_solver_count_event_records(w.solver) == 1);
+        MUST(&w, se3d_solver_get_event_record(w.solver, 0, &record));
+        CHECK_NEAR(record.time, when, 1e-9);
+        CHECK(record.joint.index1 == pin[0].index1 && strcmp(record.name, "") == 0);
+        double sum = 0.0, r[3], reaction[3];
+        for (size_t k = 0; k < LINKS; ++k) {
+            se3d_body one;
+            MUST(&w, se3d_constraint_get_body(w.system, pin[k], 1, &one));
+            MUST(&w, se3d_body_get_position(w.system, one, r));
+            sum += r[1] / LINKS;
+        }
+        /* M a = M g + k t, from rest at `when`; what the next pin carries is all but one link's */
+        const double s = 0.5, F = limit - weight;
+        CHECK_NEAR(sum,
+                   -0.25 * LINKS - 0.5 * G * s * s -
+                       (0.5 * F * s * s + pull * s * s * s / 6.0) / (LINKS * MASS),
+                   1e-7);
+        MUST(&w, se3d_constraint_get_reaction(w.system, pin[1], reaction, NULL));
+        CHECK_NEAR(reaction[1], (F + pull * s) / LINKS, 1e-6); /* pulls its body j along */
+        world_destroy(&w);
+    }
+}
+
+/* A plate on three parallel rods, one too many: each carries a third; when the middle one goes the
+ * others carry a half, which is too much for them, and they go at the same time. */
+static void rods_of_a_bridge_break_in_a_cascade(void)
+{
+    const double limits[3] = {60.0, 40.0, 60.0};
+    const int32_t ways[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU, SE3D_METHOD_HHT,
+                            SE3D_METHOD_VERLET, SE3D_METHOD_CONVEX};
+    for (int strong = 0; strong < 2; ++strong) {
+        for (size_t m = 0; m < sizeof ways / sizeof *ways; ++m) {
+            world w = world_create();
+            se3d_body plate;
+            se3d_constraint rod[3];
+            se3d_load_def load = se3d_load_def_default();
+            se3d_force force;
+            const double left[2] = {-1.0, -1.0};
+            plate = add_bar(&w, "plate", left, 0.0, 2.0, 3.0);
+            for (int k = 0; k < 3; ++k) {
+                se3d_joint_def def = se3d_joint_def_default();
+                def.body_i = w.ground;
+                def.body_j = plate;
+                def.point_i[0] = def.point_j[0] = k - 1.0;
+                def.distance = 1.0;
+                def.break_force = limits[k] + (strong && k != 1 ? 10.0 : 0.0);
+                MUST(&w, se3d_joint_create_distance(w.system, &def, &rod[k]));
+            }
+            MUST(&w, se3d_function_create_expression(w.system, "-100*t", &load.function[1]));
+            load.body = plate;
+            MUST(&w, se3d_force_create_load(w.system, &load, &force));
+            use(&w, ways[m], SE3D_FORMULATION_ROMEGA, ways[m] < 2 ? 0.0 : 1e-3);
+            const se3d_status status = se3d_solver_run(w.solver, 1.0);
+            check_that(status >= 0, se3d_method_get_name(ways[m]), __FILE__, __LINE__);
+            const size_t count = se3d_solver_count_event_records(w.solver);
+            const double first = (120.0 - 3.0 * G) / 100.0;
+            se3d_event_record record;
+            CHECK(count == (strong ? 1u : 3u));
+            MUST(&w, se3d_solver_get_event_record(w.solver, 0, &record));
+            CHECK(record.joint.index1 == rod[1].index1);
+            CHECK_NEAR(record.time, first, ways[m] == SE3D_METHOD_CONVEX ? 2e-3 : 1e-6);
+            for (size_t k = 1; k < count; ++k) {
+                se3d_event_record next;
+                MUST(&w, se3d_solver_get_event_record(w.solver, k, &next));
+                CHECK_NEAR(next.time, record.time, 1.1e-3);
+            }
+            world_destroy(&w);
+        }
+    }
+}
+
+static void what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost(void)
+{
+    const double origin[3] = {0.0, 0.0, 0.0};
+    const int32_t ways[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU, SE3D_METHOD_HHT};
+    for (size_t m = 0; m < sizeof ways / sizeof *ways; ++m) {
+        world w = world_create();
+        se3d_constraint pin, motor;
+        se3d_rsda_def spring = se3d_rsda_def_default();
+        se3d_driver_def drive = se3d_driver_def_default();
+        se3d_friction_def friction = se3d_friction_def_default();
+        se3d_force force;
+        int32_t broken;
+        double spin[3];
+        const double from[2] = {0.0, 0.0};
+        se3d_body bar = add_bar(&w, NULL, from, 0.0, 1.0, MASS);
+        pin = hang(&w, se3d_joint_create_revolute, "pin", w.ground, bar, origin, 30.0, 0.0);
+        drive.joint = pin;
+        MUST(&w, se3d_function_create_expression(w.system, "2*t*t", &drive.function));
+        MUST(&w, se3d_driver_create(w.system, &drive, &motor));
+        spring.joint = pin;
+        spring.k = 3.0;
+        MUST(&w, se3d_force_create_rsda(w.system, &spring, &force));
+        friction.joint = pin;
+        friction.mu = 0.1;
+        friction.radius = 0.02;
+        MUST(&w, se3d_force_create_friction(w.system, &friction, &force));
+        use(&w, ways[m], SE3D_FORMULATION_ROMEGA, m < 2 ? 0.0 : 1e-3);
+        const se3d_status status = se3d_solver_run(w.solver, 3.0);
+        check_that(status == SE3D_OK, se3d_method_get_name(ways[m]), __FILE__, __LINE__);
+        CHECK(se3d_solver_count_event_records(w.solver) == 1);
+        MUST(&w, se3d_joint_get_broken(w.system, motor, &broken));
+        CHECK(broken == 1);
+        se3d_event_record record;
+        MUST(&w, se3d_solver_get_event_record(w.solver, 0, &record));
+        MUST(&w, se3d_body_get_angular_velocity(w.system, bar, spin));
+        CHECK_NEAR(spin[2], 4.0 * record.time, m < 2 ? 1e-6 : 1e-3); /* it turns on as it was */
+        se3d_energy energy;
+        MUST(&w, se3d_system_get_energy(w.system, &energy));
+        CHECK_NEAR(energy_gap(&w), 0.0, m < 2 ? 1e-4 : 5e-2);
+        world_destroy(&w);
+    }
+}
+
+static void a_joint_is_broken_and_mended_by_hand(void)
+{
+    se3d_constraint pin;
+    se3d_body bob;
+    double r[3];
+    int32_t broken;
+    world w = swing_up(0.0, &pin, &bob);
+    use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.0);
+    MUST(&w, se3d_solver_run(w.solver, 0.2));
+    MUST(&w, se3d_joint_set_broken(w.system, pin, 1));
+    MUST(&w, se3d_joint_get_broken(w.system, pin, &broken));
+    CHECK(broken == 1);
+    MUST(&w, se3d_solver_run(w.solver, 0.4));
+    MUST(&w, se3d_body_get_position(w.system, bob, r));
+    CHECK(hypot(r[0], r[1]) > 1.01 * LENGTH);
+    MUST(&w, se3d_joint_set_broken(w.system, pin, 0));
+    MUST(&w, se3d_solver_run(w.solver, 0.6));
+    MUST(&w, se3d_body_get_position(w.system, bob, r));
+    CHECK_NEAR(hypot(r[0], r[1]), LENGTH, 1e-9);
+    CHECK(se3d_solver_count_event_records(w.solver) == 0);
+    world_destroy(&w);
+}
+
+/* A limit that is set below the load breaks the joint where the next run begins. */
+static void a_limit_that_is_passed_already_breaks_at_once(void)
+{
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+        se3d_constraint pin;
+        se3d_body bob;
+        se3d_event_record record = {0};
+        world w = swing_up(0.0, &pin, &bob);
+        use(&w, methods[m].method, SE3D_FORMULATION_ROMEGA, methods[m].step);
+        MUST(&w, se3d_solver_run(w.solver, 0.5));
+        MUST(&w, se3d_joint_set_break(w.system, pin, 1.0, 0.0));
+        MUST(&w, se3d_solver_run(w.solver, 0.6));
+        CHECK(se3d_solver_count_event_records(w.solver) == 1);
+        (void)se3d_solver_get_event_record(w.solver, 0, &record);
+        CHECK_NEAR(record.time, 0.5, 1e-15);
+        CHECK(record.value > 1.5);
+        world_destroy(&w);
+    }
+}
+
+static void kinematics_and_joints_with_armatures_are_refused(void)
+{
+    se3d_constraint pin, motor;
+    se3d_body bob;
+    se3d_driver_def drive = se3d_driver_def_default();
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_armature_def armature = se3d_armature_def_default();
+    se3d_force force;
+    world w = swing_up(100.0, &pin, &bob);
+    drive.joint = pin;
+    MUST(&w, se3d_driver_create(w.system, &drive, &motor));
+    CHECK(se3d_joint_set_break(w.system, motor, 1.0, 0.0) == SE3D_ERR_INVALID_ARGUMENT);
+    def.analysis = SE3D_ANALYSIS_KINEMATICS;
+    MUST(&w, se3d_solver_create(w.system, &def, &w.solver));
+    CHECK(se3d_solver_run(w.solver, 1.0) == SE3D_ERR_UNSUPPORTED);
+    CHECK_CONTAINS(se3d_system_get_error(w.system), "'pin' (revolute) may break");
+    MUST(&w, se3d_joint_set_break(w.system, pin, 0.0, 0.0));
+    CHECK(se3d_solver_run(w.solver, 1.0) == SE3D_OK);
+    MUST(&w, se3d_joint_set_break(w.system, pin, 0.0, 5.0));
+    armature.joint = pin;
+    armature.inertia = 0.1;
+    MUST(&w, se3d_force_create_armature(w.system, &armature, &force));
+    use(&w, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0);
+    CHECK(se3d_solver_run(w.solver, 2.0) == SE3D_ERR_UNSUPPORTED);
+    CHECK_CONTAINS(se3d_system_get_error(w.system), "armature");
+    world_destroy(&w);
+}
+
+int main(void)
+{
+    RUN(a_pendulum_breaks_at_the_angle_of_its_limit_by_every_method);
+    RUN(what_broke_stays_broken_in_copies_and_is_whole_in_what_was_before);
+    RUN(a_solver_that_is_written_and_read_knows_what_broke_and_what_will);
+    RUN(the_first_link_of_a_chain_that_is_pulled_breaks);
+    RUN(rods_of_a_bridge_break_in_a_cascade);
+    RUN(what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost);
+    RUN(a_joint_is_broken_and_mended_by_hand);
+    RUN(a_limit_that_is_passed_already_breaks_at_once);
+    RUN(kinematics_and_joints_with_armatures_are_refused);
+    return check_finish();
+}
