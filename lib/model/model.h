@@ -124,9 +124,6 @@ typedef struct se3di_constraint {
     uint32_t user_first;                      /* the callback's bodies begin here in `bodies` */
     int32_t has_value;                        /* one row, whose prescribed value is the user's */
     int32_t pattern;                          /* se3di_row_pattern */
-    uint32_t user_first;   /* the callback's bodies begin here in `bodies` */
-    int32_t has_value;     /* one row, whose prescribed value is the user's */
-    int32_t pattern;       /* se3di_row_pattern */
     double break_limit[2]; /* joints: of the reaction force [N] and moment [N m]; 0: none */
 } se3di_constraint;
 

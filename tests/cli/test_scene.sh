@@ -20,6 +20,53 @@ bodies:
 analysis: {type: dynamics, duration: 0.1}
 END_OF_MODEL
 "$program" run -q "$dir/looks.yaml" -o "$dir/looks"
+# Gears side by side, in a ring and at a right angle, a pinion on a rack; a kerb, and a post that goes up and down.
+cat >"$dir/gears.yaml" <<'END_OF_MODEL'
+se3d: 1
+gravity: [0, 0, 0]
+bodies:
+  - {name: a, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]}
+  - {name: b, mass: 1, inertia: [1, 1, 1], position: [0.3, 0, 0]}
+  - {name: ring, mass: 1, inertia: [1, 1, 1], position: [0.1, 0, 0.3]}
+  - {name: planet, mass: 1, inertia: [1, 1, 1], position: [0.2, 0, 0.3]}
+  - {name: bevel, mass: 1, inertia: [1, 1, 1], position: [0.3, 0.15, -0.1]}
+  - {name: bar, mass: 1, inertia: [1, 1, 1], position: [0, 0, -0.4]}
+joints:
+  - {name: ja, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}
+  - {name: jb, type: revolute, body_i: b, body_j: ground, at: [0.3, 0, 0], axis: [0, 1, 0]}
+  - {name: jr, type: revolute, body_i: ground, body_j: ring, at: [0.1, 0, 0.4], axis: [0, 1, 0]}
+  - {name: jp, type: revolute, body_i: ground, body_j: planet, at: [0.2, 0.01, 0.4], axis: [0, -1, 0]}
+  - {name: jv, type: revolute, body_i: ground, body_j: bevel, at: [0.3, 0.15, -0.15], axis: [0, 0, 1]}
+  - {name: jc, type: prismatic, body_i: ground, body_j: bar, at: [0, 0, -0.4], axis: [1, 0, 0]}
+  - {name: outside, type: gear, joint_1: ja, joint_2: jb, ratio: -2}
+  - {name: inside, type: gear, joint_1: jp, joint_2: jr, ratio: 0.5}
+  - {name: right, type: gear, joint_1: jb, joint_2: jv, ratio: 1.5}
+  - {name: rack, type: rack_pinion, pinion: ja, rack: jc, radius: 0.12}
+  - {name: link, type: coupler, terms: [{joint: ja}, {joint: jp, ratio: -1}]}
+drivers: [{joint: ja, value: sin(t)}]
+analysis: {type: kinematics, duration: 1, step: 0.1}
+END_OF_MODEL
+"$program" run -q "$dir/gears.yaml" -o "$dir/gears"
+cat >"$dir/roads.yaml" <<'END_OF_MODEL'
+se3d: 1
+bodies: [{name: wheel, mass: 10, inertia: [1, 1, 1], position: [0, 0, 0.3]}, {name: still, mass: 10, inertia: [1, 1, 1], position: [0, 3, 0.3]},
+  {name: flat, mass: 10, inertia: [1, 1, 1], position: [0, -3, 0.3]}]
+joints:
+  - {name: way, type: prismatic, body_i: ground, body_j: wheel, at: [0, 0, 0.3], axis: [1, 0, 0]}
+  - {name: held, type: fixed, body_i: ground, body_j: still, at: [0, 3, 0.3]}
+  - {name: other, type: fixed, body_i: ground, body_j: flat, at: [0, -3, 0.3]}
+drivers: [{joint: way, value: 4*t}]
+roads:
+  - {name: kerb, type: height, height: "0.05*step(x, 1, 0, 1.01, 1)*step(x, 2, 1, 2.01, 0)", at: [0, 0, 0.01]}
+  - {name: post, type: height, height: 0.02*sin(3*t)}
+forces:
+  - {name: t1, type: tyre, body: wheel, road: kerb, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+  - {name: t2, type: tyre, body: still, road: post, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+  - {name: t3, type: tyre, body: flat, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+  - {name: t4, type: tyre, body: flat, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+analysis: {type: kinematics, duration: 1, step: 0.1}
+END_OF_MODEL
+"$program" run -q "$dir/roads.yaml" -o "$dir/roads"
 for pair in 'color: [0.5, 0, 0, 1.5]|color: has 1.5, must be red, green, blue and' 'color: [0.5, 0]|has 2' 'style: brass|style: '; do
     sed "s/color: [^}]*}/${pair%|*}}/" "$dir/looks.yaml" >"$dir/bad.yaml"
     ! "$program" check "$dir/bad.yaml" >"$dir/out" 2>&1 || { echo "${pair%|*} is taken" >&2; exit 1; }
@@ -35,7 +82,7 @@ def load(path):
 def values(doc, binary, index):
     a = doc["accessors"][index]
     width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[a["type"]]
-    code, scale = {5126: ("f", 1.0), 5122: ("h", 1 / 32767)}[a["componentType"]]
+    code, scale = {5126: ("f", 1.0), 5122: ("h", 1 / 32767), 5123: ("H", 1)}[a["componentType"]]
     start = doc["bufferViews"][a["bufferView"]]["byteOffset"]
     flat = struct.unpack_from("<%d%s" % (a["count"] * width, code), binary, start)
     return [[v * scale for v in flat[k:k + width]] for k in range(0, len(flat), width)]
@@ -72,8 +119,8 @@ for folder, bodies in (("pendulum", ["bar"]), ("spatial_slider_crank", ["crank",
         assert ("spring", "scale") in seen
     names = [node["name"] for node in doc["nodes"]]
     assert "ground" in names and "grid" in names
-# A mesh: points of its own for every triangle, with unit normals that point out; shapes of one file
-# and scale share them.
+# A mesh: a point for each of its normals at sharp edges, unit normals that point out; shapes of one
+# file and scale share them.
 doc, binary = load(sys.argv[1] + "/bracket/scene.glb")
 def drawn(body):
     node = next(n for n in doc["nodes"] if n["name"] == body)
@@ -81,11 +128,11 @@ def drawn(body):
     return [doc["meshes"][n["mesh"]]["primitives"][0] for n in shapes], shapes
 (first,), nodes = drawn("bracket")
 (second, third), _ = drawn("twin")
-assert nodes[0]["scale"] == [1, 1, 1] and "indices" not in first and "mode" not in first
+assert nodes[0]["scale"] == [1, 1, 1] and "mode" not in first
 assert first["attributes"] == second["attributes"] != third["attributes"]
-points = values(doc, binary, first["attributes"]["POSITION"])
-normals = values(doc, binary, first["attributes"]["NORMAL"])
-assert len(points) == len(normals) == 60
+order = [k for k, in values(doc, binary, first["indices"])]
+points, normals = ([values(doc, binary, first["attributes"][name])[k] for k in order] for name in ("POSITION", "NORMAL"))
+assert len(points) == 60 and max(order) < 40 and set(order) == set(range(max(order) + 1)), order
 volume = 0.0
 for k in range(0, 60, 3):
     a, b, c = points[k:k + 3]
@@ -150,6 +197,67 @@ assert len(bars("right")) == 2 and max(abs(b[i]) for a in bars("right") for b in
 kinds = {e["name"]: e["type"] for e in doc["scenes"][0]["extras"]["elements"]}
 assert any(abs(n["scale"][2] - .2) < 1e-6 for n in drawn_as("link_right")), "a link of its length"
 assert not [n for n in drawn_as("dashpot") if n["scale"][0] == n["scale"][1] and len(drawn_as("dashpot")) != 2], "a damper is no coil"
+# Gears: their radii, their places, and a gap of one where a tooth of the other is.
+doc, binary = load(sys.argv[1] + "/gears/scene.glb")
+nodes = doc["nodes"]
+kinds = {e["name"]: e["type"] for e in doc["scenes"][0]["extras"]["elements"]}
+def turn(q, v):
+    x, y, z, w = q
+    c = lambda a, b: [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    u = c([x, y, z], v)
+    return [p + 2 * (w * s + r) for p, s, r in zip(v, u, c([x, y, z], u))]
+def corners(body, name):
+    """Of its part with teeth, in the ground frame at the first pose."""
+    parent = next(n for n in nodes if n["name"] == body)
+    node = next(n for n in (nodes[k] for k in parent["children"]) if n.get("extras", {}).get("element") == list(kinds).index(name))
+    points = values(doc, binary, doc["meshes"][node["mesh"]]["primitives"][0]["attributes"]["POSITION"])
+    place = lambda n, p: [a + b for a, b in zip(turn(n["rotation"], p), n["translation"])]
+    return [place(parent, place(node, p)) for p in points]
+def radii(points, at):
+    return sorted({round(((p[0] - at[0]) ** 2 + (p[2] - at[2]) ** 2) ** 0.5, 6) for p in points})
+def pitch(points, at, inside=False):
+    """Radius of the pitch circle, from tips 1 and roots 1.2 modules away; teeth."""
+    all = radii(points, at)
+    few = all[:-1] if inside else all[1:] # not what is behind the teeth
+    tip, root = (few[0], few[-1]) if inside else (few[-1], few[0])
+    module = abs(tip - root) / 2.2
+    return tip + module if inside else tip - module, module
+for body, name, at, radius, inside in (("a", "outside", [0, 0, 0], .2, False), ("b", "outside", [.3, 0, 0], .1, False),
+                                       ("planet", "inside", [.2, 0, .4], .1, False), ("ring", "inside", [.1, 0, .4], .2, True),
+                                       ("a", "rack", [0, 0, 0], .12, False)):
+    found, module = pitch(corners(body, name), at, inside)
+    assert abs(found - radius) < 1e-5 and abs(2 * radius / module - round(2 * radius / module)) < 1e-3, (body, name, found, module)
+    checks += 1
+tips = lambda body, name, at, r: [p for p in corners(body, name) if abs(((p[0] - at[0]) ** 2 + (p[2] - at[2]) ** 2) ** .5 - r) < 1e-5]
+assert all(abs(p[1]) < .05 for body in ("ring", "planet") for p in corners(body, "inside")), "not side by side"
+# Tooth of a at x = 0.2, z = 0; none of b there.
+_, module = pitch(corners("a", "outside"), [0, 0, 0])
+assert min(abs(p[2]) for p in tips("a", "outside", [0, 0, 0], .2 + module) if p[0] > 0) < .2 * 3.15 * module
+assert min(abs(p[2]) for p in tips("b", "outside", [.3, 0, 0], .1 + module) if p[0] < .3) > .3 * 3.14 * module
+# Bevel gears: both cones have their tips where the axes meet, (0.3, 0, -0.15)... of b the axis is y, of the other one z.
+b, v = corners("b", "right"), corners("bevel", "right")
+assert b and v and "gear" in {n["name"] for n in nodes} and not any(n["name"] == "link" and "extras" in n for n in nodes)
+rack = corners("bar", "rack")
+assert max(p[0] for p in rack) - min(p[0] for p in rack) > .12 * .84 + .4 and abs(min(abs(p[2]) for p in rack) - (.12 - .12 / 9)) < 1e-3, "the rack"
+# Roads: a kerb with its faces and little else, a post that moves, a plane.
+doc, binary = load(sys.argv[1] + "/roads/scene.glb")
+nodes = doc["nodes"]
+roads = [n for n in nodes if n["name"] == "road"]
+assert len(roads) == 3, [n["name"] for n in nodes]
+surface = lambda n: values(doc, binary, doc["meshes"][n["mesh"]]["primitives"][0]["attributes"]["POSITION"])
+kerb, post, plane = roads
+height = lambda x: .05 * (x > 1.005) * (x < 2.005)
+points = surface(kerb)
+assert all(abs(p[2] - height(p[0])) < 1e-6 or abs(p[0] - 1.005) < .011 or abs(p[0] - 2.005) < .011 for p in points), points
+assert min(p[0] for p in points) < -.3 and max(p[0] for p in points) > 4.3 and len({p[0] for p in points}) < 16 and len({p[1] for p in points}) == 2
+assert abs(kerb["translation"][2] - .01) < 1e-7 and all(abs(p[2]) < 1e-12 for p in surface(plane)) and len(surface(plane)) == 4
+moves = [c for c in doc["animations"][0]["channels"] if nodes[c["target"]["node"]] in roads]
+assert len(moves) == 1 and nodes[moves[0]["target"]["node"]] is post
+sampler = doc["animations"][0]["samplers"][moves[0]["sampler"]]
+import math
+for (time,), place in zip(values(doc, binary, sampler["input"]), values(doc, binary, sampler["output"])):
+    assert abs(place[2] - .02 * math.sin(3 * time)) < 1e-6, (time, place)
+    checks += 1
 # Colours are light, as glTF wants it; opacity and style.
 doc, binary = load(sys.argv[1] + "/looks/scene.glb")
 made = [doc["materials"][k] for k in range(len(doc["materials"]))]

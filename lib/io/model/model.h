@@ -60,11 +60,13 @@ typedef struct se3di_element_entry {
     se3d_constraint driven; /* the joint of a driver */
     se3d_body body_i;
     se3d_body body_j;
-    double point_i[3]; /* body frames */
+    double point_i[3]; /* body frames. Road, or tyre on a plane: origin and normal are those of i */
     double point_j[3];
     double axis_i[3]; /* 0: it has none */
     double axis_j[3];
     const char *break_channel; /* joint with limits: the channel that tells whether it broke */
+    se3d_function height;      /* road: over (t, x, y); null: none */
+    const se3di_mesh *surface; /* road: its triangles; NULL: none */
 } se3di_element_entry;
 
 /* What `modes` writes. */

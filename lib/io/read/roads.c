@@ -103,7 +103,7 @@ static bool read_height(se3di_reader *reader, const se3di_node *node, se3d_road_
 }
 
 static bool read_mesh(se3di_reader *reader, const se3di_node *node, const road_values *v,
-                      se3d_road_def *def)
+                      se3d_road_def *def, const se3di_mesh **surface)
 {
     if (!v->file) {
         return se3di_reader_fail_key(reader, node, "file", "is missing, must be an STL or OBJ");
@@ -112,6 +112,7 @@ static bool read_mesh(se3di_reader *reader, const se3di_node *node, const road_v
     if (!mesh) {
         return false;
     }
+    *surface = mesh;
     def->vertices = mesh->points;
     def->vertex_count = mesh->point_count;
     def->triangles = mesh->triangles;
@@ -162,9 +163,14 @@ static bool read_road(se3di_reader *reader, const se3di_node *node)
     def.name = entry->name;
     if ((strcmp(type, "height") == 0 && !read_height(reader, node, &def)) ||
         (strcmp(type, "heightfield") == 0 && !read_heightfield(reader, node, &v, &def)) ||
-        (strcmp(type, "mesh") == 0 && !read_mesh(reader, node, &v, &def))) {
+        (strcmp(type, "mesh") == 0 && !read_mesh(reader, node, &v, &def, &entry->surface))) {
         return false;
     }
+    entry->body_i = def.body;
+    entry->height = def.height;
+    memcpy(entry->point_i, def.point, sizeof entry->point_i);
+    memcpy(entry->axis_i, def.normal, sizeof entry->axis_i);
+    memcpy(entry->axis_j, def.forward, sizeof entry->axis_j);
     const se3d_status status = se3d_road_create(reader->system, &def, &entry->road);
     return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
 }

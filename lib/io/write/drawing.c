@@ -221,6 +221,8 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, const se3di_sizes *si
         }
     }
     se3di_lister_add_joints(&l);
+    se3di_lister_add_gears(&l);
+    se3di_lister_add_roads(&l);
     if (k > 0) {
         se3di_lister_add_links(&l, bare);
     }

@@ -19,6 +19,8 @@ typedef struct se3di_part {
     int32_t style;   /* se3di_style */
     int32_t reserved;
     size_t element1; /* the element that it shows, from 1 in the order of the model; 0: none */
+    double along[3];
+    const double *lift; /* [samples] how far it has moved along this at each [m]; NULL: not */
 } se3di_part;
 
 typedef struct se3di_parts {
@@ -30,7 +32,8 @@ typedef struct se3di_parts {
 typedef struct se3di_poses {
     double *values;
     size_t bodies;
-    size_t count; /* of samples */
+    size_t count;        /* of samples */
+    const double *times; /* of them; NULL: the time of the system */
 } se3di_poses;
 
 /* How large what is seen is, and how large things without a size of their own are drawn [m]. */

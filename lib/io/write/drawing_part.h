@@ -51,6 +51,10 @@ double se3di_shape_reach(const se3di_shape_entry *entry, const double at[3], dou
 se3di_joint_look se3di_joint_get_look(const se3di_element_entry *entry);
 /* What body l->body has of its joints. */
 void se3di_lister_add_joints(se3di_lister *l);
+/* The roads on l->body, as far as wheels come over them. */
+void se3di_lister_add_roads(se3di_lister *l);
+/* Discs with teeth on the body for its gears, and a rack. */
+void se3di_lister_add_gears(se3di_lister *l);
 /* Bars between the joints and markers of a body without shapes; `bare` false: from joints beside
  * the shapes of the body to these. */
 void se3di_lister_add_links(se3di_lister *l, bool bare);

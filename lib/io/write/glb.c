@@ -15,7 +15,7 @@
 #include "io/write/drawing.h"
 #include "io/write/unit_mesh.h"
 
-enum { NUMBER_FLOAT = 5126, NUMBER_SHORT = 5122, NUMBER_INDEX = 5123 };
+enum { NUMBER_FLOAT = 5126, NUMBER_SHORT = 5122, NUMBER_INDEX = 5123, NUMBER_LONG_INDEX = 5125 };
 
 void se3di_glb_init(se3di_glb *glb, se3di_iopool *pool)
 {
@@ -216,30 +216,127 @@ static void get_normal(const double *const p[3], double n[3])
     }
 }
 
-/* Edges are sharp: every triangle has points and a normal of its own, and no indices. */
+/* What becomes of a surface: vertices, of which one point has as many as it has normals. */
+typedef struct smoothing {
+    const se3di_mesh *mesh;
+    double *flat;             /* [3 * triangles] their normals, by the area that is seen */
+    size_t *first;            /* [points + 1] where the corners of a point begin in `corners` */
+    size_t *corners;          /* [3 * triangles] by points */
+    size_t *vertex;           /* [3 * triangles] of each corner */
+    double *points, *normals; /* [3 * vertices] */
+    size_t count;
+} smoothing;
+
+/* The corners of every point (a counting sort), and the normals of all triangles. */
+static void sort_corners(smoothing *s)
+{
+    const se3di_mesh *mesh = s->mesh;
+    const size_t count = 3 * mesh->triangle_count;
+    for (size_t k = 0; k < count; ++k) {
+        ++s->first[mesh->triangles[k] + 1];
+    }
+    for (size_t k = 0; k < mesh->point_count; ++k) {
+        s->first[k + 1] += s->first[k];
+    }
+    for (size_t k = count; k-- > 0;) { /* from the end, so that the list begins with the first */
+        s->corners[--s->first[mesh->triangles[k] + 1]] = k;
+    }
+    for (size_t k = 0; k < mesh->point_count; ++k) { /* all have moved by one */
+        s->first[k] = s->first[k + 1];
+    }
+    s->first[mesh->point_count] = count;
+    for (size_t k = 0; k < mesh->triangle_count; ++k) {
+        const double *p[3];
+        for (size_t c = 0; c < 3; ++c) {
+            p[c] = mesh->points + 3 * (size_t)mesh->triangles[3 * k + c];
+        }
+        get_normal(p, s->flat + 3 * k);
+    }
+}
+
+/* A point of so many triangles is no point of a smooth surface; it would take long. */
+static bool is_crowded(const smoothing *s, size_t point)
+{
+    return s->first[point + 1] - s->first[point] > 64;
+}
+
+/* The normal at a corner: the mean of the triangles around its point that bend by less than 30
+ * degrees from its own; edges that are sharper stay so. */
+static void get_smooth(const smoothing *s, size_t corner, double n[3])
+{
+    const double *own = s->flat + corner / 3 * 3;
+    const size_t point = s->mesh->triangles[corner];
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (size_t k = s->first[point]; k < s->first[point + 1] && !is_crowded(s, point); ++k) {
+        const double *other = s->flat + s->corners[k] / 3 * 3;
+        if (own[0] * other[0] + own[1] * other[1] + own[2] * other[2] > 0.866) {
+            for (int i = 0; i < 3; ++i) {
+                sum[i] += other[i];
+            }
+        }
+    }
+    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    for (int i = 0; i < 3; ++i) {
+        n[i] = length > 0.0 ? sum[i] / length : own[i];
+    }
+}
+
+/* One vertex for all corners of a point that have one normal. */
+static void join_corners(smoothing *s, size_t point)
+{
+    const size_t begin = s->count;
+    for (size_t k = s->first[point]; k < s->first[point + 1]; ++k) {
+        double n[3];
+        size_t v = is_crowded(s, point) ? s->count : begin;
+        get_smooth(s, s->corners[k], n);
+        while (v < s->count &&
+               !(fabs(s->normals[3 * v] - n[0]) + fabs(s->normals[3 * v + 1] - n[1]) +
+                     fabs(s->normals[3 * v + 2] - n[2]) <
+                 1e-6)) {
+            ++v;
+        }
+        if (v == s->count) {
+            memcpy(s->points + 3 * v, s->mesh->points + 3 * point, sizeof n);
+            memcpy(s->normals + 3 * v, n, sizeof n);
+            ++s->count;
+        }
+        s->vertex[s->corners[k]] = v;
+    }
+}
+
+static long add_indices(se3di_glb *glb, const size_t *vertex, size_t count, size_t most)
+{
+    const size_t size = most > UINT16_MAX ? 4 : 2;
+    const long view = begin(glb, count * size, 34963);
+    for (size_t k = 0; k < count; ++k) {
+        put_little(glb, (uint32_t)vertex[k], size);
+    }
+    describe(glb, view, size == 4 ? NUMBER_LONG_INDEX : NUMBER_INDEX, count, "SCALAR");
+    se3di_glb_put(glb, &glb->accessors, "}");
+    return view;
+}
+
 static void add_surface(se3di_glb *glb, const se3di_mesh *mesh, long accessors[3])
 {
     const size_t count = 3 * mesh->triangle_count;
-    double *points = se3di_iopool_array(glb->pool, count, 3 * sizeof *points);
-    double *normals = se3di_iopool_array(glb->pool, count, 3 * sizeof *normals);
-    if (!points || !normals) {
+    smoothing s = {.mesh = mesh};
+    s.flat = se3di_iopool_array(glb->pool, count, sizeof *s.flat);
+    s.first = se3di_iopool_array(glb->pool, mesh->point_count + 2, sizeof *s.first);
+    s.corners = se3di_iopool_array(glb->pool, count, sizeof *s.corners);
+    s.vertex = se3di_iopool_array(glb->pool, count, sizeof *s.vertex);
+    s.points = se3di_iopool_array(glb->pool, count, 3 * sizeof *s.points);
+    s.normals = se3di_iopool_array(glb->pool, count, 3 * sizeof *s.normals);
+    if (!s.flat || !s.first || !s.corners || !s.vertex || !s.points || !s.normals) {
         glb->failed = true;
         return;
     }
-    for (size_t k = 0; k < count; k += 3) {
-        const double *corners[3];
-        double n[3];
-        for (size_t c = 0; c < 3; ++c) {
-            corners[c] = mesh->points + 3 * (size_t)mesh->triangles[k + c];
-        }
-        get_normal(corners, n);
-        for (size_t c = 0; c < 3; ++c) {
-            memcpy(points + 3 * (k + c), corners[c], sizeof n);
-            memcpy(normals + 3 * (k + c), n, sizeof n);
-        }
+    sort_corners(&s);
+    for (size_t k = 0; k < mesh->point_count; ++k) {
+        join_corners(&s, k);
     }
-    accessors[0] = se3di_glb_add_floats(glb, points, count, SE3DI_GLB_VEC3, 34962);
-    accessors[1] = se3di_glb_add_floats(glb, normals, count, SE3DI_GLB_VEC3, 34962);
+    accessors[0] = se3di_glb_add_floats(glb, s.points, s.count, SE3DI_GLB_VEC3, 34962);
+    accessors[1] = se3di_glb_add_floats(glb, s.normals, s.count, SE3DI_GLB_VEC3, 34962);
+    accessors[2] = add_indices(glb, s.vertex, count, s.count);
 }
 
 /* Accessors of positions, normals and indices, made when they are first asked for. */

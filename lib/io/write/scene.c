@@ -63,6 +63,7 @@ se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out)
         se3di_iopool_destroy(&pool);
         return SE3D_ERR_NO_MEMORY;
     }
+    scene->poses.times = scene->times;
     scene->model = model;
     scene->stride = 1;
     scene->pool = pool;
@@ -236,6 +237,21 @@ static void animate_body(drawing *d, size_t k, size_t node)
     add_track(d, &t, node);
 }
 
+/* What moves on its body. */
+static void animate_part(drawing *d, const se3di_part *part, size_t node)
+{
+    const size_t count = d->scene->poses.count;
+    double *r = se3di_iopool_array(d->glb.pool, count, 3 * sizeof *r);
+    if (!r) {
+        d->glb.failed = true;
+        return;
+    }
+    for (size_t k = 0; k < 3 * count; ++k) {
+        r[k] = part->position[k % 3] + part->lift[k / 3] * part->along[k % 3];
+    }
+    add_channel(d, node, "translation", se3di_glb_add_floats(&d->glb, r, count, SE3DI_GLB_VEC3, 0));
+}
+
 /* The children of a body: its parts and markers. */
 static void add_children(drawing *d, size_t k, se3di_bytes *children)
 {
@@ -246,7 +262,11 @@ static void add_children(drawing *d, size_t k, se3di_bytes *children)
         d->glb.failed = 1;
     }
     for (size_t i = 0; i < parts.count; ++i) {
-        add_child(d, children, add_part(d, &parts.list[i]));
+        const size_t node = add_part(d, &parts.list[i]);
+        add_child(d, children, node);
+        if (parts.list[i].lift) {
+            animate_part(d, &parts.list[i], node);
+        }
     }
     for (size_t m = 0; m < model->marker_count; ++m) {
         if (model->markers[m].body == k) {
@@ -462,6 +482,7 @@ bool se3di_scene_put_at(se3d_scene *scene, const double *poses, FILE *file)
 {
     memcpy(scene->poses.values, poses, SE3DI_POSE * scene->poses.bodies * sizeof *poses);
     scene->poses.count = 1;
+    (void)se3d_system_get_time(scene->model->system, &scene->times[0]);
     return se3di_scene_put(scene, file);
 }
 

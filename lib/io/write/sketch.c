@@ -170,7 +170,7 @@ static const char *kind_of(size_t body)
 static size_t put_links(sketch *s, size_t body, se3di_spot *middle)
 {
     se3di_parts parts = {NULL, 0, 0};
-    se3di_poses poses = {s->poses, s->model->body_count, 1};
+    se3di_poses poses = {s->poses, s->model->body_count, 1, NULL};
     se3di_lister lister = {.model = s->model,
                            .pool = &s->pool,
                            .parts = &parts,
@@ -490,7 +490,7 @@ static se3d_status prepare(sketch *s, const double view[2])
         return SE3D_ERR_NO_MEMORY;
     }
     const se3d_status status = se3di_drawing_get_poses(model, s->poses);
-    const se3di_poses poses = {s->poses, model->body_count, 1};
+    const se3di_poses poses = {s->poses, model->body_count, 1, NULL};
     if (status >= 0) {
         se3di_drawing_measure(model, &poses, &s->sizes);
         se3di_sketch_turn(&s->view, view, model, s->poses);

@@ -84,7 +84,7 @@ static bool list_pieces(se3di_vtk *vtk, const se3di_part *parts, size_t count, s
 static bool list_all(se3di_vtk *vtk)
 {
     const se3d_model *model = vtk->model;
-    const se3di_poses poses = {vtk->poses, model->body_count, 1};
+    const se3di_poses poses = {vtk->poses, model->body_count, 1, NULL};
     for (size_t k = 0; k < model->body_count; ++k) {
         se3di_parts parts = {NULL, 0, 0};
         if (!se3di_drawing_list(model, k, &vtk->sizes, &poses, vtk->pool, &parts) ||
@@ -131,7 +131,7 @@ static bool prepare(se3di_vtk *vtk)
     }
     vtk->units = units;
     se3di_drawing_get_poses(vtk->model, vtk->poses);
-    const se3di_poses poses = {vtk->poses, vtk->model->body_count, 1};
+    const se3di_poses poses = {vtk->poses, vtk->model->body_count, 1, NULL};
     se3di_drawing_measure(vtk->model, &poses, &vtk->sizes);
     if (!list_all(vtk)) {
         return false;
