@@ -3,6 +3,8 @@
  * that was accepted make of it. */
 #include "fuzz.h"
 
+#include "io/document/layout.h"
+
 #include <string.h>
 
 static void count_mistake(void *ctx, const se3d_model_error *error)
@@ -28,10 +30,26 @@ static void read_all_mistakes(const char *text, size_t size, int accepted)
     se3d_model_destroy(model);
 }
 
+/* What was laid out stays as it is. */
+static void lay_out(const char *text, size_t size)
+{
+    se3di_iopool pool;
+    se3d_model_error error;
+    char *made = NULL, *again = NULL;
+    size_t length = 0, other = 0;
+    se3di_iopool_init(&pool, NULL);
+    if (se3di_layout_make(&pool, "x.yaml", text, size, &made, &length, &error) == SE3D_OK) {
+        FUZZ_MUST(!se3di_layout_make(&pool, "x.yaml", made, length, &again, &other, &error));
+        FUZZ_MUST(length == other && memcmp(made, again, length) == 0);
+    }
+    se3di_iopool_destroy(&pool);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const char *text = (const char *)data;
     se3d_model *model = fuzz_read_model(text, size);
+    lay_out(text, size);
     if (size % 4 == 0) {
         read_all_mistakes(text, size, model != NULL);
     }

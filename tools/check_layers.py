@@ -19,7 +19,7 @@ LAYERS = ("base math expression model primitive joint force contact particles fo
 ROOMS = {"contact": "shape narrow bodies".split(),
          "io": "base document model channel read write run study import fmi live".split()}
 # What the program in tools/se3d shares with libse3d-io, to whose static library it is linked.
-SHARED = ("io/base/file.h", "io/document/guess.h", "io/read/objects.h",
+SHARED = ("io/base/file.h", "io/document/guess.h", "io/document/layout.h", "io/read/objects.h",
           "io/fmi/package.h", "io/live/live.h", "io/study/derive.h", "io/write/save_source.h",
           "io/write/sketch.h", "io/write/svg.h", "player.h")  # the last of record/
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.

@@ -35,6 +35,23 @@ is "$(head -1 "$dir/p/pendulum.csv" | cut -d, -f1-9)" \
 is "$(tail -1 "$dir/p/pendulum.csv" | cut -d, -f1)" 10
 is "$(ls "$dir/p" | tr '\n' ' ')" 'pendulum.csv scene.glb '
 
+printf 'se3d:  1\nbodies:\n- {name: a,mass: 1}   # one\n' >"$dir/messy.yaml"
+cp "$dir/messy.yaml" "$dir/kept.yaml"
+expect 'fmt --check of a mess' 1 "$program" fmt --check "$dir/messy.yaml"
+has "$dir/out" 'messy.yaml: its layout would change'
+is "$(cmp "$dir/messy.yaml" "$dir/kept.yaml")" ''
+expect 'fmt of standard input' 0 "$program" fmt - <"$dir/messy.yaml"
+cp "$dir/out" "$dir/made.yaml"
+is "$(cat "$dir/made.yaml")" "$(printf 'se3d: 1\nbodies:\n  - {name: a, mass: 1}  # one')"
+expect 'fmt' 0 "$program" fmt "$dir/messy.yaml"
+has "$dir/out" "laid out $dir/messy.yaml"
+is "$(cmp "$dir/messy.yaml" "$dir/made.yaml")" ''
+expect 'fmt of what is laid out' 0 "$program" fmt --check "$dir/messy.yaml"
+is "$(cat "$dir/out" "$dir/err")" ''
+printf 'a: [1\n' >"$dir/open.yaml"
+expect 'fmt of what is no YAML' 2 "$program" fmt "$dir/open.yaml"
+has "$dir/err" 'open.yaml:2:1: syntax error'
+
 expect 'quiet' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" --quiet --duration 0.1
 is "$(cat "$dir/out" "$dir/err")" ''
 expect 'the same bits on every run' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" -q

@@ -7,10 +7,10 @@
 const command_entry *command_get(size_t k)
 {
     static const command_entry *const list[] = {
-        &run_entry,   &check_entry,  &evaluate_entry, &explain_entry,    &channels_entry,
-        &new_entry,   &plot_entry,   &sketch_entry,   &view_entry,       &live_entry,
-        &video_entry, &study_entry,  &report_entry,   &import_entry,     &write_entry,
-        &fmu_entry,   &replay_entry, &help_entry,     &completion_entry,
+        &run_entry,   &check_entry, &evaluate_entry, &explain_entry, &channels_entry,
+        &new_entry,   &fmt_entry,   &plot_entry,     &sketch_entry,  &view_entry,
+        &live_entry,  &video_entry, &study_entry,    &report_entry,  &import_entry,
+        &write_entry, &fmu_entry,   &replay_entry,   &help_entry,    &completion_entry,
     };
     return k < sizeof list / sizeof *list ? list[k] : NULL;
 }

@@ -55,9 +55,10 @@ typedef struct command_entry {
     const char *exits; /* what the exit codes mean */
 } command_entry;
 
-extern const command_entry new_entry, channels_entry, run_entry, check_entry, evaluate_entry,
-    plot_entry, report_entry, sketch_entry, view_entry, live_entry, video_entry, import_entry,
-    write_entry, fmu_entry, study_entry, replay_entry, explain_entry, completion_entry, help_entry;
+extern const command_entry new_entry, fmt_entry, channels_entry, run_entry, check_entry,
+    evaluate_entry, plot_entry, report_entry, sketch_entry, view_entry, live_entry, video_entry,
+    import_entry, write_entry, fmu_entry, study_entry, replay_entry, explain_entry,
+    completion_entry, help_entry;
 
 /* The k-th command, NULL behind the last. */
 const command_entry *command_get(size_t k);

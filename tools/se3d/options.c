@@ -58,55 +58,35 @@ static const char **value_target(options *o, const char *name)
 
 static int *flag_target(options *o, const char *name)
 {
-    if (strcmp(name, "--quiet") == 0 || strcmp(name, "-q") == 0) {
-        return &o->quiet;
+    const struct {
+        const char *name;
+        int *target;
+    } table[] = {{"--quiet", &o->quiet},
+                 {"-q", &o->quiet},
+                 {"--json", &o->json},
+                 {"--json-lines", &o->json_lines},
+                 {"--check", &o->check},
+                 {"--csv", &o->csv},
+                 {"--man", &o->man},
+                 {"--partial", &o->partial},
+                 {"--merge-fixed", &o->merge_fixed},
+                 {"--free-base", &o->free_base},
+                 {"--resume", &o->resume},
+                 {"--strict", &o->strict},
+                 {"--merge", &o->merge},
+                 {"--list", &o->list},
+                 {"--unchecked", &o->unchecked},
+                 {"--server", &o->server},
+                 {"--sensitivities", &o->sensitivities},
+                 {"--optimize", &o->optimize},
+                 {"--help", &o->help},
+                 {"-h", &o->help}};
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        if (strcmp(table[k].name, name) == 0) {
+            return table[k].target;
+        }
     }
-    if (strcmp(name, "--json") == 0) {
-        return &o->json;
-    }
-    if (strcmp(name, "--json-lines") == 0) {
-        return &o->json_lines;
-    }
-    if (strcmp(name, "--csv") == 0) {
-        return &o->csv;
-    }
-    if (strcmp(name, "--man") == 0) {
-        return &o->man;
-    }
-    if (strcmp(name, "--partial") == 0) {
-        return &o->partial;
-    }
-    if (strcmp(name, "--merge-fixed") == 0) {
-        return &o->merge_fixed;
-    }
-    if (strcmp(name, "--free-base") == 0) {
-        return &o->free_base;
-    }
-    if (strcmp(name, "--resume") == 0) {
-        return &o->resume;
-    }
-    if (strcmp(name, "--strict") == 0) {
-        return &o->strict;
-    }
-    if (strcmp(name, "--merge") == 0) {
-        return &o->merge;
-    }
-    if (strcmp(name, "--list") == 0) {
-        return &o->list;
-    }
-    if (strcmp(name, "--unchecked") == 0) {
-        return &o->unchecked;
-    }
-    if (strcmp(name, "--server") == 0) {
-        return &o->server;
-    }
-    if (strcmp(name, "--sensitivities") == 0) {
-        return &o->sensitivities;
-    }
-    if (strcmp(name, "--optimize") == 0) {
-        return &o->optimize;
-    }
-    return strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 ? &o->help : NULL;
+    return NULL;
 }
 
 /* An option with a value: "--name VALUE" or "--name=VALUE". @return words used, 0: an error. */

@@ -38,6 +38,7 @@ typedef struct options {
     int json;
     int json_lines;
     int csv;
+    int check;
     int man;
     int partial;
     int merge_fixed;
