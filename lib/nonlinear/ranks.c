@@ -4,7 +4,7 @@
  * tells a redundant row from one at a singular position: the mechanism without its candidates and
  * drivers is moved by a tenth of a radian or of its size along a freedom, both ways. A row that is
  *
- *     met to rounding             is redundant, and stays where it is
+ *     dependent, met to rounding  is redundant, and stays where it is
  *     met to the digits of data   is left out
  *     off by more                 constrains, and stays
  */
@@ -18,7 +18,8 @@
 
 #define SUSPICIOUS 1e-8  /* pivot of a row over its weight: its independent part squared */
 #define CANDIDATE  3e-5  /* relative independent part */
-#define DEPENDENT  1e-10 /* the same of rounding */
+#define DEPENDENT  1e-10 /* the same of rounding, */
+#define EXACT      1e-13 /* and that of a row that goes back while others are left out */
 #define ROUGH      1e-6  /* poses that are off by more are assembled first */
 #define ROUNDING   1e-9  /* violation of a redundant row, relative */
 #define DIGITS     3e-5  /* that of one that is left out */
@@ -323,11 +324,13 @@ static int drop_independent(const decision *d)
     return dropped;
 }
 
-/* Those that are redundant but for rounding are solved with the others. */
+/* Those that are redundant but for rounding are solved with the others. What is independent of them
+ * by a little may be met all through the swing, and will be off by as much after a turn; and
+ * without those that are left out it would pull in a direction that is noise. */
 static void take_redundant(const decision *d)
 {
     for (uint32_t k = 0; k < d->model->row_count; ++k) {
-        if (d->rest[k] >= 0.0 && d->most[k] <= ROUNDING) {
+        if (d->rest[k] >= 0.0 && d->rest[k] <= EXACT && d->most[k] <= ROUNDING) {
             leave_out(d->model, k, 0);
         }
     }

@@ -110,6 +110,50 @@ static void a_linkage_of_five_digits_moves_as_that_of_exact_data(void)
     }
 }
 
+/* Each joint on an axis of its own, met exactly at the start: what they are off by shows only when
+ * the linkage has turned. */
+static void write_own_axes(char *text, double tilt, int32_t formulation)
+{
+    static const char *const names[3] = {"romega", "rp", "joint"};
+    snprintf(text, TEXT,
+             "se3d: 1\nparameters: {e: %.17g}\ngravity: [0, -9.81, 0]\nbodies:\n"
+             "  - {name: crank, mass: 1, inertia: [0.01, 0.02, 0.02], position: [0.15, 0.2, 0]}\n"
+             "  - {name: rod, mass: 1, inertia: [0.01, 0.09, 0.09], position: [0.75, 0.65, 0]}\n"
+             "  - {name: rocker, mass: 1, inertia: [0.01, 0.07, 0.07], position: [1.1, 0.45, 0]}\n"
+             "joints:\n"
+             "  - {name: J0, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: "
+             "[e, 0, 1]}\n"
+             "  - {name: J1, type: revolute, body_i: crank, body_j: rod, at: [0.3, 0.4, 0], axis: "
+             "[0.3*e, -0.7*e, 1]}\n"
+             "  - {name: J2, type: revolute, body_i: rod, body_j: rocker, at: [1.2, 0.9, 0], axis: "
+             "[-0.5*e, 0.9*e, 1]}\n"
+             "  - {name: J3, type: revolute, body_i: rocker, body_j: ground, at: [1, 0, 0], axis: "
+             "[0.8*e, 0.2*e, 1]}\n"
+             "analysis: {type: dynamics, duration: 3, tolerance: 1e-9, formulation: %s}\n"
+             "output:\n  - {file: r.csv, channels: [crank.position, rod.position, "
+             "rocker.angular_velocity]}\n",
+             tilt, names[formulation]);
+}
+
+static void there_is_no_gap_between_rounding_and_digits(void)
+{
+    static const double tilts[] = {1e-11, 1e-10, 1e-9, 4e-9, 1e-8, 2e-8, 3e-8, 6e-8, 1e-7, 1e-6};
+    char text[TEXT];
+    for (int32_t f = 0; f < 3; ++f) {
+        write_own_axes(text, 0.0, f);
+        text_model truth = text_model_open(text, -1, -1, 0.0);
+        text_model_run(&truth, 3.0);
+        for (size_t k = 0; k < sizeof tilts / sizeof *tilts; ++k) {
+            write_own_axes(text, tilts[k], f);
+            text_model m = text_model_open(text, -1, -1, 0.0);
+            text_model_run(&m, 3.0);
+            check_same(&m, &truth, NEAR + 100.0 * tilts[k]);
+            text_model_close(&m);
+        }
+        text_model_close(&truth);
+    }
+}
+
 static void it_keeps_its_energy_through_many_turns(void)
 {
     char text[TEXT];
@@ -593,6 +637,7 @@ static void the_report_names_the_rows(void)
 int main(void)
 {
     RUN(a_linkage_of_five_digits_moves_as_that_of_exact_data);
+    RUN(there_is_no_gap_between_rounding_and_digits);
     RUN(it_keeps_its_energy_through_many_turns);
     RUN(a_linkage_on_a_floating_base_moves_alike);
     RUN(every_analysis_does_without_the_same_rows);
