@@ -26,7 +26,9 @@
 #define SHORTER 0.9 /* at least, where it is known; else */
 #define REFINED 0.5 /* of a step that does not show what holds within it */
 
-#define CALM        0.5 /* of a limit, loads that three places show, */
+#define FOLLOWED 0.25 /* of the change of an excess: what its polynomials may differ by */
+
+#define CALM        0.5 /* of a limit, loads that all places show, */
 #define CALM_CHANGE 0.1 /* and their change, and that of the limit: no others are looked at */
 
 static const double places[PROBES] = {0.0, 0.27, 0.52, 0.79, 1.0};
@@ -41,6 +43,7 @@ typedef struct excess {
 /* What all of them say of the step. */
 typedef struct verdict {
     double doubt;   /* the most that may have been missed */
+    double blurred; /* the most that a polynomial which does not follow the forces could miss */
     double sure;    /* and what has, as far as one element can tell, */
     double peak;    /* at most here, */
     double part;    /* in so much of the step as would do it at that rate; */
@@ -205,15 +208,30 @@ static double integrate_above(double a, double b, double jump)
     return part / GRID * (jump + 0.5 * (fmax(a, 0.0) + fmax(b, 0.0)));
 }
 
+/* The quartic and the cubic differ by so much that neither follows what happens between the probes,
+ * as if a step spans a period of a force. What such a step could miss at most: all that the forces
+ * change by, in all of it. */
+static double find_blurred(const excess *x, double apart)
+{
+    double least = x->e[0], most = x->e[0];
+    for (size_t p = 1; p < PROBES; ++p) {
+        least = fmin(least, x->e[p]);
+        most = fmax(most, x->e[p]);
+    }
+    const double range = most - least;
+    return apart > FOLLOWED * range && most + range > 0.0 ? x->weight * range : 0.0;
+}
+
 static void judge(const excess *x, verdict *all)
 {
     double c = eval_through(x, 0, 0.0), worst = c + fabs(c - eval_through(x, 1, 0.0));
     double doubt = 0.0, sure = 0.0, begin = c > 0.0 ? 0.0 : -1.0;
-    double most = fmax(0.0, c), peak = 0.0;
+    double most = fmax(0.0, c), peak = 0.0, apart = worst - c;
     for (int k = 1; k <= GRID; ++k) {
         const double s = (double)k / GRID, c0 = c, worst0 = worst;
         c = eval_through(x, 0, s);
         worst = c + fabs(c - eval_through(x, 1, s));
+        apart = fmax(apart, worst - c);
         doubt += integrate_above(worst0, worst, x->jump);
         sure += integrate_above(c0, c, x->jump);
         peak = c > most ? s : peak;
@@ -221,6 +239,7 @@ static void judge(const excess *x, verdict *all)
         begin = c > 0.0 && begin < 0.0 ? find_begin(x, s - 1.0 / GRID, s) : begin;
     }
     all->doubt = se3di_larger(all->doubt, x->weight * doubt);
+    all->blurred = fmax(all->blurred, find_blurred(x, apart));
     all->since = c > 0.0 ? fmax(all->since, sure / (c + x->jump)) : all->since;
     if (x->weight * sure > all->sure) {
         all->sure = x->weight * sure;
@@ -232,7 +251,7 @@ static void judge(const excess *x, verdict *all)
 
 static void judge_all(const se3di_equations *equations, const se3di_memory_step *step, verdict *all)
 {
-    *all = (verdict){0.0, 0.0, 1.0, 0.0, 1.0, 0.0};
+    *all = (verdict){.peak = 1.0, .landing = 1.0};
     for (uint32_t k = 0; k < equations->friction.count; ++k) {
         for (int way = -1; way <= 1; way += 2) {
             excess x;
@@ -292,7 +311,7 @@ static se3d_status decide_at(se3di_equations *equations, const se3di_memory_step
     return SE3D_OK;
 }
 
-/* The ends and the middle show next to no load, and no change of it or of the limit: nothing is
+/* The probes show next to no load, and no change of it or of the limit: nothing is
  * expected between. */
 static int is_calm(const se3di_equations *equations)
 {
@@ -300,7 +319,7 @@ static int is_calm(const se3di_equations *equations)
     int calm = 1;
     for (uint32_t k = 0; k < friction->count; ++k) {
         double largest = 0.0, least = HUGE_VAL, most = 0.0, from = HUGE_VAL, to = -HUGE_VAL;
-        for (size_t p = 0; p < PROBES; p += 2) {
+        for (size_t p = 0; p < PROBES; ++p) {
             const double *of = friction->probes + 4 * (p * friction->count + k);
             largest = fmax(largest, fabs(of[0]));
             least = fmin(least, of[1]);
@@ -325,17 +344,18 @@ static se3d_status review(se3di_equations *equations, const se3di_memory_step *s
 {
     verdict all;
     double change = -1.0;
-    for (size_t p = 0; p < PROBES; p += 2) {
+    for (size_t p = 0; p < PROBES; ++p) {
         SE3DI_TRY(probe(equations, step, p));
     }
     if (is_calm(equations)) {
         return SE3D_OK;
     }
-    for (size_t p = 1; p < PROBES; p += 2) {
-        SE3DI_TRY(probe(equations, step, p));
-    }
     judge_all(equations, step, &all);
     *since = all.since > 0.0 ? all.since : 1.0;
+    if (all.blurred > 1.0 && !(all.sure > 1.0)) {
+        refuse(end, all.blurred, REFINED);
+        return SE3D_OK;
+    }
     if (all.doubt <= 1.0) {
         return SE3D_OK;
     }
