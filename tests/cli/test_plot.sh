@@ -52,6 +52,27 @@ for text in other tsda_mass 'block: position [m]'; do
 done
 ! grep -q 'block.position.x' "$dir/two.svg" || fail 'the name of the channel is repeated'
 
+# Transfer functions are drawn as Bode plots: 1 / (1 + s / 10)^3, whose phase goes on to -270 degrees.
+python3 - "$dir/modes_transfer.csv" <<'END_OF_PYTHON'
+import math, sys
+with open(sys.argv[1], "w") as file:
+    file.write("frequency,output1/input1.real,output1/input1.imag\n")
+    for k in range(200):
+        f = 0.01 * 10 ** (k / 40)
+        g = 1 / (1 + 2j * math.pi * f / 10) ** 3
+        file.write(f"{f!r},{g.real!r},{g.imag!r}\n")
+END_OF_PYTHON
+expect 'a Bode plot' 0 "$program" plot "$dir/modes_transfer.csv"
+for text in 'gain [dB]' 'phase [degree]' 'frequency [Hz]'; do
+    has "$dir/modes_transfer.svg" "$text"
+done
+has "$dir/modes_transfer.gp" 'set logscale x'
+awk -F, 'NR == 1 { head = $0 } NR > 1 { f = $1; g = -30 * log(1 + (0.2 * 3.14159265358979 * f) ^ 2) / log(10); p = -3 * atan2(0.2 * 3.14159265358979 * f, 1) * 180 / 3.14159265358979
+    if ($2 - g > 1e-5 || g - $2 > 1e-5 || $3 - p > 1e-5 || p - $3 > 1e-5) bad = bad " " f }
+    END { exit head != "frequency,output1/input1.gain,output1/input1.phase" || bad != "" || NR != 201 }' "$dir/modes_transfer.bode.csv" || fail 'gains and phases'
+expect 'as it is' 0 "$program" plot "$dir/modes_transfer.csv" -y output1/input1.real -o "$dir/real.svg"
+! grep -q 'gain' "$dir/real.svg" || fail 'a column that was named is another one'
+
 # Rounding is left out, with a word, but for what was named in full; short names, and one frame as wide as another.
 awk 'BEGIN { print "time,a.position.x,a.position.y,a.position.z,b.position.x"; for (k = 0; k < 50; ++k) print k ",1e-22," k "," 2 * k ",3" }' >"$dir/near.csv"
 expect 'rounding' 0 "$program" plot "$dir/near.csv"

@@ -233,7 +233,13 @@ static int plot_all(plot *p)
             return EXIT_FAILED;
         }
     }
-    if (!name_output(p) || !plot_choose(p)) {
+    if (!name_output(p)) {
+        return EXIT_USAGE;
+    }
+    if (!plot_make_bode(p)) {
+        return EXIT_FAILED;
+    }
+    if (!plot_choose(p)) {
         return EXIT_USAGE;
     }
     if (!process_is_found("gnuplot")) {
@@ -302,7 +308,8 @@ const command_entry plot_entry = {
             "the gnuplot script is kept as FILE.gp. Curves of one quantity share a frame; "
             "several files are compared in it. A channel is a column (pin.force.z), all "
             "components of one (pin.force) or all of an element (pin). A model is run "
-            "first, into results/<model>; without options, the plots that its `output` "
+            "first, into results/<model>. Transfer functions (modes_transfer.csv) are drawn as "
+            "Bode plots: gain and phase. Without options, the plots that its `output` "
             "asks for are drawn.",
     .options =
         (const command_option[]){
@@ -320,6 +327,9 @@ const command_entry plot_entry = {
         (const command_example[]){
             {"plot results/pendulum/pendulum.csv -y pin.force", "the reaction over time"},
             {"plot a.csv -y pin.force --style paper --width 85mm", "a figure of a paper"},
+            {"plot results/m/modes_transfer.csv", "a Bode plot"},
+            {"plot results/bump/bump.csv -x hub.travel -y hub.toe -y hub.camber",
+             "kinematics of a suspension over the travel of its wheel"},
             {"plot a.csv b.csv -y bar.position.z -o compared", "two runs in one frame"},
             {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",

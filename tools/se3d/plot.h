@@ -30,11 +30,12 @@ typedef struct plot {
     char x_title[160];
     double x_range[2];
     char base[4096];                    /* of the files written, without extension */
-    char spectra[PLOT_FILES_MAX][4200]; /* files of --fft */
+    char spectra[PLOT_FILES_MAX][4200]; /* files of --fft, or of gains and phases */
     char csv[PLOT_FILES_MAX][4096];     /* results of models that were run */
     int paper;                          /* --style paper: for print */
     double width;                       /* of the picture [mm]; 0: as it comes */
     int fft;
+    int bode; /* gains and phases over frequency */
     int quiet;
     int help;
     int done; /* the model's own plots are drawn */
@@ -44,6 +45,8 @@ typedef struct plot {
 int plot_choose(plot *p);
 /* Replace the tables by their amplitude spectra, in files beside the picture. */
 int plot_transform(plot *p);
+/* Replace tables of transfer functions by gains and phases, in files beside the picture. */
+int plot_make_bode(plot *p);
 /* Write the script. @return false: errno says why. */
 int plot_write_script(plot *p, const char *path);
 

@@ -16,7 +16,8 @@ enum { POINTS_MAX = 4000, ROWS_MAX = POINTS_MAX + 1 }; /* every so many rows, an
 /* Without -y: these, as far as the file has them. */
 static const char *const usual[] = {"position",     "velocity", "acceleration",     "angle",
                                     "displacement", "force",    "torque",           "effort",
-                                    "length",       "energy",   "angular_velocity", NULL};
+                                    "length",       "energy",   "angular_velocity", "gain",
+                                    "phase",        NULL};
 
 static int is_part(const char *name, const char *channel)
 {
@@ -462,7 +463,7 @@ static void put_margins(const plot *p, FILE *file)
     }
     put_range(file, "x", p->x_range);
     fprintf(file, "    set lmargin %d\n    set rmargin 3\n%s", digits + 7,
-            p->fft ? "    set logscale x\n" : "");
+            p->fft || p->bode ? "    set logscale x\n" : "");
 }
 
 /* What comes first: how to use the script, the numbers. @return false: no memory. */

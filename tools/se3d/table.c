@@ -268,7 +268,9 @@ static const char *const units[][2] = {{"time", "s"},
                                        {"energy", "J"},
                                        {"effort", "N or N m"}, /* these two if no scene tells */
                                        {"rate", "per s"},
-                                       {"frequency", "Hz"}};
+                                       {"frequency", "Hz"},
+                                       {"gain", "dB"},
+                                       {"phase", "degree"}};
 
 const char *table_get_unit(const table *t, const char *column, char *buffer, size_t size)
 {
