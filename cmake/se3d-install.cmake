@@ -131,8 +131,8 @@ if(TARGET se3d_program AND UNIX AND (NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMP
     add_custom_target(se3d_manual ALL DEPENDS ${se3d_manual})
 endif()
 
-# What `se3d view` and `se3d video` make their page of. three.js comes from npm or libjs-three when it is installed; where
-# neither is there, the page's first user makes it.
+# What `se3d view` and `se3d video` make their page of. three.js and uPlot come from npm when it is installed; where
+# npm is not there, the page's first user makes it.
 if(TARGET se3d_program)
     option(SE3D_BUNDLE_VIEWER "Install three.js with the viewer" ${PROJECT_IS_TOP_LEVEL})
     set(se3d_viewer_dir "${CMAKE_INSTALL_DATADIR}/se3d/viewer")

@@ -25,7 +25,7 @@ show_main() {
     else
         echo "plot:    se3d plot $folder/$name.csv (after: apt-get install --no-install-recommends gnuplot-nox)"
     fi
-    if command -v npm >/dev/null 2>&1 || [ -f /usr/share/javascript/three/three.min.js ]; then
+    if command -v npm >/dev/null 2>&1; then
         SE3D_CACHE=build/release/viewer "$program" view -q "$folder" &&
             echo "page:    $(pwd)/$folder/scene.html (any browser)" || echo "page:    not made, see above"
     else

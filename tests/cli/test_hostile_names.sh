@@ -6,7 +6,7 @@ set -u
 export SE3D_VIEWER="$source/tools/viewer" SE3D_PROGRAM="$program" TMPDIR="$dir/tmp"
 mkdir "$dir/tmp" "$dir/cache"
 printf '/* three.js */\n' >"$dir/cache/three.js"
-printf 'three 0.187 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
+printf 'three 0.187 uplot 1.6.32 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
 export SE3D_CACHE="$dir/cache"
 cat >"$dir/names.py" <<'END_OF_PYTHON'
 import json, os, re, shutil, struct, subprocess, sys
@@ -171,7 +171,7 @@ rm -rf "$dir/cache"
 mkdir "$dir/cache"
 chmod 777 "$dir/cache"
 printf 'PWNED\n' >"$dir/cache/three.js"
-printf 'three 0.187 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
+printf 'three 0.187 uplot 1.6.32 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
 expect 'a folder that all may change' 1 "$program" view . -o page.html
 says 'set SE3D_CACHE to a folder of your own'
 holds 'a page of others' [ ! -e page.html ]

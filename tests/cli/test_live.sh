@@ -14,7 +14,7 @@ expect 'no file' 2 "$program" live -
 says 'give a file'
 mkdir "$dir/cache" "$dir/live"
 printf '/* three.js */\n' >"$dir/cache/three.js"
-printf 'three 0.187 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
+printf 'three 0.187 uplot 1.6.32 %s\n' "$(cksum <"$source/tools/viewer/three_entry.js")" >"$dir/cache/three.stamp"
 export SE3D_CACHE="$dir/cache"
 if [ -z "${SE3D_HAS_MICROHTTPD:-}" ]; then
     expect 'built without a server' 1 "$program" live "$models/pendulum.yaml"

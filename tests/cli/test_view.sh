@@ -13,8 +13,8 @@ mkdir -m 777 "$dir/open" && mkdir "$dir/shown"
 expect 'a cache that others can change' 1 env SE3D_CACHE="$dir/open" "$program" view "$dir/shown"
 has "$dir/err" 'set SE3D_CACHE to a folder of your own'
 holds 'something was made in it' [ -z "$(ls -A "$dir/open")" ]
-if ! command -v npm >/dev/null 2>&1 && [ ! -f /usr/share/javascript/three/three.min.js ]; then
-    echo 'SKIPPED: neither npm nor libjs-three: no page was tested' >&2
+if ! command -v npm >/dev/null 2>&1; then
+    echo 'SKIPPED: no npm: no page was tested' >&2
     finish
 fi
 opens() {

@@ -49,7 +49,7 @@ view() {
         [ -f "$prefix/share/se3d/viewer/$part" ] || fail "not installed: $part of the viewer"
     done
     if [ ! -f "$prefix/share/se3d/viewer/three.js" ]; then
-        echo 'SKIPPED: neither npm nor libjs-three: the viewer has no three.js' >&2
+        echo 'SKIPPED: no npm: the viewer has no three.js' >&2
         return
     fi
     "$prefix/bin/se3d" run -q "$SE3D_SOURCE_DIR/examples/models/pendulum.yaml" -o "$work/pendulum"

@@ -76,11 +76,9 @@ const checkMotion = async ({ names, rows }) => {
     check(off < 1e-4, `at t = ${row[0]} the body is ${off} away`);
     const length = names.indexOf("spring.length");
     if (length > 0) check(Math.abs((await evaluate('se3d.scale("spring")'))[2] - row[length]) < 1e-4, "the spring stretches");
-    // The marker of the plot is at the time.
-    const scale = await evaluate('document.getElementById("plot").clientWidth / 380');
-    const x = 62 + 308 * (row[0] - rows[0][0]) / (rows[rows.length - 1][0] - rows[0][0]);
-    const shades = await Promise.all([0, -1, 1].map((d) => pixel("plot", (x + d) * scale, 30 * scale)));
-    check(shades.some((c) => c[0] > c[2] + 25), `the plot shows t = ${row[0]}: ${shades}`);
+    // The line of the plot is at the time.
+    const { now, min, max } = (await evaluate("se3d.plots.state()"))[0];
+    check(Math.abs(now - row[0]) < 0.01 * (max - min), `the plot shows t = ${row[0]}: ${now}`);
   }
   const first = await evaluate("se3d.picture(se3d.start)");
   check(first !== (await evaluate("se3d.picture((se3d.start + 0.4 * (se3d.end - se3d.start)))")), "the picture moves");
@@ -148,7 +146,7 @@ const checkPicks = async () => {
   await call("Page.navigate", { url: link });
   await start();
   const now = await evaluate("({ azimuth: se3d.orbit.azimuth, part: (se3d.state.time - se3d.start) / (se3d.end - se3d.start), picked: JSON.stringify(se3d.state.picked), ...se3d.state })");
-  check(now.azimuth === 1.25 && Math.abs(now.part - 0.3) < 1e-5 && now.colour === "speed" && now.labels && now.picked, `the link brings it back: ${JSON.stringify(now)}`);
+  check(Math.abs(now.azimuth - 1.25) < 1e-5 && Math.abs(now.part - 0.3) < 1e-5 && now.colour === "speed" && now.labels && now.picked, `the link brings it back: ${JSON.stringify(now)}`);
   check(picked === (await evaluate("JSON.stringify(se3d.state.picked)")), "and what was picked");
   await evaluate("se3d.set({colour: '', labels: false, picked: null})");
 };
@@ -190,16 +188,20 @@ const checkReactions = async ({ names, rows }) => {
 };
 const checkMouse = async () => {
   const orbit = () => evaluate("[se3d.orbit.azimuth, se3d.orbit.height, se3d.orbit.distance, ...se3d.orbit.target.toArray()]");
-  const first = await orbit();
+  check(await evaluate("se3d.controls.enableDamping"), "the view comes to rest by and by");
+  await evaluate("se3d.controls.enableDamping = false");
+  const first = await orbit(), height = await evaluate("document.getElementById('view').clientHeight"), turn = (a) => Math.atan2(Math.sin(a), Math.cos(a));
   await drag([300, 200], [400, 230]);
+  await wait(300);
   const turned = await orbit();
-  check(Math.abs(turned[0] - first[0] + 0.8) < 0.01 && Math.abs(turned[1] - first[1] - 0.24) < 0.01, "dragging turns the view");
+  check(Math.abs(turn(turned[0] - first[0] + 2 * Math.PI * 100 / height)) < 0.01 && Math.abs(turned[1] - first[1] - 2 * Math.PI * 30 / height) < 0.01, `dragging turns the view: ${first}, ${turned}`);
   await drag([300, 200], [360, 200], { modifiers: 8 });
+  await wait(300);
   const moved = await orbit();
-  check(apart(moved.slice(3), turned.slice(3)) > 1e-3 * first[2] && moved[0] === turned[0], "shift-drag moves it");
+  check(apart(moved.slice(3), turned.slice(3)) > 1e-3 * first[2] && Math.abs(moved[0] - turned[0]) < 1e-6, "shift-drag moves it");
   await call("Input.dispatchMouseEvent", { type: "mouseWheel", x: 300, y: 200, deltaX: 0, deltaY: 200 });
-  await wait(100);
-  check(Math.abs((await orbit())[2] / moved[2] - Math.exp(0.2)) < 1e-6, "the wheel zooms");
+  await wait(300);
+  check((await orbit())[2] > 1.05 * moved[2], "the wheel zooms");
   for (const state of ["frames", "traces", "dark"]) {
     const before = await evaluate("se3d.state." + state);
     await click(state);
@@ -215,9 +217,34 @@ const checkMouse = async () => {
   check(Math.abs(middle - 0.5) < 0.02, `the slider scrubs to ${middle} of the run`);
   await choose("speed", "0.25");
   check((await evaluate("se3d.state.speed")) === 0.25, "the speed is chosen");
-  const plotted = await evaluate('document.getElementById("plot").toDataURL()');
-  await choose("channel", await evaluate('(Number(document.getElementById("channel").value) % (document.getElementById("channel").options.length)) + 1'));
-  check(plotted !== (await evaluate('document.getElementById("plot").toDataURL()')), "another channel is plotted");
+  await checkPlots();
+};
+// Several plots share zoom, cursor and time; the legend has the values under the cursor, with units.
+const checkPlots = async () => {
+  const names = await evaluate("se3d.plots.quantities.map((q) => q.name)"), plots = () => evaluate("se3d.plots.state()");
+  if (names.length < 2) return;
+  await evaluate(`se3d.plots.choose(${JSON.stringify([names[0]])})`);
+  await choose("channel", names[1]);
+  check((await plots()).map((p) => p.name).join() === names[1], "another channel is plotted");
+  await choose("channel", names[0]);
+  await evaluate(`se3d.plots.add(${JSON.stringify(names[1])})`);
+  const [one, two] = await plots(), whole = one.max - one.min;
+  check(two.name === names[1] && Math.abs(two.max - one.max) < 1e-9 && one.rows > 10 && two.rows === one.rows, "and one more beside it");
+  const [left, top, width, high] = one.over, at = (part) => [left + part * width, top + high / 2];
+  await drag(at(0.25), at(0.5));
+  await until(`se3d.plots.state().every((p) => p.max - p.min < ${0.3 * whole} && p.max - p.min > ${0.2 * whole})`);
+  const state = await plots();
+  check(Math.abs(state[0].min - state[1].min) < 1e-9, "a zoom is of all plots");
+  await call("Input.dispatchMouseEvent", { type: "mouseMoved", x: at(0.7)[0], y: at(0.7)[1] });
+  const wanted = state[0].min + 0.7 * (state[0].max - state[0].min), step = whole / (one.rows - 1);
+  await until(`se3d.plots.state().every((p) => Math.abs(parseFloat(p.legend[0]) - ${wanted}) < ${2 * step})`);
+  const shown = (await plots())[1];
+  check(shown.legend.length === shown.columns + 1 && shown.legend[1].endsWith(shown.unit), `values and units: ${shown.legend}`);
+  const times = await evaluate("[se3d.start, se3d.end]");
+  await evaluate(`document.querySelector(".u-over").dispatchEvent(new MouseEvent("dblclick", { bubbles: true }))`);
+  await until(`se3d.plots.state()[0].max - se3d.plots.state()[0].min > ${0.9 * whole}`);
+  for (const type of ["mousePressed", "mouseReleased"]) await press(type, ...at(0.5), type === "mouseReleased" ? { buttons: 0 } : {});
+  await until(`Math.abs(se3d.state.time - ${(times[0] + times[1]) / 2}) < ${0.05 * (times[1] - times[0])}`);
 };
 // Where the body is, the picture differs from the same picture's corner of sky.
 const checkSeen = async () => {
@@ -270,7 +297,8 @@ const checkLive = async (model) => {
   const first = await evaluate(place);
   await until(`${place} !== ${first}`);
   check(await evaluate("se3d.state.playing"), "it moves at once");
-  check((await evaluate("document.getElementById('plot').offsetWidth")) > 0 && (await evaluate("se3d.end - se3d.state.time")) < 0.5, "the plot goes along");
+  await until("se3d.plots.state().length > 0 && se3d.plots.state()[0].rows > 10");
+  check((await evaluate("se3d.end - se3d.state.time")) < 0.5, "the plot goes along");
   await key(" ");
   await until("!se3d.state.playing");
   const still = await evaluate("se3d.state.time");
@@ -299,8 +327,10 @@ const checkLive = async (model) => {
   const version = await evaluate("se3dLive.version"), begin = Date.now();
   fs.writeFileSync(model, text.replace("[0.3, 0, 0]", "[0.2, 0, 0]").replace(/title: .*/, "title: Saved <b>"));
   await until(`se3dLive.version > ${version} && document.title === "Saved <b>" && (se3d.picture(se3d.start), true)`);
-  console.log(`${Date.now() - begin} ms from saving to the new picture, seen by the test`);
-  check((await evaluate("se3d.orbit.azimuth")) === camera, "the camera stays");
+  const passed = (await until("se3dLive.drawn > " + begin + " && se3dLive.drawn")) - begin; // one clock for both
+  console.log(`${passed.toFixed(0)} ms from saving to the new picture`);
+  check(passed < 5000, `${passed} ms from saving to the new picture`); // 300 ms on a machine with nothing else to do
+  check(Math.abs((await evaluate("se3d.orbit.azimuth")) - camera) < 1e-5, "the camera stays");
   fs.writeFileSync(model, text.replace("type: prismatic", "type: prismatik"));
   const trouble = await until("document.getElementById('trouble').textContent");
   check(/:7:\d+: .*prismatik/.test(trouble) && (await evaluate("document.title")) === "Saved <b>", `the message: ${trouble}`);
@@ -322,7 +352,7 @@ const checkPlayground = async () => {
   await until(`${inside}.se3dLive.state.t > 0.05 && ${inside}.se3d.position("block")[0] < 0.299`);
   check((await evaluate(`${inside}.document.getElementById("channel").options.length`)) > 0, "there is something to plot");
   await until(`${inside}.se3d.state.time > 0.2`);
-  check((await evaluate(`(() => { const c = ${inside}.document.getElementById("plot"); return new Set(c.getContext("2d").getImageData(0, 0, c.width, c.height).data).size; })()`)) > 2, "something is plotted");
+  await until(`${inside}.se3d.plots.state().length > 0 && ${inside}.se3d.plots.state()[0].rows > 10`);
   await evaluate(`(() => { const r = ${inside}.document.querySelector("#sliders input[type=range]"); r.value = 0.15; r.dispatchEvent(new Event("input")); })()`);
   await until(`Math.abs(${inside}.se3dLive.state.numbers[0] - 0.15) < 1e-3`);
   await write(model(70, "prismatik"));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make the playground: make.py PAGE. One page with the library as WebAssembly in it, which needs no
 server and asks for nothing: a model file on the left, what it does on the right. Needs emscripten
-(emcc), npm or libjs-three, and on Debian the sources of AMD, libyaml and expat, which are fetched.
+(emcc), npm, and on Debian the sources of AMD, libyaml and expat, which are fetched.
 Compiles what is newer than its object only, in build/playground."""
 import base64
 import concurrent.futures
@@ -86,7 +86,7 @@ def make_live_page(three):
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n<title>se3d</title>\n<style>\n' +
             read("viewer.css") + "</style></head><body>\n" + read("viewer.html") + read("live.html") +
             "<script>window.se3dAsk = parent.se3dAsk;</script>\n<script>\n" + three + "\n</script>\n<script>\n" +
-            read("viewer.js") + "</script>\n<script>\n" + read("live.js") + "</script>\n</body></html>\n")
+            read("plots.js") + "</script>\n<script>\n" + read("viewer.js") + "</script>\n<script>\n" + read("live.js") + "</script>\n</body></html>\n")
 
 
 def make_page(engine, three):

@@ -174,6 +174,8 @@ int page_put_end(FILE *file, const page_parts *p, const char *script)
     fputs("<script>\n", file);
     int good = put_file(file, p->cache, "three.js");
     fputs("\n</script>\n<script>\n", file);
+    good = good && put_file(file, p->viewer, "plots.js");
+    fputs("</script>\n<script>\n", file);
     good = good && put_file(file, p->viewer, "viewer.js");
     if (script) {
         fputs("</script>\n<script>\n", file);

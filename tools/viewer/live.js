@@ -63,12 +63,14 @@
   });
 
   const open = async () => {
+    await window.se3dReady;
     const scene = await (await ask("scene")).json();
     if (viewer) { viewer.share(); viewer.close(); }
     viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;
+    requestAnimationFrame(() => requestAnimationFrame(() => { window.se3dLive.drawn = Date.now(); })); // the first picture is there
   };
   const follow = async () => {
     let sequence = 0;

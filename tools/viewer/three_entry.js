@@ -1,8 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the viewer uses of three.js: only this is bundled.
+// What the viewer uses of three.js and uPlot: only this is bundled.
+import uPlot from "uplot";
+import style from "uplot/dist/uPlot.min.css";
+
+const sheet = document.createElement("style");
+sheet.textContent = style;
+document.head.prepend(sheet); // what the page says of its own comes after it
+
+export { uPlot };
+export { OrbitControls } from "three/addons/controls/OrbitControls.js";
 export {
   AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group,
   HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, Line, LineBasicMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion, Raycaster,
-  REVISION, Scene, ShaderMaterial, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
+  MeshBasicMaterial, MeshStandardMaterial, MOUSE, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion,
+  Raycaster, Scene, ShaderMaterial, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
 } from "three";

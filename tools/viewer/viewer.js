@@ -21,7 +21,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   const accessor = (k) => {
     const a = gltf.accessors[k];
     const width = { SCALAR: 1, VEC3: 3, VEC4: 4 }[a.type];
-    const type = { 5126: Float32Array, 5122: Int16Array, 5123: Uint16Array }[a.componentType];
+    const type = { 5126: Float32Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array }[a.componentType];
     const raw = new type(glb.slice(binary + gltf.bufferViews[a.bufferView].byteOffset).slice(0, a.count * width * type.BYTES_PER_ELEMENT));
     return { width, values: a.normalized ? Float32Array.from(raw, (v) => v / 32767) : raw };
   };
@@ -62,8 +62,8 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     const o = n.mesh === undefined ? new THREE.Group() : drawn(gltf.meshes[n.mesh]);
     o.name = n.name;
     if (n.extras) Object.assign(o.userData, n.extras);
-    if (o.isMesh && o.name === "shape" && o.geometry.attributes.position.count < 60000) outline(o);
-    if (o.isMesh && o.material.opacity === 1 && !o.userData.wire) o.castShadow = o.receiveShadow = true;
+    if (o.isMesh && (o.name === "shape" || o.name === "road") && o.geometry.attributes.position.count < 60000) outline(o);
+    if (o.isMesh && o.material.opacity === 1 && !o.userData.wire) { o.receiveShadow = true; o.castShadow = o.name !== "road"; }
     if (n.translation) o.position.fromArray(n.translation);
     if (n.rotation) o.quaternion.fromArray(n.rotation);
     if (n.scale) o.scale.fromArray(n.scale);
@@ -196,15 +196,13 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   const shown = elements.filter((e) => e.place);
 
   const scene = new THREE.Scene();
-  const old = parseInt(THREE.REVISION, 10) < 155, unit = old ? 1 / Math.PI : 1; // Debian's: other units of light, no gamma
-  scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6 * unit));
-  const sun = new THREE.DirectionalLight(0xffffff, 2.2 * unit);
+  scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6));
+  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
   scene.add(sun, sun.target);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
   const renderer = se3dRenderer || (se3dRenderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true }));
   renderer.clippingPlanes = [];
-  if (old) renderer.gammaOutput = true;
   renderer.shadowMap.enabled = sun.castShadow = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
   renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
@@ -226,7 +224,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     const paints = new Float32Array(3 * count).map((v, k) => [0.93, 0.72, 0.42][k % 3]), paint = new THREE.InstancedBufferAttribute(paints, 3);
     shape.setAttribute("paint", paint);
     const flat = { value: 0 }; // 1: the colours as they are, to count what is seen
-    shape.instanceCount = shape.maxInstancedCount = count;
+    shape.instanceCount = count;
     const cloud = new THREE.Mesh(shape, new THREE.ShaderMaterial({
       uniforms: { flat_: flat },
       vertexShader: `attribute vec4 place; attribute float shade; attribute vec3 paint; varying vec2 corner; varying float tone; varying vec3 tint;
@@ -314,11 +312,35 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
       }
     });
   }
+  if (grid) { // a floor under a road lies just below it
+    let least = Infinity;
+    pose(start); root.updateMatrixWorld(true);
+    root.traverse((o) => { if (o.name === "road" && o.isMesh) { o.geometry.computeBoundingBox(); least = Math.min(least, o.geometry.boundingBox.clone().applyMatrix4(o.matrixWorld).min.z); } });
+    if (least < Infinity) grid.position.z = least - 0.004 * high.distanceTo(low);
+  }
   if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
   if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
   const center = low.clone().add(high).multiplyScalar(0.5);
   const size = Math.max(1e-6, high.distanceTo(low));
-  const orbit = { azimuth: -0.9, height: 0.35, distance: 1.35 * size, target: center.clone() };
+  // three.js's own controls move the camera; here in angles about what it looks at.
+  const controls = new THREE.OrbitControls(camera, renderer.domElement);
+  Object.assign(controls, { enableDamping: true, dampingFactor: 0.15, zoomToCursor: true, minDistance: size / 400, maxDistance: 20 * size });
+  controls.target.copy(center);
+  const look = () => { const [x, y, z] = [...camera.position.clone().sub(controls.target)], flat = Math.hypot(x, y); return [Math.atan2(y, x), Math.atan2(z, flat), Math.hypot(flat, z)]; };
+  const place = (azimuth, height, distance) => {
+    const c = Math.cos(height);
+    camera.position.set(Math.cos(azimuth) * c, Math.sin(azimuth) * c, Math.sin(height)).multiplyScalar(distance).add(controls.target);
+    camera.lookAt(controls.target);
+  };
+  const orbit = {
+    get azimuth() { return look()[0]; }, set azimuth(v) { place(v, look()[1], look()[2]); },
+    get height() { return look()[1]; }, set height(v) { place(look()[0], Math.min(1.55, Math.max(-1.55, v)), look()[2]); },
+    get distance() { return look()[2]; }, set distance(v) { place(look()[0], look()[1], v); },
+    target: controls.target,
+    // Look at another point from the same side.
+    aim: (at) => { camera.position.sub(controls.target).add(at); controls.target.copy(at); },
+  };
+  place(-0.9, 0.35, 1.35 * size);
   camera.near = size / 500; camera.far = size * 50;
   // The sun's shadow falls on bodies and on the floor, which is where the grid is.
   sun.position.set(0.3, -0.5, 0.8).multiplyScalar(2 * size).add(center);
@@ -481,11 +503,8 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     pose(state.time);
     if (grains) grains.move(state.time);
     shade();
-    if (state.follow > 0) orbit.target.copy(bodies[state.follow].position);
+    if (state.follow > 0) orbit.aim(bodies[state.follow].position);
     root.updateMatrixWorld(true);
-    const c = Math.cos(orbit.height);
-    camera.position.set(Math.cos(orbit.azimuth) * c, Math.sin(orbit.azimuth) * c, Math.sin(orbit.height))
-      .multiplyScalar(orbit.distance).add(orbit.target);
     camera.lookAt(orbit.target);
     for (const { arrow, joint, column } of arrows) {
       va.set(value(column, state.time), value(column + 1, state.time), value(column + 2, state.time));
@@ -544,7 +563,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     if (grains) { grains.move(state.time); grains.paint(state.colour, range); }
     painted.forEach((list, k) => list.forEach(({ o, own }) => {
       o.material.color.copy(own);
-      if (now) { const [r, g, b] = ramp(now[k] / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); if (o.material.color.convertSRGBToLinear) o.material.color.convertSRGBToLinear(); }
+      if (now) { const [r, g, b] = ramp(now[k] / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); o.material.color.convertSRGBToLinear(); }
     }));
     $("legend").style.display = state.colour ? "block" : "none";
     if (state.colour) {
@@ -591,30 +610,11 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     return o ? { body: o.userData.body } : null;
   };
 
-  const canvas = $("plot"), pen = canvas.getContext("2d");
+  const plots = se3dPlots($("plots"), { names: results.names, units: results.units, rows: () => rows, at, seek: (t) => { if (!live) { set({ time: t, playing: false }); draw(); } } });
+  addEventListener("resize", () => plots.resize(), { signal: closing.signal });
   const plot = () => {
-    if (n < 2) return;
-    const scale = devicePixelRatio || 1, w = 380, h = 190, left = 62, right = 10, top = 24, bottom = 24;
-    if (canvas.width !== w * scale) { canvas.width = w * scale; canvas.height = h * scale; }
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
-    pen.clearRect(0, 0, w, h);
-    const style = getComputedStyle(document.body), k = Number($("channel").value) || Math.min(1, n - 1);
-    let bottomValue = Infinity, topValue = -Infinity;
-    for (let r = 0; r < rows; ++r) { bottomValue = Math.min(bottomValue, at(r, k)); topValue = Math.max(topValue, at(r, k)); }
-    if (!(topValue - bottomValue > 1e-9 * Math.abs(topValue)) || topValue - bottomValue < 1e-12) { bottomValue -= 1; topValue += 1; }
-    const x = (t) => left + (w - left - right) * (t - at(0, 0)) / Math.max(1e-12, at(rows - 1, 0) - at(0, 0));
-    const y = (v) => h - bottom - (h - top - bottom) * (v - bottomValue) / (topValue - bottomValue);
-    pen.fillStyle = style.color; pen.font = "11px sans-serif"; pen.textAlign = "left";
-    pen.fillText(results.names[k] + (results.units[k] ? " [" + results.units[k] + "]" : ""), left, 15);
-    pen.textAlign = "right";
-    pen.fillText(topValue.toPrecision(4), left - 5, top + 4);
-    pen.fillText(bottomValue.toPrecision(4), left - 5, h - bottom + 4);
-    pen.fillText("time [s]  " + at(rows - 1, 0).toPrecision(4), w - right, h - 7);
-    pen.strokeStyle = "#8894a0"; pen.lineWidth = 1; pen.strokeRect(left, top, w - left - right, h - top - bottom);
-    pen.strokeStyle = "#1f6fb4"; pen.lineWidth = 1.5; pen.beginPath();
-    for (let r = 0; r < rows; ++r) pen.lineTo(x(at(r, 0)), y(at(r, k)));
-    pen.stroke();
-    pen.strokeStyle = "#d1495b"; pen.beginPath(); pen.moveTo(x(state.time), top); pen.lineTo(x(state.time), h - bottom); pen.stroke();
+    if (live) plots.refresh();
+    plots.time(state.time);
   };
 
   const set = (change) => {
@@ -625,6 +625,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     if (state.traces && !traces.length) makeTraces();
     traces.forEach((t) => { t.visible = state.traces; });
     document.body.classList.toggle("dark", state.dark);
+    if ("dark" in change) plots.theme();
     if (grid) { grid.material.color.set(state.dark ? 0x4a5560 : 0xb4bcc6); }
     lineworks.forEach((o) => { if (!o.parent.userData.wire) o.material.color.set(state.dark ? 0xaab4be : 0x10161c); });
     scene.background = new THREE.Color(state.dark ? 0x161b20 : 0xf4f6f8);
@@ -655,28 +656,22 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   $("mode").parentElement.style.display = shapes.length ? "" : "none";
   $("mode").onchange = () => { set({ mode: Number($("mode").value), phase: 0, playing: true }); draw(); };
   bodies.forEach((b, k) => { if (k > 0) $("follow").add(new Option(b.name, String(k))); });
-  results.names.forEach((name, k) => { if (k > 0) $("channel").add(new Option(name, String(k))); });
-  // The plot begins with the first channel that is more than rounding.
-  const choose = () => {
-    for (let k = 1; k < n; ++k) {
-      let least = Infinity, most = -Infinity;
-      for (let r = 0; r < rows; ++r) { least = Math.min(least, at(r, k)); most = Math.max(most, at(r, k)); }
-      if (most - least > 1e-9 && !results.names[k].includes(".orientation.")) { $("channel").value = String(k); break; }
-    }
-  };
+  plots.quantities.forEach((q) => $("channel").add(new Option(q.name, q.name)));
+  // The plots begin with what is more than rounding.
+  const choose = () => plots.choose(plots.suggest(innerWidth > 1000 && innerHeight > 600 ? 2 : 1));
   choose();
-  if (n < 2) canvas.style.display = $("channel").parentElement.style.display = "none";
+  if (n < 2) $("plots").style.display = $("channel").parentElement.style.display = $("another").style.display = "none";
   $("reactions").disabled = !arrows.length;
   $("time").min = start; $("time").max = end; $("time").step = "any";
   $("time").oninput = () => { set({ time: Number($("time").value), playing: false }); draw(); };
   $("play").onclick = () => (live ? live.post(state.playing ? "pause" : "run") : set({ playing: !state.playing, time: state.time >= end ? start : state.time }));
   $("speed").onchange = () => (live ? live.post("speed", $("speed").value) : set({ speed: Number($("speed").value) }));
-  $("follow").onchange = () => { set({ follow: Number($("follow").value) }); if (state.follow < 0) orbit.target.copy(center); };
+  $("follow").onchange = () => { set({ follow: Number($("follow").value) }); if (state.follow < 0) orbit.aim(center); };
   // A link that keeps camera, time and what is chosen.
   const round = (v) => Number(v.toPrecision(6));
   const share = () => {
     const part = new URLSearchParams({ t: round(state.time), view: [orbit.azimuth, orbit.height, orbit.distance, ...orbit.target.toArray()].map(round).join(","),
-      plot: results.names[Number($("channel").value)] || "", show: ["frames", "reactions", "traces", "dark", "solid", "labels"].filter((key) => state[key]).join(",") });
+      plot: plots.names().join(","), show: ["frames", "reactions", "traces", "dark", "solid", "labels"].filter((key) => state[key]).join(",") });
     if (state.follow > 0) part.set("follow", bodies[state.follow].name);
     if (state.colour) part.set("colour", state.colour);
     if (state.mode) part.set("mode", String(state.mode));
@@ -688,8 +683,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     const part = new URLSearchParams(location.hash.slice(1)), change = {};
     const view = (part.get("view") || "").split(",").map(Number);
     if (view.length === 6 && view.every(Number.isFinite) && view[2] > 0) {
-      Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])), distance: view[2] });
-      orbit.target.fromArray(view, 3); change.zoomed = true;
+      orbit.target.fromArray(view, 3); place(view[0], Math.min(1.55, Math.max(-1.55, view[1])), view[2]); change.zoomed = true;
     }
     if (view.length === 2 && view.every(Number.isFinite)) { Object.assign(orbit, { azimuth: view[0], height: Math.min(1.55, Math.max(-1.55, view[1])) }); fit(); }
     if (part.has("part")) Object.assign(change, { time: start + Number(part.get("part")) * (end - start) || start, playing: false });
@@ -702,8 +696,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
     const element = elements.findIndex((e) => e.name === part.get("picked")), body = bodies.findIndex((b) => b.name === part.get("picked"));
     if (element >= 0) change.picked = { element }; else if (body >= 0) change.picked = { body };
-    const channel = results.names.indexOf(part.get("plot"));
-    if (channel > 0) $("channel").value = String(channel);
+    if (part.get("plot")) plots.choose(part.get("plot").split(","));
     return change;
   };
   $("share").onclick = () => {
@@ -714,7 +707,8 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   $("labelled").onclick = () => { set({ labels: !state.labels }); draw(); };
   for (const key of ["frames", "reactions", "traces", "dark"]) $(key).onclick = () => set({ [key]: !state[key] });
   let chosen = new URLSearchParams(location.hash.slice(1)).has("plot"); // by the user
-  $("channel").onchange = () => { chosen = true; draw(); };
+  $("channel").onchange = () => { chosen = true; plots.replace($("channel").value); draw(); };
+  $("another").onclick = () => { chosen = true; plots.add($("channel").value); draw(); };
   addEventListener("keydown", (e) => {
     const step = (end - start) / 100;
     const keys = {
@@ -724,50 +718,31 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
       f: () => set({ frames: !state.frames }), r: () => set({ reactions: !state.reactions }), t: () => set({ traces: !state.traces }),
       d: () => set({ dark: !state.dark }), x: () => set({ solid: !state.solid }), l: () => set({ labels: !state.labels }),
       c: () => set({ cut: (state.cut + 1) % 4 }), "?": () => set({ help: !state.help }), h: () => set({ help: !state.help }),
-      Escape: () => set({ help: false, picked: null }), 0: () => { orbit.target.copy(center); state.zoomed = false; fit(); },
+      Escape: () => set({ help: false, picked: null }), 0: () => { orbit.aim(center); state.zoomed = false; fit(); },
       b: () => { set({ follow: state.follow < 0 ? Math.min(1, bodies.length - 1) : state.follow + 1 < bodies.length ? state.follow + 1 : -1 }); },
     };
     if (live) Object.assign(keys, { ArrowRight: () => live.post("step"), Home: () => live.post("reset"), "+": null, "-": null, ArrowLeft: null, End: null });
     if (keys[e.key] && !(e.target.closest && e.target.closest("select, #sliders")) && !e.ctrlKey && !e.metaKey) { keys[e.key](); e.preventDefault(); }
   }, { signal: closing.signal });
-  // One finger or the mouse turns; two fingers zoom and move; a click picks.
-  let grabbed = null;
-  const view = $("view"), fingers = new Map();
-  const spread = () => { const [a, b] = [...fingers.values()]; return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, apart: Math.max(1, Math.hypot(a.x - b.x, a.y - b.y)) }; };
-  view.onpointerdown = (e) => {
+  // A click picks; the rest of the mouse and of fingers is the controls', unless a body is pulled.
+  const view = renderer.domElement;
+  let down = null;
+  view.addEventListener("pointerdown", (e) => {
+    down = { x: e.clientX, y: e.clientY, id: e.pointerId };
+    if (!live || !(e.ctrlKey || live.pulls()) || !(pull = grab(e.clientX, e.clientY))) return;
+    controls.enabled = false;
     view.setPointerCapture(e.pointerId);
-    if (live && (e.ctrlKey || live.pulls()) && (pull = grab(e.clientX, e.clientY))) { haul(e.clientX, e.clientY); return; }
-    fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
-    grabbed = { x: e.clientX, y: e.clientY, way: fingers.size > 1 ? 99 : 0, pan: e.button === 2 || e.shiftKey || fingers.size > 1 };
-    if (fingers.size === 2) Object.assign(grabbed, spread());
+    haul(e.clientX, e.clientY);
+  }, { signal: closing.signal, capture: true });
+  view.addEventListener("pointermove", (e) => { if (pull) haul(e.clientX, e.clientY); }, { signal: closing.signal });
+  const leave = (e) => {
+    if (pull) { pull = null; controls.enabled = true; live.post("release"); return; }
+    if (down && down.id === e.pointerId && e.type === "pointerup" && Math.hypot(e.clientX - down.x, e.clientY - down.y) < 4) set({ picked: pick(e.clientX, e.clientY) });
+    down = null;
   };
-  view.onpointerup = view.onpointercancel = (e) => {
-    if (pull) { pull = null; live.post("release"); return; }
-    fingers.delete(e.pointerId);
-    if (!grabbed || fingers.size) { grabbed = null; return; }
-    if (grabbed.way < 4 && e.type === "pointerup") set({ picked: pick(e.clientX, e.clientY) });
-    else if (!grabbed.pan) { see(); fresh = true; }
-    grabbed = null;
-  };
-  view.oncontextmenu = (e) => e.preventDefault();
-  view.onpointermove = (e) => {
-    if (pull) { haul(e.clientX, e.clientY); return; }
-    if (!grabbed) return;
-    if (fingers.has(e.pointerId)) fingers.set(e.pointerId, { x: e.clientX, y: e.clientY });
-    const now = fingers.size === 2 ? spread() : { x: e.clientX, y: e.clientY };
-    const dx = now.x - grabbed.x, dy = now.y - grabbed.y;
-    if (now.apart && grabbed.apart) { orbit.distance *= grabbed.apart / now.apart; state.zoomed = true; }
-    Object.assign(grabbed, now);
-    grabbed.way += Math.abs(dx) + Math.abs(dy);
-    if (grabbed.pan) {
-      const k = orbit.distance / innerHeight;
-      va.set(1, 0, 0).applyQuaternion(camera.quaternion); orbit.target.addScaledVector(va, -dx * k);
-      va.set(0, 1, 0).applyQuaternion(camera.quaternion); orbit.target.addScaledVector(va, dy * k);
-    } else {
-      orbit.azimuth -= dx * 0.008; orbit.height = Math.min(1.55, Math.max(-1.55, orbit.height + dy * 0.008));
-    }
-  };
-  view.onwheel = (e) => { orbit.distance *= Math.exp(0.001 * e.deltaY); state.zoomed = true; e.preventDefault(); };
+  for (const type of ["pointerup", "pointercancel"]) view.addEventListener(type, leave, { signal: closing.signal });
+  controls.addEventListener("start", () => { state.zoomed = true; });
+  controls.addEventListener("end", () => { see(); fresh = true; });
 
   // From the side from which most joints are seen; what still hides one is seen through.
   fit();
@@ -798,6 +773,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
       state.time += state.speed * passed;
       if (state.time > end) state.time = start + (state.time - end) % (end - start);
     }
+    if (!film) controls.update();
     if (!film && isOther()) draw();
     requestAnimationFrame(frame);
   };
@@ -820,11 +796,14 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   };
   const close = () => {
     closing.abort();
+    controls.dispose();
+    plots.close();
     scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
   };
   // For tests and films.
+  const written = { title: null, hide: [], captions: [] };
   window.se3d = {
-    state, start, end, orbit, set,
+    state, start, end, orbit, controls, set,
     show: (t) => { set({ time: t, playing: false }); draw(); },
     // The time of the row of results that was kept next to t (all of them where there are few).
     sampled: (t) => { const [a, b, part] = locate((k) => at(k, 0), rows, t); return at(part < 0.5 ? a : b, 0); },
@@ -832,9 +811,16 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     film: (width, height, azimuth, elevation) => {
       film = [width, height]; renderer.setPixelRatio(1);
       Object.assign(orbit, { azimuth: azimuth * Math.PI / 180, height: elevation * Math.PI / 180 });
-      state.zoomed = false; orbit.target.copy(center); fit(); see();
+      state.zoomed = false; orbit.aim(center); fit(); see();
       set({ playing: false, dark: false });
       return `${start} ${end}`;
+    },
+    // What is written on the pictures of a film.
+    words: ({ title, hide, caption }) => {
+      if (title !== undefined) written.title = title;
+      if (hide !== undefined) written.hide = hide.split(",");
+      if (caption) written.captions.push(caption);
+      return "good";
     },
     // What is seen at a time: the scene, title, clock and plot.
     picture: (t) => {
@@ -842,14 +828,30 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
       const sheet = document.createElement("canvas"), w = sheet.width = renderer.domElement.width, h = sheet.height = renderer.domElement.height;
       const brush = sheet.getContext("2d"), style = getComputedStyle(document.body);
       brush.drawImage(renderer.domElement, 0, 0);
-      brush.fillStyle = style.color; brush.font = "bold 18px sans-serif"; brush.fillText($("title").textContent, 16, 30);
-      brush.font = "18px sans-serif"; brush.fillText($("clock").textContent, 16, h - 18);
-      if (n > 1) { brush.fillStyle = style.getPropertyValue("--panel"); brush.fillRect(w - 388, 8, 380, 190); brush.drawImage(canvas, w - 388, 8, 380, 190); }
+      brush.fillStyle = style.color; brush.font = "bold 18px sans-serif";
+      if (!written.hide.includes("title")) brush.fillText(written.title === null ? $("title").textContent : written.title, 16, 30);
+      brush.font = "18px sans-serif";
+      if (!written.hide.includes("time")) brush.fillText($("clock").textContent, 16, h - 18);
+      written.captions.filter(([from, to]) => t >= from && t < to).forEach(([, , text], k) => {
+        brush.font = "24px sans-serif";
+        const wide = Math.min(w - 40, brush.measureText(text).width), y = h - 34 - 44 * k;
+        brush.fillStyle = style.getPropertyValue("--panel"); brush.fillRect((w - wide) / 2 - 14, y - 29, wide + 28, 40);
+        brush.fillStyle = style.color; brush.fillText(text, (w - wide) / 2, y, wide);
+      });
+      let top = 8;
+      for (const { title, canvas, frame, line } of (written.hide.includes("plots") ? [] : plots.pictures().slice(0, 3))) {
+        const wide = canvas.width, high = canvas.height + 22, left = w - wide - 8;
+        brush.fillStyle = style.getPropertyValue("--panel"); brush.fillRect(left, top, wide, high);
+        brush.fillStyle = style.color; brush.font = "13px sans-serif"; brush.fillText(title, left + 8, top + 16);
+        brush.drawImage(canvas, left, top + 22);
+        if (line >= 0 && line <= 1) { brush.fillStyle = "#d1495b"; brush.fillRect(left + frame.left + line * frame.width - 0.5, top + 22 + frame.top, 1.5, frame.height); }
+        top += high + 6;
+      }
       return sheet.toDataURL("image/jpeg", 0.93);
     },
     // Where grain k (from 0 in the order of ids) is, and its radius.
     grain: (k) => Array.from(grains.place.subarray(4 * k, 4 * k + 4)),
-    share, pick: (x, y) => { set({ picked: pick(x, y) }); draw(); return $("info").textContent; },
+    plots, share, pick: (x, y) => { set({ picked: pick(x, y) }); draw(); return $("info").textContent; },
     elements: () => shown.map((e) => e.name),
     // How many points of the picture show each joint or spring: those that change when it has another colour.
     seen: (t) => {
@@ -902,6 +904,8 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   return { feed, close, share };
 };
 if (document.getElementById("glb")) {
-  const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
-  se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
+  Promise.resolve(window.se3dReady).then(() => {
+    const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
+    se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
+  }).catch((e) => { window.se3dProblem = String(e.message); throw e; });
 }
