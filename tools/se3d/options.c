@@ -32,6 +32,15 @@ static int add_setting(options *o, const char *command, const char *text)
     return EXIT_DONE;
 }
 
+static int add_caption(options *o, const char *command, const char *text)
+{
+    if (o->caption_count == CAPTIONS_MAX) {
+        return usage_error(command, "too many --caption, no room for", text);
+    }
+    o->captions[o->caption_count++] = text;
+    return EXIT_DONE;
+}
+
 /* The place that the value of an option goes to; NULL: it has none or is unknown. */
 static const char **value_target(options *o, const char *name)
 {
@@ -47,7 +56,8 @@ static const char **value_target(options *o, const char *name)
                  {"--fmi", &o->fmi},           {"--shard", &o->shard},
                  {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint},
                  {"--match", &o->match},       {"--kind", &o->kind},
-                 {"--port", &o->port}};
+                 {"--port", &o->port},         {"--title", &o->title},
+                 {"--hide", &o->hide}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -100,6 +110,9 @@ static int read_valued(options *o, const char *command, const char *name, const 
     }
     if (strcmp(name, "--set") == 0) {
         return add_setting(o, command, value) == EXIT_DONE ? used : 0;
+    }
+    if (strcmp(name, "--caption") == 0) {
+        return add_caption(o, command, value) == EXIT_DONE ? used : 0;
     }
     *target = value;
     return used;

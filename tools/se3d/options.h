@@ -9,7 +9,7 @@
 #include "se3d/io.h"
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
-enum { SETTINGS_MAX = 256 };
+enum { SETTINGS_MAX = 256, CAPTIONS_MAX = 32 };
 
 typedef struct options {
     const char *model;
@@ -31,6 +31,10 @@ typedef struct options {
     const char *match;
     const char *kind;
     const char *port;
+    const char *title;
+    const char *hide;
+    const char *captions[CAPTIONS_MAX];
+    size_t caption_count;
     se3d_model_setting settings[SETTINGS_MAX];
     char names[SETTINGS_MAX][200];
     size_t setting_count;

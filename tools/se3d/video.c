@@ -13,8 +13,10 @@
 #include "interrupt.h"
 #include "options.h"
 #include "process.h"
+#include "text.h"
 #include "view.h"
 
+enum { TEXT_MOST = 200 }; /* bytes of a title or caption */
 enum { RATE = 30, FRAMES_MAX = 60 * 60 * RATE, PATH_SIZE = 4096, START_SECONDS = 60 };
 
 typedef struct film {
@@ -25,8 +27,9 @@ typedef struct film {
     char page[PATH_SIZE + 64];
     double start, end; /* of the motion [s] */
     double speed;
-    double view[2]; /* azimuth, elevation [degrees] */
-    size_t count;   /* of pictures */
+    double view[2];       /* azimuth, elevation [degrees] */
+    const options *words; /* title, captions and what is hidden; NULL: as it comes */
+    size_t count;         /* of pictures */
     devtools browser;
     child encoder;
 } film;
@@ -63,6 +66,94 @@ static int meet_page(film *f)
         child_pause(100);
     }
     return fail("the page does not start in Chromium", "");
+}
+
+/* A text as a JavaScript string in single quotes, all but letters and digits as %xx. */
+static void quote(const char *text, char *quoted, size_t size)
+{
+    size_t used = (size_t)snprintf(quoted, size, "decodeURIComponent('");
+    for (const char *c = text; *c && used + 6 < size; ++c) {
+        const int plain =
+            (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
+        used += (size_t)snprintf(quoted + used, size - used, plain ? "%c" : "%%%02X",
+                                 (unsigned)(unsigned char)*c);
+    }
+    snprintf(quoted + used, size - used, "')");
+}
+
+/* A caption as the command line has it, FROM,TO,TEXT [s]. @return its text; NULL: it is none. */
+static const char *read_caption(const char *word, double *from, double *to)
+{
+    char *rest = NULL;
+    *from = strtod(word, &rest);
+    if (rest == word || *rest != ',') {
+        return NULL;
+    }
+    const char *second = rest + 1;
+    *to = strtod(second, &rest);
+    const int good = rest != second && *rest == ',' && rest[1] && isfinite(*from) && *to > *from;
+    return good && strlen(rest + 1) <= TEXT_MOST && text_is_plain(rest + 1) ? rest + 1 : NULL;
+}
+
+static int check_words(const options *o)
+{
+    static const char known[] = ",title,time,plots,";
+    for (size_t k = 0; k < o->caption_count; ++k) {
+        double from = 0.0, to = 0.0;
+        if (!read_caption(o->captions[k], &from, &to)) {
+            fprintf(stderr,
+                    "se3d video: the caption is `%s`, must be FROM,TO,TEXT: seconds of the motion "
+                    "and at most %d bytes of text\n",
+                    o->captions[k], TEXT_MOST);
+            return 0;
+        }
+    }
+    if (o->title && (strlen(o->title) > TEXT_MOST || !text_is_plain(o->title))) {
+        fprintf(stderr, "se3d video: the title must be a text of at most %d bytes\n", TEXT_MOST);
+        return 0;
+    }
+    for (const char *word = o->hide; word; word = strchr(word, ',')) {
+        char one[40];
+        word += *word == ',';
+        const size_t length = strcspn(word, ",");
+        snprintf(one, sizeof one, ",%.*s,", length < 30 ? (int)length : 30, word);
+        if (one[1] == ',' || !strstr(known, one)) {
+            fprintf(stderr, "se3d video: hidden is `%s`, must be of title, time, plots\n", o->hide);
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Tell the page what is written on the pictures. */
+static int put_words(film *f)
+{
+    char quoted[3 * TEXT_MOST + 40];
+    char expression[880];
+    const options *o = f->words;
+    if (o && o->title) {
+        quote(o->title, quoted, sizeof quoted);
+        snprintf(expression, sizeof expression, "se3d.words({title: %s})", quoted);
+        if (!devtools_evaluate(&f->browser, expression)) {
+            return fail("Chromium does not answer", "");
+        }
+    }
+    if (o && o->hide) {
+        snprintf(expression, sizeof expression, "se3d.words({hide: '%.60s'})", o->hide);
+        if (!devtools_evaluate(&f->browser, expression)) {
+            return fail("Chromium does not answer", "");
+        }
+    }
+    for (size_t k = 0; o && k < o->caption_count; ++k) {
+        double from = 0.0, to = 0.0;
+        quote(read_caption(o->captions[k], &from, &to), quoted, sizeof quoted);
+        snprintf(expression, sizeof expression, "se3d.words({caption: [%.9g, %.9g, %s]})", from, to,
+                 quoted);
+        if (!devtools_evaluate(&f->browser, expression)) {
+            return fail("Chromium does not answer", "");
+        }
+    }
+    return 1;
 }
 
 /* Real time over speed; a motion that lasts no time is shown for a second. */
@@ -218,7 +309,8 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     if (good) {
         good = (devtools_open(&f->browser, chromium, f->folder, f->page) ||
                 fail("Chromium does not answer: ", chromium)) &&
-               meet_page(f) && plan(f) && start_encoder(f) && put_pictures(f, quiet);
+               meet_page(f) && put_words(f) && plan(f) && start_encoder(f) &&
+               put_pictures(f, quiet);
         devtools_close(&f->browser);
     }
     good = finish(f, good);
@@ -230,7 +322,7 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
 }
 
 static int write_film(const char *results, const char *path, double speed, const double view[2],
-                      int quiet)
+                      const options *words, int quiet)
 {
     const char *chromium = devtools_find_chromium();
     film *f = calloc(1, sizeof *f);
@@ -244,6 +336,7 @@ static int write_film(const char *results, const char *path, double speed, const
     } else {
         f->path = path;
         f->speed = speed;
+        f->words = words;
         f->view[0] = view[0];
         f->view[1] = view[1];
         code = make_film(f, chromium, results, quiet);
@@ -260,7 +353,7 @@ static const double usual_view[2] = {-52.0, 20.0};
 
 int video_write(const char *results, const char *path, double speed, int quiet)
 {
-    return write_film(results, path, speed, usual_view, quiet);
+    return write_film(results, path, speed, usual_view, NULL, quiet);
 }
 
 int view_read_angles(const char *command, const char *text, double view[2])
@@ -297,7 +390,7 @@ static int command_video(int count, char *const *words)
         fprintf(stderr, "se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
         return EXIT_USAGE;
     }
-    if (!view_read_angles("video", o.view, view)) {
+    if (!view_read_angles("video", o.view, view) || !check_words(&o)) {
         return EXIT_USAGE;
     }
     code = run_for_view("video", o.model, o.quiet, folder, sizeof folder);
@@ -305,7 +398,7 @@ static int command_video(int count, char *const *words)
         return code;
     }
     snprintf(path, sizeof path, "%.4000s/motion.mp4", folder);
-    return write_film(folder, o.directory ? o.directory : path, speed, view, o.quiet);
+    return write_film(folder, o.directory ? o.directory : path, speed, view, &o, o.quiet);
 }
 
 const command_entry video_entry = {
@@ -325,12 +418,19 @@ const command_entry video_entry = {
             {"--speed", NULL, "S", "seconds of motion in a second of film (default 1: real time)"},
             {"--view", NULL, "A,E",
              "from where: azimuth from x to y and elevation [degrees] (default -52,20)"},
+            {"--title", NULL, "TEXT", "in place of the title of the model"},
+            {"--caption", NULL, "FROM,TO,TEXT",
+             "a text below, from and to these times of the motion [s]; may be repeated"},
+            {"--hide", NULL, "WORDS", "of title, time, plots: what is left out"},
             {"--quiet", "-q", NULL, "print nothing but errors, show no progress"},
             {0}},
-    .examples = (const command_example[]){{"video results/pendulum", "results/pendulum/motion.mp4"},
-                                          {"video results/drum --speed 0.1 --view 0,10",
-                                           "ten times slower, from the side"},
-                                          {"video results/drum -o drum.webp", "a loop"},
-                                          {0}},
+    .examples =
+        (const command_example[]){
+            {"video results/pendulum", "results/pendulum/motion.mp4"},
+            {"video results/drum --speed 0.1 --view 0,10", "ten times slower, from the side"},
+            {"video results/drum -o drum.webp --hide time,plots", "a loop with its title alone"},
+            {"video results/car --caption '0,1.5,before the kerb'",
+             "words below the first 1.5 s of the motion"},
+            {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",
 };
