@@ -47,7 +47,7 @@ def look(where, name):
                 xml.parse(path)
             if f.endswith(".html"):
                 page = open(path, "rb").read()
-                check(len(re.findall(rb"</?script", page, re.I)) == 12 and b"<!--" not in page.split(b"id=\"results\"")[1].split(b"</script>")[0],
+                check(len(re.findall(rb"</?script", page, re.I)) == 14 and b"<!--" not in page.split(b"id=\"results\"")[1].split(b"</script>")[0],
                       "a page of other scripts", name)
                 page.decode("utf-8")
     check(not os.path.exists(os.path.join(root, "PWNED")) and not os.listdir(os.environ["TMPDIR"]), "left something", name)
