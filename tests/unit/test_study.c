@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "io/study/design.h"
+#include "io/study/inplace.h"
 #include "io/study/quantile.h"
 #include "io/study/random.h"
 #include "se3d/study.h"
@@ -600,6 +601,87 @@ static void requests_are_answered(void)
     close_study(s);
 }
 
+/* Samples whose parameters are set in the system, and those whose model is read anew: the same
+ * bits, the same reasons. */
+static void compare_samples(se3d_model *model, uint64_t count, int kept)
+{
+    double measures[2][12];
+    se3d_study *set = NULL, *read = NULL;
+    se3d_model_error errors[2];
+    CHECK(model && se3d_study_create(model, &set, NULL) == SE3D_OK);
+    CHECK(model && se3d_study_create(model, &read, NULL) == SE3D_OK);
+    if (!set || !read) {
+        return;
+    }
+    const size_t size = se3d_study_count_measures(set) * sizeof **measures;
+    double parameters[8];
+    CHECK(size <= sizeof *measures && se3d_study_count_parameters(set) <= 8);
+    read->rebuilds = true;
+    for (uint64_t k = 0; k < count; ++k) {
+        CHECK(se3d_study_get_sample(set, k, parameters) == SE3D_OK);
+        const se3d_status one = se3d_study_eval(set, parameters, measures[0], &errors[0]);
+        const se3d_status other = se3d_study_eval(read, parameters, measures[1], &errors[1]);
+        CHECK(one == other && memcmp(measures[0], measures[1], size) == 0);
+        CHECK(strcmp(errors[0].message, errors[1].message) == 0);
+        CHECK(one < 0 || se3di_inplace_is_kept(set) == kept);
+        CHECK(!se3di_inplace_is_kept(read));
+    }
+    se3d_study_destroy(set);
+    se3d_study_destroy(read);
+}
+
+static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
+{
+    static const struct {
+        const char *file;
+        uint64_t count;
+        int kept;
+    } files[] = {{"study/damper", 7, 1}, {"fsae/two_wheels", 2, 0}};
+    static const char head[] =
+        "se3d: 1\nunits: {length: mm, angle: deg}\nparameters: {a: 2, m: 3*a + b, b: 1, J: 2e4, "
+        "up: 30, x: 0, block: 1}\ngravity: [0, 0, -9810]\n"
+        "bodies:\n- {name: plate, mass: m, inertia: [[J, 10, 0], [10, 2*J + a, 0], [0, 0, 3e4]], "
+        "position: [50, 0, %s]}\n"
+        "joints: [{name: pin, type: revolute, body_i: ground, body_j: plate, at: [0, 0, 0], "
+        "axis: [0, 1, 0]}]\n"
+        "forces:\n- {name: coil, type: rsda, joint: pin, k: 200 + 9*a, c: 2*b, theta0: up, "
+        "preload: 50*b}\n- {name: rope, type: tsda, body_i: ground, body_j: plate, at: [0, 0, "
+        "200], "
+        "at_2: [50, 0, 0], k: b*20 N/m, c: a, l0: 150*a}\n"
+        "analysis: {type: dynamics, duration: 0.2, step: 0.01%s}\n"
+        "study: {parameters: {%s}, measures: {q: {final: pin.angle}, e: {max: energy.total}, w: "
+        "{final: energy.balance}, "
+        "f: {min: rope.force}, t: q*a + m + %s}}\n";
+    static const struct {
+        const char *height, *more, *parameters, *last;
+        uint64_t count;
+        int kept;
+    } rows[] = {{"0", "", "a: [2, 3], b: [1, 0.5]", "b", 4, 1},
+                {"0", "", "a: [-5, 2, -1, 3]", "J", 4, 1}, /* no mass is below 0 */
+                {"0", "", "J: [20000, -1, 3e4], up: [10, -500]", "up", 6, 1},
+                {"0", ", tolerance: 1e-9", "J: [2e4, 3e4]", "1", 2, 1},
+                {"10*x", "", "b: [1, 2]", "x", 2, 1},
+                {"10*a", "", "a: [2, 3]", "1", 2, 0},  /* where it stands */
+                {"x + m", "", "b: [1, 2]", "1", 2, 0}, /* through another parameter */
+                {"0", ", method: radau, tolerance: 1e-6*a", "a: [1, 2]", "1", 2, 0}};
+    char text[3000];
+    for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
+        const char *source = getenv("SE3D_SOURCE_DIR");
+        se3d_model *model = NULL;
+        snprintf(text, sizeof text, "%s/examples/%s.yaml", source ? source : ".", files[k].file);
+        CHECK(se3d_model_read_file(text, NULL, &model, NULL) == SE3D_OK);
+        compare_samples(model, files[k].count, files[k].kept);
+        se3d_model_destroy(model);
+    }
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        snprintf(text, sizeof text, head, rows[k].height, rows[k].more, rows[k].parameters,
+                 rows[k].last);
+        se3d_model *model = read_model(text);
+        compare_samples(model, rows[k].count, rows[k].kept);
+        se3d_model_destroy(model);
+    }
+}
+
 int main(void)
 {
     RUN(the_generator_gives_the_known_answers);
@@ -616,5 +698,6 @@ int main(void)
     RUN(mistakes_are_refused_with_what_is_allowed);
     RUN(tables_have_a_row_for_each_sample);
     RUN(requests_are_answered);
+    RUN(samples_are_set_in_place_with_the_bits_of_a_reading);
     return check_finish();
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* One run of the model of a study: read again from its tree with other parameters, run without
- * files, measured on the way. */
+/* One run of the model of a study: with other parameters, read again from its tree if need be, run
+ * without files, measured on the way. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,9 +10,8 @@
 #include "io/channel/sample.h"
 #include "io/document/document.h"
 #include "io/document/value.h"
-#include "io/read/include.h"
-#include "io/read/mistakes.h"
 #include "io/run/watch.h"
+#include "io/study/inplace.h"
 #include "io/study/study.h"
 
 #define SHARP 1e-11 /* tolerance of runs whose differences count */
@@ -20,7 +19,9 @@
 typedef struct trial {
     se3d_study *study;
     se3d_model *model;
-    size_t *places; /* [source_count] in a row */
+    bool is_set;       /* the model is that of the study's prototype */
+    se3di_iopool pool; /* of this sample */
+    size_t *places;    /* [source_count] in a row */
     se3d_model_error *error;
 } trial;
 
@@ -30,25 +31,16 @@ static se3d_status fail(const trial *t, se3d_status status, const char *text)
     return status;
 }
 
-/* The model with these parameters. */
-static se3d_status read_model(trial *t, const se3di_named *values, size_t count)
+/* The model with these parameters: set, or read. */
+static se3d_status make_model(trial *t, const se3di_named *values, size_t count)
 {
-    const se3d_model *like = t->study->model;
-    t->model = se3di_model_create(&like->pool.allocator);
-    if (!t->model) {
-        return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
+    se3d_study *study = t->study;
+    const se3d_status status = se3di_inplace_begin(study, values, count, &t->pool, &t->model);
+    t->is_set = t->model != NULL;
+    if (status < 0) {
+        return fail(t, status, "out of memory");
     }
-    t->model->file = like->file;
-    t->model->name = like->name;
-    t->model->root = like->root;
-    se3di_attempt attempt = {.model = t->model,
-                             .options = &t->study->entry->options,
-                             .error = t->error,
-                             .library = like->library,
-                             .values = values,
-                             .value_count = count,
-                             .study = t->study->entry};
-    return se3di_model_fill(&attempt);
+    return t->is_set ? SE3D_OK : se3di_study_read(study, values, count, &t->model, t->error);
 }
 
 /* What a row is made of. */
@@ -56,9 +48,9 @@ static se3d_status find_channels(trial *t, se3di_output_entry *output)
 {
     const size_t count = t->study->entry->source_count;
     const se3di_study_channel *measured = t->model->measured;
-    se3di_channel *channels = se3di_iopool_array(&t->model->pool, count, sizeof *channels);
+    se3di_channel *channels = se3di_iopool_array(&t->pool, count, sizeof *channels);
     size_t place = 1;
-    t->places = se3di_iopool_array(&t->model->pool, count, sizeof *t->places);
+    t->places = se3di_iopool_array(&t->pool, count, sizeof *t->places);
     if (!channels || !t->places) {
         return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
     }
@@ -136,15 +128,14 @@ static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue
 }
 
 /* An expression over the measures above it and the parameters of this model. */
-static se3d_status eval_expression(const trial *t, size_t index, const double *measures,
-                                   double *value)
+static se3d_status eval_expression(trial *t, size_t index, const double *measures, double *value)
 {
     const se3di_study_entry *entry = t->study->entry;
     const se3di_scope *scope = t->model->scope;
     const size_t count = index + scope->symbol_count;
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
-    se3d_expression_symbol *symbols = se3di_iopool_array(&t->model->pool, count, sizeof *symbols);
+    se3d_expression_symbol *symbols = se3di_iopool_array(&t->pool, count, sizeof *symbols);
     *value = (double)NAN;
     if (!symbols) {
         return SE3D_ERR_NO_MEMORY;
@@ -172,7 +163,7 @@ static se3d_status eval_expression(const trial *t, size_t index, const double *m
 }
 
 /* All measures at the end of the run. */
-static se3d_status conclude(const trial *t, double *measures)
+static se3d_status conclude(trial *t, double *measures)
 {
     const se3d_study *study = t->study;
     se3d_status result = SE3D_OK;
@@ -226,7 +217,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
     se3d_run_options how = se3d_run_options_default();
     how.interrupt = study->interrupt;
     how.interrupt_ctx = study->interrupt_ctx;
-    se3d_status status = read_model(t, values, count);
+    se3d_status status = make_model(t, values, count);
     if (status >= 0) {
         status = find_channels(t, &output);
     }
@@ -258,8 +249,14 @@ se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t
     const se3di_floats host = se3di_floats_set();
     study->is_running = true;
     ++study->model->running;
+    se3di_iopool_init(&t.pool, &study->pool.allocator);
     const se3d_status status = run(&t, values, count, measures);
-    se3d_model_destroy(t.model);
+    if (t.is_set) {
+        se3di_inplace_end(study);
+    } else {
+        se3d_model_destroy(t.model);
+    }
+    se3di_iopool_destroy(&t.pool);
     --study->model->running;
     study->is_running = false;
     se3di_floats_restore(host);

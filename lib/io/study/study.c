@@ -11,6 +11,7 @@
 #include "io/base/number.h"
 #include "io/document/document.h"
 #include "io/study/design.h"
+#include "io/study/inplace.h"
 
 static se3d_status fail(se3d_model_error *error, const char *file, se3d_status status,
                         const char *text)
@@ -152,6 +153,7 @@ void se3d_study_destroy(se3d_study *study)
 {
     if (study && !study->is_running) {
         se3di_iopool_destroy(&study->reply_pool);
+        se3di_inplace_destroy(study);
         se3di_iopool pool = study->pool; /* the study itself lies in it */
         se3di_iopool_destroy(&pool);
     }

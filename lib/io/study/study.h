@@ -26,7 +26,9 @@ struct se3d_study {
     se3di_named *values; /* of the parameters, for the reader */
     se3d_interrupt interrupt;
     void *interrupt_ctx;
-    bool is_running;  /* a sample: what it calls back may neither begin another nor destroy it */
+    bool is_running; /* a sample: what it calls back may neither begin another nor destroy it */
+    bool rebuilds;   /* every sample reads the model anew: for tests */
+    struct se3di_prototype *prototype; /* inplace.c; NULL: none */
     bool is_sharp;    /* runs are as exact as methods can: their differences count */
     const char *head; /* first lines of its tables, without the shard */
     char *row;
@@ -49,6 +51,10 @@ typedef struct se3di_study_point {
 /* Run the model with some parameters of it. @return as se3d_study_eval. */
 se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
                             double *measures, se3d_model_error *error);
+/* Read the model with some parameters of it; the caller destroys what was made, also if it failed.
+ * @return OK, or why not: `error` says it */
+se3d_status se3di_study_read(se3d_study *study, const se3di_named *values, size_t count,
+                             se3d_model **model, se3d_model_error *error);
 /* Take derivatives of all measures, by runs beside the point; `centre`: the measures there.
  * `errors` (may be NULL) are estimates. NaN: there is none.
  * @return OK, NO_MEMORY, INTERRUPTED */
