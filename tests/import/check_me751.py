@@ -119,14 +119,53 @@ def mistakes():
         tool.check([n["kind"] for n in notes if "no expression" in n["message"]] == ["lost"], f"{value}: {notes}")
     text, _ = tool.convert(write("me751_jet.adm", change(fun=0.5, df=2, ddf=3)))
     tool.check("value: '0.5 + (2)*t + (3)/2*t^2'" in text, f"a jet: {text}")
-    _, notes = tool.convert(write("me751_tsda.mdl", dict(matlab(), TSDAs=[{"k": 1}])), code=1)
-    tool.check([n["kind"] for n in notes if "TSDAs" in n["message"]] == ["lost"], f"forces: {notes}")
+    for what, force in {"two bodies": {"k": 1}, "itself": {"k": 1, "body1": 1, "body2": 1},
+                        "no expression": None, "no axis": {"type": "RSDA", "body1": 1, "body2": 0},
+                        "on the ground": {"type": "force", "body": 0, "F": [1, 2, 3]},
+                        "three numbers": {"type": "torque", "body": 1, "torque": [1, 2]},
+                        "must be TSDA": {"type": "magnet"}}.items():
+        force = force or {"body1": 1, "body2": "ground", "h": "@(l, ldot, t)(l)"}
+        _, notes = tool.convert(write("me751_tsda.mdl", dict(matlab(), TSDAs=[force])), code=1)
+        tool.check([n["kind"] for n in notes if "TSDAs[0]" in n["message"]] == ["lost"], f"{what}: {notes}")
+    refused("k must be a number", dict(matlab(), TSDAs=[{"body1": 1, "body2": "ground", "k": "soft"}]))
+
+
+def forces():
+    """The same pendulum with springs, a force and torques: what the driver has to hold against them."""
+    k, c, l0, actuator = 30.0, 4.0, 1.5, 7.0
+    kr, cr, load, torque = 25.0, 3.0, [0.5, -20.0, 11.0], 9.0
+    model = matlab()
+    model["TSDAs"] = [{"name": "spring", "body1": "ground", "body2": 1, "sPiBAR": [0, 3, 1], "sQjBAR": [L, 0, 0],
+                       "k": k, "c": c, "l_0": l0, "h": f"@(t)({actuator}.*t)"}]
+    model["forces"] = [{"type": "RSDA", "body1": "ground", "body2": 1, "aiBAR": [1, 0, 0], "k": kr, "c": cr},
+                       {"type": "PointForce", "body": 1, "sBAR": [L, 0, 0], "F": load},
+                       {"type": "torque", "name": "turn", "body": 1, "nBAR": [0, 0, f"@(t)({torque}.*t)"]}]
+    text, notes = tool.convert(write("me751_forces.mdl", model))
+    tool.check(all(n["kind"] in ("named", "note") for n in notes), f"forces: notes are {notes}")
+    analysis = ("analysis: {type: inverse_dynamics, duration: 2, step: 0.25}\n"
+                "output: [{file: results.csv, every: 0.25, channels: [drive.torque, spring.length]}]\n")
+    table = tool.run("me751_forces", tool.replace_analysis(text, analysis))
+    about = MASS * L ** 2 + MASS / 12 * ((2 * L) ** 2 + WIDTH ** 2)
+    first = theta(0.0)[0]
+    for n, t in enumerate(table["time"]):
+        a, v, acc = theta(t)
+        tip = (2 * L * math.sin(a), -2 * L * math.cos(a))
+        rate = (2 * L * math.cos(a) * v, 2 * L * math.sin(a) * v)
+        d = (tip[0] - 3, tip[1] - 1)
+        length = math.hypot(*d)
+        pull = k * (length - l0) + c * (d[0] * rate[0] + d[1] * rate[1]) / length + actuator * t
+        push = [load[1] - pull * d[0] / length, load[2] - pull * d[1] / length]
+        moment = tip[0] * push[1] - tip[1] * push[0] - kr * (a - first) - cr * v + torque * t
+        needed = about * acc + MASS * 9.81 * L * math.sin(a) - moment
+        tool.near("the length", table["spring.length"][n], length, 1e-9)
+        tool.near("the torque against forces", abs(table["drive.torque.x"][n]), abs(needed), 1e-6)
 
 
 def main():
     pendulum("matlab.mdl", matlab())
     pendulum("python.adm", python())
     mistakes()
+    forces()
     print("import.me751: passed")
 
 

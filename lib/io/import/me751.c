@@ -35,6 +35,19 @@ static const member point_names[2] = {{{"spibar", "si", "sbari", "s1", "sibar", 
                                       {{"sqjbar", "sj", "sbarj", "s2", "sjbar", "sqj", "s2bar"}}};
 static const member c_names = {{"c"}};
 static const member value_names = {{"fun", "f", "function"}};
+static const member stiffness_names = {{"k", "stiffness", "spring"}};
+static const member damping_names = {{"c", "damping", "damper"}};
+static const member length_names = {{"l0", "lzero", "freelength", "restlength"}};
+static const member angle_names = {{"theta0", "thetazero", "freeangle", "restangle"}};
+static const member actuator_names = {{"h", "actuator", "fun", "function"}};
+static const member one_body_names = {{"body", "body1", "bodyi", "body2", "bodyj"}};
+static const member one_point_names = {{"sbar", "s", "spibar", "si", "sbari", "point", "location"}};
+static const member load_names = {{"force", "f", "value", "fun"}};
+static const member torque_names = {{"torque", "t", "value", "fun"}};
+static const member own_torque_names = {{"nbar", "tbar", "torquebar"}};
+static const member frame_names = {{"frame"}};
+static const member reference_names[2] = {{{"bibar", "bi", "fibar", "refi"}},
+                                          {{"bjbar", "bj", "fjbar", "refj"}}};
 static const member value_rate_names[2] = {{{"df", "fdot", "ft"}}, {{"ddf", "fddot", "ftt"}}};
 
 typedef struct reader {
@@ -429,6 +442,223 @@ static bool read_constraint(reader *r, const se3di_node *map)
     return m->status >= 0;
 }
 
+/* ---- forces ---------------------------------------------------------------------------------*/
+
+/* Note that a force is not carried. */
+static bool lose(se3di_machine *m, const se3di_node *node, const char *why)
+{
+    char path[200];
+    se3di_node_format_path(node, path, sizeof path);
+    se3di_machine_note_of(m, SE3D_IMPORT_LOST, node->line, "`%.120s` is not carried: %s", path,
+                          why);
+    return m->status >= 0;
+}
+
+/* A function of t as it is written; *value NULL: none that is an expression. */
+static bool take_function(se3di_machine *m, const se3di_node *node, const char **value)
+{
+    double number = 0.0;
+    const char *text = text_of(node);
+    const size_t length = text ? se3di_scan_number(text, false, &number) : 0;
+    *value = NULL;
+    if (length > 0 && !text[length]) {
+        *value = se3di_machine_number(m, number);
+    } else if (text) {
+        const char *expression = expression_of(m, text);
+        *value = expression && compiles(expression) ? se3di_machine_quote(m, expression) : NULL;
+    }
+    return m->status >= 0;
+}
+
+static bool put_number(se3di_machine *m, const se3di_node *map, const member *wanted,
+                       const char *key, se3di_entry *entry)
+{
+    const se3di_node *node = find(map, wanted);
+    double value = 0.0;
+    if (!node) {
+        return true;
+    }
+    if (!read_number(m, node, &value)) {
+        return false;
+    }
+    se3di_entry_put_number(m, entry, key, value);
+    return m->status >= 0;
+}
+
+static se3di_entry *begin_force(se3di_machine *m, const se3di_node *map, const char *type)
+{
+    const char *name = se3di_machine_name(m, text_of(se3di_node_get(map, "name")), type, map->line);
+    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    if (entry) {
+        se3di_entry_put_text(m, entry, "name", name);
+        se3di_entry_put(m, entry, "type", type);
+    }
+    return entry;
+}
+
+/* What a spring has beside its points or axes. */
+static bool put_law(se3di_machine *m, const se3di_node *map, bool turns, const char *actuator,
+                    se3di_entry *entry)
+{
+    if (!put_number(m, map, &stiffness_names, "k", entry) ||
+        !put_number(m, map, &damping_names, "c", entry) ||
+        !put_number(m, map, turns ? &angle_names : &length_names, turns ? "theta0" : "l0", entry)) {
+        return false;
+    }
+    if (actuator) {
+        se3di_entry_put(m, entry, "h", actuator);
+    }
+    return m->status >= 0;
+}
+
+static bool put_points(se3di_machine *m, const se3di_node *map, se3di_entry *entry)
+{
+    return put_vector(m, map, &point_names[0], "point_i", false, entry) &&
+           put_vector(m, map, &point_names[1], "point_j", false, entry);
+}
+
+/* The axis on body i, and the directions that the angle is between, if they are given. */
+static bool put_axis(se3di_machine *m, const se3di_node *map, se3di_entry *entry)
+{
+    static const char *const keys[2] = {"ref_i", "ref_j"};
+    if (!put_vector(m, map, &direction_names[0], "axis_i", true, entry)) {
+        return false;
+    }
+    for (int k = 0; k < 2 && find(map, &reference_names[0]) && find(map, &reference_names[1]);
+         ++k) {
+        if (!put_vector(m, map, &reference_names[k], keys[k], true, entry)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool read_spring(reader *r, const se3di_node *map, bool turns)
+{
+    se3di_machine *m = r->m;
+    const se3di_node *law = find(map, &actuator_names);
+    const char *actuator = NULL;
+    size_t bodies[2] = {0, 0};
+    if (!find(map, &body_names[0]) || !find(map, &body_names[1])) {
+        return lose(m, map, "it does not name two bodies");
+    }
+    if (turns && !find(map, &direction_names[0])) {
+        return lose(m, map, "it has no axis `aiBAR`");
+    }
+    if (!find_body(r, map, &body_names[0], &bodies[0]) ||
+        !find_body(r, map, &body_names[1], &bodies[1])) {
+        return false;
+    }
+    if (bodies[0] == bodies[1]) {
+        return lose(m, map, "it is between one body and itself");
+    }
+    if (law && !se3di_node_is_null(law) &&
+        !se3di_scan_equal(text_of(law) ? text_of(law) : "", "none") &&
+        !(take_function(m, law, &actuator) && actuator)) {
+        return m->status >= 0 && lose(m, map, "its actuator is no number and no expression in t");
+    }
+    se3di_entry *entry = begin_force(m, map, turns ? "rsda" : "tsda");
+    se3di_entry_put_text(m, entry, "body_i", se3di_machine_body_name(m, bodies[0]));
+    se3di_entry_put_text(m, entry, "body_j", se3di_machine_body_name(m, bodies[1]));
+    return entry && (turns ? put_axis(m, map, entry) : put_points(m, map, entry)) &&
+           put_law(m, map, turns, actuator, entry);
+}
+
+/* Three numbers or functions of t as a list; NULL: they are not. */
+static const char *take_components(se3di_machine *m, const se3di_node *node)
+{
+    const char *parts[3] = {NULL, NULL, NULL};
+    if (!node || node->kind != SE3DI_NODE_LIST || node->count != 3) {
+        return NULL;
+    }
+    int k = 0;
+    for (const se3di_node *one = node->first; one; one = one->next, ++k) {
+        if (!take_function(m, one, &parts[k]) || !parts[k]) {
+            return NULL;
+        }
+    }
+    return se3di_machine_text(m, "[%s, %s, %s]", parts[0], parts[1], parts[2]);
+}
+
+/* A force at a point, or a torque; that of the ground's axes, or with the name of a torque in its
+ * body's, or a `frame` that says so, of those. */
+static bool read_load(reader *r, const se3di_node *map, bool turns)
+{
+    se3di_machine *m = r->m;
+    const se3di_node *own = turns ? find(map, &own_torque_names) : NULL;
+    const se3di_node *node = own ? own : find(map, turns ? &torque_names : &load_names);
+    const char *frame = text_of(find(map, &frame_names));
+    const char *value = take_components(m, node);
+    size_t body = 0;
+    if (!value || !find(map, &one_body_names)) {
+        return m->status >= 0 && lose(m, map, "it needs a body, and three numbers or functions");
+    }
+    if (!find_body(r, map, &one_body_names, &body)) {
+        return false;
+    }
+    if (body == SE3DI_GROUND) {
+        return lose(m, map, "it acts on the ground");
+    }
+    se3di_entry *entry = begin_force(m, map, turns ? "torque" : "force");
+    se3di_entry_put_text(m, entry, "body", se3di_machine_body_name(m, body));
+    if (!entry || (!turns && find(map, &one_point_names) &&
+                   !put_vector(m, map, &one_point_names, "point", false, entry))) {
+        return false;
+    }
+    se3di_entry_put(m, entry, "value", value);
+    if (own || (frame && (se3di_scan_equal(frame, "body") || se3di_scan_equal(frame, "local")))) {
+        se3di_entry_put(m, entry, "frame", "body");
+    }
+    return m->status >= 0;
+}
+
+/* What a list or a type is of, by its name. */
+typedef enum force_kind { NO_FORCE, SPRING, TURN_SPRING, LOAD, TORQUE, SOME_FORCE } force_kind;
+
+static force_kind kind_of(const char *text)
+{
+    static const struct {
+        const char *name;
+        force_kind kind;
+    } table[] = {{"tsda", SPRING},       {"tsdas", SPRING},      {"rsda", TURN_SPRING},
+                 {"rsdas", TURN_SPRING}, {"forces", SOME_FORCE}, {"force", LOAD},
+                 {"pointforce", LOAD},   {"pointforces", LOAD},  {"torque", TORQUE},
+                 {"torques", TORQUE},    {"loads", SOME_FORCE},  {"puretorque", TORQUE}};
+    char plain[KEY_MAX];
+    plain_text(text ? text : "", plain);
+    for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+        if (strcmp(plain, table[k].name) == 0) {
+            return table[k].kind;
+        }
+    }
+    return NO_FORCE;
+}
+
+static bool read_force(reader *r, const se3di_node *map, force_kind kind)
+{
+    const char *type = map->kind == SE3DI_NODE_MAP ? text_of(se3di_node_get(map, "type")) : NULL;
+    kind = type ? kind_of(type) : kind;
+    if (map->kind != SE3DI_NODE_MAP || kind == NO_FORCE || kind == SOME_FORCE) {
+        return lose(r->m, map, "its `type` must be TSDA, RSDA, force or torque");
+    }
+    return kind == SPRING || kind == TURN_SPRING ? read_spring(r, map, kind == TURN_SPRING)
+                                                 : read_load(r, map, kind == TORQUE);
+}
+
+static bool read_forces(reader *r, const se3di_node *root)
+{
+    for (const se3di_node *list = root->first; list; list = list->next) {
+        const force_kind kind = kind_of(list->key);
+        const bool is_list = kind != NO_FORCE && list->kind == SE3DI_NODE_LIST;
+        for (const se3di_node *map = is_list ? list->first : NULL; map; map = map->next) {
+            if (!read_force(r, map, kind)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 /* ---- files ----------------------------------------------------------------------------------*/
 
 static bool read_all(reader *r, const se3di_node *root, const char *key,
@@ -449,8 +679,10 @@ static bool read_all(reader *r, const se3di_node *root, const char *key,
 static void note_others(se3di_machine *m, const se3di_node *root)
 {
     for (const se3di_node *at = root->first; at; at = at->next) {
-        const bool known = strcmp(at->key, "name") == 0 || strcmp(at->key, "gravity") == 0 ||
-                           strcmp(at->key, "bodies") == 0 || strcmp(at->key, "constraints") == 0;
+        const bool read = kind_of(at->key) != NO_FORCE && at->kind == SE3DI_NODE_LIST;
+        const bool known = read || strcmp(at->key, "name") == 0 ||
+                           strcmp(at->key, "gravity") == 0 || strcmp(at->key, "bodies") == 0 ||
+                           strcmp(at->key, "constraints") == 0;
         const bool empty = at->kind == SE3DI_NODE_LIST && at->count == 0;
         const bool acts = strstr(at->key, "orce") || strstr(at->key, "orque") ||
                           strstr(at->key, "SDA") || strstr(at->key, "sda");
@@ -486,5 +718,6 @@ bool se3di_import_me751(se3di_machine *m, const se3di_node *root)
     }
     note_others(m, root);
     return read_all(&r, root, "bodies", read_body) &&
-           read_all(&r, root, "constraints", read_constraint) && m->status >= 0;
+           read_all(&r, root, "constraints", read_constraint) && read_forces(&r, root) &&
+           m->status >= 0;
 }
