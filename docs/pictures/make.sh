@@ -50,6 +50,9 @@ plot suspension suspension -x travel.value -y rocker_pivot.angle -y coil.length 
 look suspension suspension 0.3
 "$program" run --quiet examples/fsae/car.yaml -o "$results/car"
 look fsae car 0.5 show=solid
+# For the first screen of the README: it moves.
+"$program" run --quiet examples/fsae/four_post.yaml --set amplitude=15 --set roll=1 --duration 2.4 -o "$results/four_post"
+"$program" video --quiet "$results/four_post" --hide title,time,plots --speed 0.6 -o docs/pictures/four_post.webp
 look governor flyball_governor 0.508
 look quarter_car quarter_car 0.25
 look grains pushed_grains 0.8
