@@ -973,20 +973,6 @@ static void options_are_checked_like_the_file(void)
     }
 }
 
-static void missing_arguments_are_named(void)
-{
-    se3d_model *model = NULL;
-    se3d_model_error error;
-    CHECK(se3d_model_read_text(NULL, 0, "x", NULL, &model, &error) == SE3D_ERR_NULL);
-    CHECK(se3d_model_read_text("a", 1, NULL, NULL, &model, &error) == SE3D_ERR_NULL);
-    CHECK(se3d_model_read_text("a", 1, "x", NULL, NULL, &error) == SE3D_ERR_NULL);
-    CHECK(se3d_model_read_file(NULL, NULL, &model, &error) == SE3D_ERR_NULL);
-    CHECK(se3d_model_read_file("/nonexistent/x.yaml", NULL, &model, &error) == SE3D_ERR_IO);
-    CHECK_CONTAINS(error.message, "/nonexistent/x.yaml: ");
-    CHECK(se3d_model_read_text("", 0, "x", NULL, &model, NULL) == SE3D_ERR_MODEL);
-    se3d_model_destroy(NULL);
-}
-
 int main(void)
 {
     RUN(every_bad_model_is_rejected_with_place_and_reason);
@@ -996,6 +982,5 @@ int main(void)
     RUN(halves_of_an_expression_are_taken_out_with_each_other_only);
     RUN(a_report_ends_at_the_largest_number);
     RUN(options_are_checked_like_the_file);
-    RUN(missing_arguments_are_named);
     return check_finish();
 }

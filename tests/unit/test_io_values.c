@@ -249,6 +249,20 @@ static void laws_are_put_together_alike_in_every_locale(void)
     setlocale(LC_ALL, "C");
 }
 
+static void missing_arguments_are_named(void)
+{
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    CHECK(se3d_model_read_text(NULL, 0, "x", NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_text("a", 1, NULL, NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_text("a", 1, "x", NULL, NULL, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_file(NULL, NULL, &model, &error) == SE3D_ERR_NULL);
+    CHECK(se3d_model_read_file("/nonexistent/x.yaml", NULL, &model, &error) == SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/nonexistent/x.yaml: ");
+    CHECK(se3d_model_read_text("", 0, "x", NULL, &model, NULL) == SE3D_ERR_MODEL);
+    se3d_model_destroy(NULL);
+}
+
 /* What the caller gave may be gone once the model is read. */
 static void texts_of_the_caller_are_copied(void)
 {
@@ -287,6 +301,7 @@ int main(void)
     RUN(numbers_have_a_point_in_every_locale);
     RUN(numbers_are_written_as_printf_does);
     RUN(laws_are_put_together_alike_in_every_locale);
+    RUN(missing_arguments_are_named);
     RUN(texts_of_the_caller_are_copied);
     return check_finish();
 }
