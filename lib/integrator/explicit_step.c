@@ -332,6 +332,9 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
         se3di_model_restore_memory(model, m->memory);
         return SE3D_OK;
     }
+    if (end.has_moved) {
+        m->motion->follow(m->equations);
+    }
     m->next = end.has_changed ? m->sum : m->next;
     return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
 }

@@ -389,7 +389,7 @@ se3d_status se3di_hold_review(se3di_equations *equations, const se3di_memory_ste
     }
     se3di_equations_save(equations);
     equations->error = &inner;
-    friction->is_rigid = 1;
+    friction->is_rigid = SE3DI_FRICTION_LOOKS;
     const se3d_status status = review(equations, step, end, since);
     friction->is_rigid = is_rigid;
     equations->error = error;

@@ -201,7 +201,7 @@ static se3d_status change_modes(se3di_equations *equations, double t,
         add_standing(equations, scale, tolerance);
         SE3DI_TRY(se3di_friction_system_decide(equations, t));
         SE3DI_TRY(se3di_state_evaluate(equations, t));
-        end->has_changed = 1;
+        end->has_changed = end->has_moved = 1;
     }
     se3di_assembly_set_acceleration(&equations->assembly, equations->x);
     if (equations->assembly.row_count > 0) {
@@ -342,6 +342,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     uint32_t broken = 0;
     *end = (se3di_memory_end){0.0, 0.0, 0, 0};
     se3di_model_save_memory(model, memory);
+    end->has_moved = se3di_friction_system_stand(equations);
     end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
     if (end->error <= 1.0) {
         SE3DI_TRY(se3di_hold_review(equations, step, end, &since));

@@ -64,6 +64,11 @@ static void stand(se3di_equations *equations, const double *y)
     (void)equations, (void)y;
 }
 
+static void follow(se3di_equations *equations)
+{
+    (void)equations;
+}
+
 static void accept_angles(se3di_equations *equations)
 {
     se3di_angles_accept(equations->assembly.model);
@@ -99,6 +104,7 @@ const se3di_motion se3di_motion_bodies = {
     .measure_gap = se3di_state_measure_gap,
     .keep = get,
     .stand = stand,
+    .follow = follow,
     .accept_angles = accept_angles,
     .show = show,
     .finds_all = finds_all,

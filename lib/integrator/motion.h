@@ -44,6 +44,8 @@ typedef struct se3di_motion {
     void (*keep)(se3di_equations *equations, double *y);
     /* The frames of the model are at y, as kept: it becomes the state that was set last. */
     void (*stand)(se3di_equations *equations, const double *y);
+    /* The velocities of the frames were changed: those of the state that was set last are. */
+    void (*follow)(se3di_equations *equations);
     /* That state is accepted: turns are counted from its angles. */
     void (*accept_angles)(se3di_equations *equations);
     /* y in the places of state.h; the model is left alone. */

@@ -452,6 +452,12 @@ static void continue_turns(const se3di_tree *tree, double *q, double *before)
     }
 }
 
+static void follow(se3di_equations *equations)
+{
+    se3di_tree_get(equations->tree, NULL, equations->tree->qdot);
+    place(equations);
+}
+
 /* By the equations of the bodies, which are factored. */
 static se3d_status project_bodies(se3di_equations *equations, double t,
                                   const se3di_state_scale *scale, double accuracy, int is_factored)
@@ -671,6 +677,7 @@ const se3di_motion se3di_motion_joints = {
     .measure_gap = measure_gap,
     .keep = keep,
     .stand = stand,
+    .follow = follow,
     .accept_angles = accept_angles,
     .show = show,
     .finds_all = is_open,

@@ -232,34 +232,6 @@ static se3d_status decide(se3di_equations *equations, double t)
                   : se3di_friction_refuse(equations, t);
 }
 
-/* The velocities that make what holds stand still. */
-static void arrest(se3di_equations *equations)
-{
-    friction *s = &equations->friction;
-    se3di_assembly *assembly = &equations->assembly;
-    const uint32_t m = s->active;
-    const size_t n = assembly->unknown_count;
-    for (uint32_t u = 0; u < m; ++u) {
-        const int holds = s->holds[s->unknown[u]] && se3di_friction_has_leverage(equations, u);
-        const double unit = holds ? 1.0 / s->W[(size_t)u * m + u] : 0.0;
-        se3di_measure measure;
-        (void)se3di_measure_force(assembly->model, element_of(equations, u), 0, &measure);
-        s->f[u] = -unit * measure.rate;
-        for (uint32_t v = 0; v < m; ++v) {
-            s->J[(size_t)u * m + v] =
-                u == v ? 1.0 : (s->holds[s->unknown[v]] ? unit * s->W[(size_t)u * m + v] : 0.0);
-        }
-    }
-    se3di_friction_solve_dense(s);
-    se3di_assembly_get_velocity(assembly, equations->b);
-    for (uint32_t u = 0; u < m; ++u) {
-        for (size_t c = 0; c < n; ++c) {
-            equations->b[c] += s->f[u] * s->X[u * n + c];
-        }
-    }
-    se3di_assembly_set_velocity(assembly, equations->b);
-}
-
 /* What was at rest knows what it does now. What stays at its limit slips, though nothing moves: the
  * others hold what is left. */
 static void settle(se3di_equations *equations)
@@ -291,7 +263,7 @@ static se3d_status decide_rests(se3di_equations *equations, double t)
     SE3DI_TRY(se3di_friction_respond(equations));
     SE3DI_TRY(decide(equations, t));
     se3di_friction_combine(equations);
-    arrest(equations);
+    (void)se3di_friction_arrest(equations);
     settle(equations);
     return SE3D_OK;
 }

@@ -19,6 +19,9 @@ se3d_status se3di_friction_respond(se3di_equations *equations);
 /* The whole solution under n, what the elements know of it, and what is held given from now on. */
 void se3di_friction_combine(se3di_equations *equations);
 
+/* The velocities that make what holds stand still. @return whether any had to change */
+int se3di_friction_arrest(se3di_equations *equations);
+
 /* The load of the unknown u under n; `slope` (or NULL): to all n. */
 double se3di_friction_eval_load(const se3di_equations *equations, uint32_t u, double *slope);
 /* A force that has no leverage on its own coordinate cannot hold it. */

@@ -4,6 +4,7 @@
 #include "nonlinear/friction_box.h"
 #include "nonlinear/friction_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 #define PARTS SE3DI_FRICTION_PARTS
@@ -20,8 +21,10 @@ static void copy(double *to, const double *from, size_t count)
 
 /* Allocation. */
 
-#define ARRAYS 22
+#define ARRAYS 24
 #define MARKS  6 /* arrays of int32_t */
+
+#define RESTING 1e-9 /* of the accelerations without friction: all that moves is rounding */
 
 static void list_arrays(friction *s, const se3di_assembly *assembly, double **list[ARRAYS],
                         size_t size[ARRAYS])
@@ -31,28 +34,14 @@ static void list_arrays(friction *s, const se3di_assembly *assembly, double **li
         double **place;
         size_t size;
     } const parts[ARRAYS] = {
-        {&s->n, m},
-        {&s->centre, m},
-        {&s->share, m},
-        {&s->kept, m},
-        {&s->Q, 16 * m},
-        {&s->b, n},
-        {&s->c, rows},
-        {&s->x, n},
-        {&s->l, rows},
-        {&s->X, m * n},
-        {&s->L, m * rows},
-        {&s->R, m * (m + 1) * PARTS},
-        {&s->a, m},
-        {&s->W, m * m},
-        {&s->J, m * (m + 1)},
-        {&s->limit, m},
-        {&s->stiff, m},
-        {&s->guess, m},
-        {&s->loaded, m},
-        {&s->P, m * m},
-        {&s->work, SE3DI_FRICTION_BOX_WORK(m)},
-        {&s->probes, 4 * SE3DI_FRICTION_PROBES * m},
+        {&s->n, m},      {&s->centre, m},    {&s->share, m},
+        {&s->kept, m},   {&s->Q, 16 * m},    {&s->b, n},
+        {&s->c, rows},   {&s->x, n},         {&s->l, rows},
+        {&s->X, m * n},  {&s->L, m * rows},  {&s->R, m * (m + 1) * PARTS},
+        {&s->a, m},      {&s->W, m * m},     {&s->J, m * (m + 1)},
+        {&s->limit, m},  {&s->stiff, m},     {&s->guess, m},
+        {&s->loaded, m}, {&s->P, m * m},     {&s->work, SE3DI_FRICTION_BOX_WORK(m)},
+        {&s->work_x, n}, {&s->work_l, rows}, {&s->probes, 4 * SE3DI_FRICTION_PROBES * m},
     };
     for (int k = 0; k < ARRAYS; ++k) {
         list[k] = parts[k].place;
@@ -258,6 +247,117 @@ se3d_status se3di_friction_respond(se3di_equations *equations)
     return SE3D_OK;
 }
 
+/* f: of units against those that hold, which change their accelerations or rates by what is in
+ * f. */
+static void solve_holds(se3di_equations *equations)
+{
+    friction *s = &equations->friction;
+    const uint32_t m = s->active;
+    for (uint32_t u = 0; u < m; ++u) {
+        const int holds = s->holds[s->unknown[u]] && se3di_friction_has_leverage(equations, u);
+        const double unit = holds ? 1.0 / s->W[(size_t)u * m + u] : 0.0;
+        s->f[u] *= unit;
+        for (uint32_t v = 0; v < m; ++v) {
+            s->J[(size_t)u * m + v] =
+                u == v ? 1.0 : (s->holds[s->unknown[v]] ? unit * s->W[(size_t)u * m + v] : 0.0);
+        }
+    }
+    se3di_friction_solve_dense(s);
+}
+
+int se3di_friction_arrest(se3di_equations *equations)
+{
+    friction *s = &equations->friction;
+    se3di_assembly *assembly = &equations->assembly;
+    const size_t n = assembly->unknown_count;
+    int moves = 0;
+    for (uint32_t u = 0; u < s->active; ++u) {
+        const uint32_t k = s->unknown[u];
+        se3di_measure measure;
+        (void)se3di_measure_force(assembly->model, se3di_friction_element(equations, k), 0,
+                                  &measure);
+        s->f[u] = -measure.rate;
+        moves |= s->holds[k] && fabs(measure.rate) > 0.0;
+    }
+    if (!moves) {
+        return 0;
+    }
+    solve_holds(equations);
+    se3di_assembly_get_velocity(assembly, equations->b);
+    for (uint32_t u = 0; u < s->active; ++u) {
+        for (size_t c = 0; c < n; ++c) {
+            equations->b[c] += s->f[u] * s->X[u * n + c];
+        }
+    }
+    se3di_assembly_set_velocity(assembly, equations->b);
+    return 1;
+}
+
+static double largest_of(const double *x, size_t count)
+{
+    double largest = 0.0;
+    for (size_t k = 0; k < count; ++k) {
+        largest = fmax(largest, fabs(x[k]));
+    }
+    return largest;
+}
+
+/* All that moves is rounding: that against the rows is taken away, too. */
+static se3d_status refine_rows(se3di_equations *equations)
+{
+    friction *s = &equations->friction;
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t n = assembly->unknown_count, rows = assembly->row_count;
+    if (rows == 0 || !(largest_of(equations->x, n) < RESTING * largest_of(s->x, n))) {
+        return SE3D_OK;
+    }
+    copy(s->work_x, equations->x, n);
+    copy(s->work_l, equations->l, rows);
+    memset(equations->b, 0, n * sizeof *equations->b);
+    se3di_assembly_mul(assembly, equations->x, equations->c);
+    for (size_t r = 0; r < rows; ++r) {
+        equations->c[r] = s->c[r] - equations->c[r];
+    }
+    const se3d_status status = se3di_equations_solve(equations);
+    for (size_t c = 0; c < n; ++c) {
+        equations->x[c] = s->work_x[c] + (status < 0 ? 0.0 : equations->x[c]);
+    }
+    for (size_t r = 0; r < rows; ++r) {
+        equations->l[r] = s->work_l[r] + (status < 0 ? 0.0 : equations->l[r]);
+    }
+    copy(equations->b, s->b, n);
+    copy(equations->c, s->c, rows);
+    return status;
+}
+
+/* Accelerations of what holds, which are rounding of the forces that it holds, become rounding of
+ * themselves: over a long time, and in steps that grow with it, a block would creep away by 1e-14
+ * of what pulls at it. */
+static void refine(se3di_equations *equations)
+{
+    friction *s = &equations->friction;
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t n = assembly->unknown_count, rows = assembly->row_count;
+    (void)refine_rows(equations); /* else as it is */
+    for (uint32_t u = 0; u < s->active; ++u) {
+        const uint32_t k = s->unknown[u];
+        const se3di_force *force = se3di_friction_element(equations, k);
+        s->f[u] = -dot_unit(assembly, force, s->Q + 16 * (size_t)k, equations->x) -
+                  se3di_measure_curve(assembly->model, force);
+    }
+    solve_holds(equations);
+    for (uint32_t u = 0; u < s->active; ++u) {
+        const double part = s->holds[s->unknown[u]] ? s->f[u] : 0.0;
+        s->n[u] += part;
+        for (size_t c = 0; c < n; ++c) {
+            equations->x[c] += part * s->X[u * n + c];
+        }
+        for (size_t c = 0; c < rows; ++c) {
+            equations->l[c] += part * s->L[u * rows + c];
+        }
+    }
+}
+
 void se3di_friction_combine(se3di_equations *equations)
 {
     friction *s = &equations->friction;
@@ -268,15 +368,20 @@ void se3di_friction_combine(se3di_equations *equations)
     copy(equations->x, s->x, n);
     copy(equations->l, s->l, rows);
     for (uint32_t u = 0; u < s->active; ++u) {
-        const uint32_t k = s->unknown[u];
-        se3di_force *force = se3di_friction_element(equations, k);
-        add_unit(assembly, force, s->Q + 16 * (size_t)k, -s->n[u], equations->b);
         for (size_t c = 0; c < n; ++c) {
             equations->x[c] += s->n[u] * s->X[u * n + c];
         }
         for (size_t c = 0; c < rows; ++c) {
             equations->l[c] += s->n[u] * s->L[u * rows + c];
         }
+    }
+    if (s->is_rigid == 1) {
+        refine(equations);
+    }
+    for (uint32_t u = 0; u < s->active; ++u) {
+        const uint32_t k = s->unknown[u];
+        se3di_force *force = se3di_friction_element(equations, k);
+        add_unit(assembly, force, s->Q + 16 * (size_t)k, -s->n[u], equations->b);
         if (s->holds[k]) {
             se3di_friction_hold(assembly->model, force, s->n[u]);
         }
@@ -313,6 +418,12 @@ se3d_status se3di_friction_system_finish(se3di_equations *equations, double t)
     }
     se3di_friction_combine(equations);
     return SE3D_OK;
+}
+
+int se3di_friction_system_stand(se3di_equations *equations)
+{
+    const friction *s = &equations->friction;
+    return s->is_rigid && s->count > 0 && s->active > 0 && se3di_friction_arrest(equations);
 }
 
 /* The columns of one element: d n / d lambda_r times its unit force, on the bodies of its joint. */

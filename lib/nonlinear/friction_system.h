@@ -15,10 +15,11 @@
 #include "assembly/assembly.h"
 
 #define SE3DI_FRICTION_PROBES 5
+#define SE3DI_FRICTION_LOOKS  2 /* is_rigid, where nothing is integrated: not to the last digit */
 
 typedef struct se3di_friction_system {
     uint32_t count;    /* friction elements of the model */
-    int32_t is_rigid;  /* what sticks holds by an acceleration of zero, not by its spring */
+    int32_t is_rigid;  /* what sticks holds by an acceleration of zero, not by its spring: 1, or */
     uint32_t *element; /* [count]: index of the force */
     uint32_t active;   /* unknowns: slip under a load, or hold */
     uint32_t reserved;
@@ -45,7 +46,8 @@ typedef struct se3di_friction_system {
     double *guess;     /* [active]: forces under loads as they are */
     double *loaded;    /* [active]: forces which these follow from */
     double *P, *work;  /* of friction_box.h */
-    double *probes;    /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h */
+    double *work_x, *work_l; /* [unknowns], [rows] */
+    double *probes;          /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h */
 } se3di_friction_system;
 
 struct se3di_equations;
@@ -64,6 +66,10 @@ se3d_status se3di_friction_system_finish(struct se3di_equations *equations, doub
  * their limits and accelerations, at a state whose equations are factored; what sticks is brought
  * to a stand. Clears rests[], also on failure. @return OK, NO_CONVERGENCE (it jams) */
 se3d_status se3di_friction_system_decide(struct se3di_equations *equations, double t);
+
+/* What sticks rigidly stands still again, at a state near that of the last _finish: what a step has
+ * made of its rate is error. @return whether velocities had to change */
+int se3di_friction_system_stand(struct se3di_equations *equations);
 
 /* The acceleration of the coordinate of an element (index into `element`) from equations->x. */
 double se3di_friction_system_acceleration(const struct se3di_equations *equations, uint32_t k);
