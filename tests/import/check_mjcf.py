@@ -3,6 +3,7 @@
 classes, files that are included, equalities and tendons."""
 import math
 import re
+import subprocess
 
 import tool
 
@@ -180,10 +181,39 @@ def what_is_not_carried():
     tool.check(model.count("type: effort") == 2, "efforts for both actuators")
 
 
+def touching():
+    """Groups and masks let the same geoms touch as contype and conaffinity; single pairs are told by name."""
+    bits = [(1, 1), (2, 1), (0, 2), (0, 0), (4, 6), (-1, 8), (8, 0), (1, 1)]
+    bodies = "".join(f'<body name="b{k}" pos="{k} 0 0"><freejoint/><geom name="g{k}" size="0.1" contype="{c}" '
+                     f'conaffinity="{a}"/></body>' for k, (c, a) in enumerate(bits))
+    model, notes = convert("touching.xml", f"""<mujoco><worldbody>{bodies}</worldbody><contact>
+      <exclude body1="b0" body2="b1"/><pair geom1="g2" geom2="g3"/></contact></mujoco>""", code=1)
+    said = [n["message"] for n in notes if n["kind"] == "lost"]
+    for one, other in (("b0", "b1"), ("g2", "g3")):
+        tool.check(any(f"`{one}` and" in line and f"`{other}`" in line for line in said), f"{one}, {other}: {said}")
+    shapes = re.findall(r"type: sphere, radius: 0.1(.*)}", model)
+    tool.check(len(shapes) == len(bits), f"shapes: {shapes}")
+    found = [[int(n) for n in re.findall(r": (\d+)", text)] or [0, 0] for text in shapes]
+    tool.check(["contact: false" in text for text in shapes] == [k == 3 for k in range(len(bits))], f"none: {shapes}")
+    for i, (c, a) in enumerate(bits):
+        for j, (d, b) in enumerate(bits[:i]):
+            wanted = bool(c & b) or bool(d & a)
+            tool.check((bool(found[i][0] & found[j][1]) and bool(found[j][0] & found[i][1])) == wanted,
+                       f"{i} and {j}: {found[i]}, {found[j]}")
+    body = '<mujoco><worldbody><body name="b"><freejoint/><geom size="1" {}/></body></worldbody></mujoco>'
+    model, _ = convert("plain.xml", body.format(""))
+    tool.check("group" not in model, model)
+    (tool.WORK / "bits.xml").write_text(body.format('contype="0.5"'))
+    done = subprocess.run([tool.PROGRAM, "import", str(tool.WORK / "bits.xml")], capture_output=True, text=True,
+                          check=False)
+    tool.check(done.returncode == 2 and "contype must be a whole number" in done.stderr, done.stderr)
+
+
 if __name__ == "__main__":
     arm_as_in_urdf()
     masses_of_geoms()
     start_and_range()
     loops_couplings_and_tendons()
     what_is_not_carried()
+    touching()
     print("import.mjcf: passed")

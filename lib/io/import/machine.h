@@ -16,10 +16,12 @@ typedef struct se3di_machine_shape {
     double size[3];   /* box */
     double radius;
     double length;
-    double scale;      /* mesh */
-    const char *file;  /* mesh */
-    se3di_frame frame; /* in the body */
-    double color[3];   /* color[0] < 0: none */
+    double scale;         /* mesh */
+    const char *file;     /* mesh */
+    se3di_frame frame;    /* in the body */
+    double color[3];      /* color[0] < 0: none */
+    uint32_t group, mask; /* bits, as in a model file; group 0: not said */
+    bool passes;          /* it touches nothing */
     struct se3di_machine_shape *next;
 } se3di_machine_shape;
 

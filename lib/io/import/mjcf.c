@@ -249,14 +249,42 @@ static bool read_settings(se3di_mjcf *f)
     return true;
 }
 
+/* What <contact> says of single pairs, by their names. */
+static void note_pairs(se3di_mjcf *f, const se3di_xml *contact)
+{
+    for (const se3di_xml *at = contact->first; at; at = at->next) {
+        const bool excludes = se3di_xml_is(at, "exclude");
+        const char *one = se3di_xml_get(at, excludes ? "body1" : "geom1");
+        const char *other = se3di_xml_get(at, excludes ? "body2" : "geom2");
+        one = one ? one : "";
+        other = other ? other : "";
+        if (excludes) {
+            se3di_machine_note_of(
+                f->links.m, SE3D_IMPORT_LOST, at->line,
+                "contact of the bodies `%.80s` and `%.80s` is excluded in MuJoCo: "
+                "give their shapes a `group` and `mask`",
+                one, other);
+        } else if (se3di_xml_is(at, "pair")) {
+            se3di_machine_note_of(
+                f->links.m, SE3D_IMPORT_LOST, at->line,
+                "contact of the geoms `%.80s` and `%.80s` has settings of its own "
+                "in MuJoCo: give their materials an entry in `pairs` of `contact`",
+                one, other);
+        }
+    }
+}
+
 static void note_others(se3di_mjcf *f)
 {
-    static const char *const known[] = {"compiler",  "option", "default",  "worldbody",
-                                        "equality",  "tendon", "actuator", "asset",
-                                        "statistic", "visual", "size",     "include"};
-    static const char *const lost[] = {"contact", "deformable", "extension"};
+    static const char *const known[] = {"compiler", "option",   "default", "worldbody", "equality",
+                                        "tendon",   "actuator", "asset",   "statistic", "visual",
+                                        "size",     "include",  "contact"};
+    static const char *const lost[] = {"deformable", "extension"};
     for (const se3di_xml *at = f->root->first; at; at = at->next) {
         bool is_known = false;
+        if (se3di_xml_is(at, "contact")) {
+            note_pairs(f, at);
+        }
         bool is_lost = false;
         for (size_t k = 0; k < sizeof known / sizeof *known; ++k) {
             is_known = is_known || se3di_xml_is(at, known[k]);
@@ -273,7 +301,7 @@ static void note_others(se3di_mjcf *f)
         se3di_machine_note_of(
             f->links.m, SE3D_IMPORT_LOST, 0,
             "contact: geoms of %zu bodies may touch in MuJoCo; here a shape needs "
-            "a material, and the model `contact`",
+            "a material, and the model `contact`; which of them do is in `group` and `mask`",
             f->touching);
     }
 }
@@ -380,6 +408,7 @@ bool se3di_import_mjcf(se3di_machine *m, se3di_xml *root)
         return se3di_machine_fail(m, root->line, root->column, "there is no <body>");
     }
     scale_masses(&f);
+    se3di_mjcf_sort_shapes(&f);
     note_others(&f);
     return se3di_mjcf_close(&f) && se3di_links_emit(&f.links) && se3di_mjcf_acts(&f);
 }

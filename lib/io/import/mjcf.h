@@ -20,6 +20,13 @@ typedef struct se3di_mjcf_place {
     se3di_frame frame; /* in the link */
 } se3di_mjcf_place;
 
+/* contype and conaffinity of geoms: two touch if the one of either has a bit of the other's. */
+typedef struct se3di_mjcf_touch {
+    uint32_t type, affinity;
+} se3di_mjcf_touch;
+
+enum { SE3DI_MJCF_KINDS_MAX = 32 }; /* different ones, a bit of a model file for each */
+
 typedef struct se3di_mjcf {
     se3di_links links;
     const se3di_xml *root;
@@ -36,6 +43,9 @@ typedef struct se3di_mjcf {
     se3di_mjcf_place *sites;
     size_t site_count, site_room;
     size_t touching; /* links whose geoms may touch */
+    se3di_mjcf_touch kinds[SE3DI_MJCF_KINDS_MAX];
+    size_t kind_count;
+    bool has_more_kinds; /* than that; the others touch as anything */
 } se3di_mjcf;
 
 /* An element with the class that its defaults come from. */
@@ -68,5 +78,8 @@ bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
 /* mjcf_acts.c: equality as joints of links; couplers, tendons and actuators once those are made. */
 bool se3di_mjcf_close(se3di_mjcf *f);
 bool se3di_mjcf_acts(se3di_mjcf *f);
+
+/* mjcf_geom.c: groups and masks of all shapes, from what their geoms may touch. */
+void se3di_mjcf_sort_shapes(se3di_mjcf *f);
 
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* MJCF: geoms, which are drawn, and weigh if their body has no mass of its own. */
+#include <math.h>
 #include <string.h>
 
 #include "io/import/inertia.h"
@@ -157,10 +158,78 @@ static bool read_geom(se3di_mjcf *f, const se3di_mjcf_element *e, geom *g)
            se3di_mjcf_frame(f, e, &g->frame) && read_ends(f, e, g);
 }
 
-static bool is_zero(se3di_mjcf *f, const se3di_mjcf_element *e, const char *name)
+/* Bits of a whole number, 1 without it. */
+static bool read_bits(se3di_mjcf *f, const se3di_mjcf_element *e, const char *name, uint32_t *bits)
 {
-    const char *text = se3di_mjcf_get(f, e, name);
-    return text && strcmp(text, "0") == 0;
+    double value = 1.0;
+    if (!se3di_mjcf_number(f, e, name, &value)) {
+        return false;
+    }
+    if (!(fabs(value) < 4294967296.0) || value != floor(value)) {
+        return se3di_machine_fail(f->links.m, e->node->line, e->node->column,
+                                  "%s must be a whole number of 32 bits", name);
+    }
+    *bits = (uint32_t)(int64_t)value;
+    return true;
+}
+
+/* The bit of what a geom may touch in `group` of its shape. */
+static bool take_touch(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
+{
+    se3di_mjcf_touch touch = {1, 1};
+    size_t k = 0;
+    if (!read_bits(f, e, "contype", &touch.type) ||
+        !read_bits(f, e, "conaffinity", &touch.affinity)) {
+        return false;
+    }
+    f->touching += touch.type != 0 || touch.affinity != 0 ? 1 : 0;
+    while (k < f->kind_count &&
+           (f->kinds[k].type != touch.type || f->kinds[k].affinity != touch.affinity)) {
+        ++k;
+    }
+    if (k == SE3DI_MJCF_KINDS_MAX) {
+        f->has_more_kinds = true;
+        return true;
+    }
+    f->kinds[k] = touch;
+    f->kind_count = k == f->kind_count ? k + 1 : f->kind_count;
+    shape->group = 1u << k;
+    return true;
+}
+
+/* Bits of the kinds that kind `k` touches. */
+static uint32_t mask_of(const se3di_mjcf *f, size_t k)
+{
+    uint32_t mask = 0;
+    for (size_t j = 0; j < f->kind_count; ++j) {
+        const bool touches = (f->kinds[k].type & f->kinds[j].affinity) != 0 ||
+                             (f->kinds[j].type & f->kinds[k].affinity) != 0;
+        mask |= touches ? 1u << j : 0u;
+    }
+    return mask;
+}
+
+void se3di_mjcf_sort_shapes(se3di_mjcf *f)
+{
+    const bool is_plain = f->has_more_kinds || (f->kind_count == 1 && mask_of(f, 0) != 0);
+    for (size_t link = 0; link < f->links.count; ++link) {
+        for (se3di_machine_shape *at = f->links.list[link].parts.shapes; at; at = at->next) {
+            size_t k = 0;
+            while (at->group > 1u << k) {
+                ++k;
+            }
+            at->mask = at->group > 0 ? mask_of(f, k) : 0;
+            at->passes = at->group > 0 && at->mask == 0;
+            at->group = is_plain || at->passes ? 0 : at->group;
+        }
+    }
+    if (f->has_more_kinds) {
+        se3di_machine_note_of(
+            f->links.m, SE3D_IMPORT_LOST, 0,
+            "contype and conaffinity: geoms have more than %d different ones, all "
+            "of them may touch",
+            SE3DI_MJCF_KINDS_MAX);
+    }
 }
 
 static void color(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
@@ -197,7 +266,9 @@ bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
     if (weighs && !weigh(f, link, e, &g, &shape)) {
         return false;
     }
-    f->touching += !is_zero(f, e, "contype") || !is_zero(f, e, "conaffinity") ? 1 : 0;
+    if (!take_touch(f, e, &shape)) {
+        return false;
+    }
     if (strcmp(g.type, "mesh") == 0 && !take_mesh(f, e, &shape)) {
         return false;
     }

@@ -188,6 +188,12 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
     if (shape->color[0] >= 0.0) {
         put_pair(w, indent, "color", se3di_machine_numbers(m, shape->color, 3), false);
     }
+    if (shape->passes) {
+        put_pair(w, indent, "contact", "false", false);
+    } else if (shape->group > 0) {
+        put_pair(w, indent, "group", se3di_machine_text(m, "%u", shape->group), false);
+        put_pair(w, indent, "mask", se3di_machine_text(m, "%u", shape->mask), false);
+    }
     put(w, "}\n");
 }
 
