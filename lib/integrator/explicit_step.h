@@ -138,6 +138,7 @@ int se3di_explicit_is_held(const se3di_integration *integration);
 
 /* Local errors are a part of the tolerance, and no smaller than rounding allows. */
 #define SE3DI_EXPLICIT_PART  0.03
+#define SE3DI_EXPLICIT_LOOSE 3e-4 /* a tolerance: beyond it dop853 takes a larger part */
 #define SE3DI_EXPLICIT_LEAST 2e-13
 #define SE3DI_EXPLICIT_REACH (SE3DI_EXPLICIT_LEAST / SE3DI_EXPLICIT_PART)
 
