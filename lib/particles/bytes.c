@@ -135,6 +135,33 @@ static void code_passed(se3di_coder *c, se3di_particles *set)
     }
 }
 
+static void code_map(se3di_coder *c, se3di_cell_map *map)
+{
+    se3di_code_numbers(c, map->along, 3);
+    se3di_code_numbers(c, &map->shear, 1);
+}
+
+/* What a cell has done. */
+static void code_cell(se3di_coder *c, se3di_particles *set)
+{
+    se3di_cell *cell = &set->cell;
+    if (cell->count == 0) {
+        return;
+    }
+    se3di_code_numbers(c, set->lower, 3);
+    se3di_code_numbers(c, set->upper, 3);
+    se3di_code_word(c, &cell->stage);
+    se3di_code_numbers(c, &cell->offset, 1);
+    se3di_code_numbers(c, &cell->shear, 1);
+    code_map(c, &cell->rates);
+    code_map(c, &cell->field);
+    code_map(c, &cell->since);
+    se3di_code_numbers(c, &cell->strained, 1);
+    se3di_code_numbers(c, cell->virial, 9);
+    se3di_code_numbers(c, cell->kinetic, 6);
+    se3di_code_numbers(c, &cell->work, 1);
+}
+
 static void code_wall(se3di_coder *c, se3di_wall *wall)
 {
     se3di_code_uint32(c, &wall->handle.index1);
@@ -338,6 +365,7 @@ static void write_set(se3di_coder *c, const se3di_particles *set)
     code_record(c, &same);
     code_flow(c, &same);
     code_passed(c, &same);
+    code_cell(c, &same);
     for (size_t k = 0; k < n.walls; ++k) {
         code_wall(c, &same.walls[k]);
     }
@@ -500,6 +528,7 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     code_record(c, set);
     code_flow(c, set);
     code_passed(c, set);
+    code_cell(c, set);
     SE3DI_TRY(read_walls(c, set));
     if (c->failed || !fit(set, &n)) {
         return SE3D_ERR_INVALID_ARGUMENT;

@@ -51,6 +51,27 @@ static int are_flows(const se3di_particles *set)
     return good;
 }
 
+static int is_map(const se3di_cell_map *map)
+{
+    return are_finite(map->along, 3) && isfinite(map->shear);
+}
+
+static int is_cell(const se3di_particles *set)
+{
+    const se3di_cell *cell = &set->cell;
+    const double numbers[] = {cell->offset, cell->shear, cell->strained, cell->work};
+    int good =
+        cell->count == 0 || (are_finite(numbers, sizeof numbers / sizeof *numbers) &&
+                             is_map(&cell->rates) && is_map(&cell->field) && is_map(&cell->since) &&
+                             are_finite(cell->virial, 9) && are_finite(cell->kinetic, 6) &&
+                             (cell->stage < cell->count || cell->stage == SE3D_CELL_STAGES));
+    for (int a = 0; a < 3 && cell->count > 0; ++a) {
+        good = good && isfinite(set->lower[a]) && isfinite(set->upper[a]) &&
+               set->upper[a] > set->lower[a];
+    }
+    return good;
+}
+
 static int are_particles(const se3di_particles *set)
 {
     size_t alive = 0;
@@ -283,5 +304,6 @@ static int are_clumps(se3di_particles *set)
 int se3di_particles_are_sound(se3di_particles *set)
 {
     return are_numbers(set) && are_particles(set) && are_clumps(set) && are_sources(set) &&
-           are_flows(set) && are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
+           are_flows(set) && is_cell(set) && are_walls(set) &&
+           (set->list_valid ? are_lists(set) : is_history(set));
 }

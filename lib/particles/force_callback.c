@@ -115,14 +115,28 @@ static double mobility_of(const se3di_force_task *task, uint32_t i, const double
     return task->clumped ? se3di_clump_mobility(task->clumped, task->spins[i].id, n, alone) : alone;
 }
 
+/* To the nearest image in a cell that strains: as in force.inc. */
+static void find_image(const se3di_strain *s, double d[3], double v[3])
+{
+    const double across = se3di_nearest(se3di_dot(s->across, d));
+    se3di_add_scaled(-across, s->column, d);
+    se3di_add_scaled(-across, s->jump, v);
+}
+
 static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int lane)
 {
     const uint32_t i = block->i[lane], j = block->j[lane];
     const se3di_particle *gi = &task->particles[i], *gj = &task->particles[j];
-    double d[3], xi[3], force[3], lever[3], moment[3];
+    double d[3], v[3], xi[3], force[3], lever[3], moment[3];
+    se3di_sub(gi->x, gj->x, d);
+    se3di_sub(gi->v, gj->v, v);
+    if (task->strain) {
+        find_image(task->strain, d, v);
+    }
     for (int a = 0; a < 3; ++a) {
-        d[a] = gi->x[a] - gj->x[a];
-        d[a] -= task->length[a] * se3di_nearest(d[a] * task->rate[a]);
+        const double times = se3di_nearest(d[a] * task->rate[a]);
+        d[a] -= task->length[a] * times;
+        v[a] -= task->strain ? task->strain->length_up[a] * times : 0.0;
     }
     double distance = se3di_norm(d), reach = gi->radius + gj->radius;
     if (!(distance < reach && distance > 0.0)) {
@@ -137,7 +151,7 @@ static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int l
                .material_j = task->spins[j].material};
     se3di_scale(1.0 / distance, d, t.n);
     t.mass = 1.0 / (mobility_of(task, i, t.n) + mobility_of(task, j, t.n));
-    se3di_sub(gi->v, gj->v, t.v);
+    se3di_copy(v, t.v);
     t.arm_i = gi->radius - 0.5 * t.delta;
     t.arm_j = gj->radius - 0.5 * t.delta;
     ++task->touching;
@@ -150,6 +164,9 @@ static void pair_lane(se3di_force_task *task, se3di_particle_block *block, int l
     put_xi(block, lane, xi);
     load(&task->loads[i], 1.0, t.arm_i, force, lever, moment);
     load(&task->loads[j], -1.0, t.arm_j, force, lever, moment);
+    for (int k = 0; task->strain && k < 9; ++k) {
+        task->virial[k] += force[k / 3] * d[k % 3];
+    }
 }
 
 static void pairs(se3di_force_task *task)

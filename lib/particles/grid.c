@@ -5,9 +5,12 @@
  * Every size class has cells of its own size, whose layers along the main axis divide a slab, so
  * that a slab is a range of cells in every class and sorting by cell sorts by slab. A particle
  * looks into the cells of every class within its reach, of its own slab (behind itself) and of the
- * next one: every pair is found once and belongs to the lower slab.   docs/theory/particles.md */
+ * next one: every pair is found once and belongs to the lower slab. A cell that is sheared has its
+ * slabs along the gradient: what is beyond the last one lies in the first, shifted along the flow.
+ *                                                                      docs/theory/particles.md */
 
 #include "particles/grid.h"
+#include "particles/cell.h"
 #include "particles/clump.h"
 #include "particles/flow.h"
 #include "particles/list.h"
@@ -18,7 +21,8 @@
 #include <math.h>
 #include <string.h>
 
-#define CELLS_LEAST 1024 /* what even a few particles may need when they spread */
+#define EXTENT_MOST 1e100 /* of a period: one that grows without end is refused */
+#define CELLS_LEAST 1024  /* what even a few particles may need when they spread */
 
 typedef struct grid_class {
     double radius;  /* largest of the class; 0: empty */
@@ -70,7 +74,11 @@ static size_t leave(se3di_particles *set)
         se3di_particles_come_home(set, set->clumps[k].x);
     }
     for (size_t k = 0; k < set->count; ++k) {
-        se3di_particles_come_home(set, set->particles[k].x);
+        if (se3di_cell_strains(set)) {
+            se3di_cell_come_home(set, set->particles[k].x, set->particles[k].v);
+        } else {
+            se3di_particles_come_home(set, set->particles[k].x);
+        }
         const se3di_clump *clump = se3di_clump_find(set, k);
         const double *x = clump ? clump->x : set->particles[k].x;
         set->order[k] = !is_beyond(set, x);
@@ -125,7 +133,7 @@ static double measure(se3di_particles *set, grid *g)
     return largest;
 }
 
-/* The longest axis that is not periodic is the main one. */
+/* The longest axis that is not periodic is the main one; the gradient of a cell that strains. */
 static void choose_axes(const se3di_particles *set, grid *g)
 {
     int main_axis = 0;
@@ -138,6 +146,7 @@ static void choose_axes(const se3di_particles *set, grid *g)
             main_axis = a;
         }
     }
+    main_axis = se3di_cell_strains(set) ? set->cell.gradient : main_axis;
     g->axis[2] = main_axis;
     g->axis[0] = main_axis == 0 ? 1 : 0;
     g->axis[1] = main_axis == 2 ? 1 : 2;
@@ -267,6 +276,7 @@ typedef struct search {
     uint32_t i;
     double x[3]; /* relative to the grid, by fast, slow, main */
     double reach;
+    int whole; /* 0, 1: along fast, slow everything is searched; -1: neither */
 } search;
 
 /* Append those of cells [begin, end) of the sorted particles that are near. */
@@ -299,7 +309,10 @@ static void window(const search *q, int k, int *from, int *to)
     int count = q->c->cells[k];
     double low = floor((q->x[k] - q->reach) / size);
     double high = floor((q->x[k] + q->reach) / size);
-    if (q->g->periodic[k]) {
+    if (q->whole == k) {
+        *from = 0;
+        *to = count - 1;
+    } else if (q->g->periodic[k]) {
         *from = (int)low;
         *to = high - low >= count ? *from + count - 1 : (int)high;
     } else {
@@ -366,11 +379,24 @@ static se3d_status search_slab(se3di_particles *set, const search *q, int s, int
     return SE3D_OK;
 }
 
+/* The first slab beyond the last one: in a cell that strains, shifted. */
+static se3d_status search_beyond(se3di_particles *set, const search *q, int s)
+{
+    search beyond = *q;
+    for (int k = 0; k < 2 && se3di_cell_strains(set); ++k) {
+        beyond.x[k] -= q->g->axis[k] == set->cell.flow ? set->cell.offset : 0.0;
+    }
+    return search_slab(set, &beyond, 0, s + 1, 0);
+}
+
 /* Partners of particle i of slab s. */
 static se3d_status search_particle(se3di_particles *set, const grid *g, int s, uint32_t i)
 {
     const se3di_particle *particle = &set->particles[i];
-    search q = {.g = g, .i = i};
+    search q = {.g = g, .i = i, .whole = -1};
+    if (se3di_cell_strains(set) && g->slabs == 1) {
+        q.whole = g->axis[0] == set->cell.flow ? 0 : 1;
+    }
     for (int k = 0; k < 3; ++k) {
         q.x[k] = particle->x[g->axis[k]] - g->low[k];
     }
@@ -384,7 +410,7 @@ static se3d_status search_particle(se3di_particles *set, const grid *g, int s, u
         if (s + 1 < g->slabs) {
             SE3DI_TRY(search_slab(set, &q, s + 1, s + 1, 0));
         } else if (g->periodic[2] && g->slabs > 1) {
-            SE3DI_TRY(search_slab(set, &q, 0, s + 1, 0));
+            SE3DI_TRY(search_beyond(set, &q, s));
         }
     }
     return SE3D_OK;
@@ -453,7 +479,8 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         double room = HUGE_VAL; /* for the reaches of two */
         choose_axes(set, &g);
         for (int k = 0; k < 3; ++k) { /* no pair may meet twice */
-            if (g.periodic[k] && g.extent[k] < SE3DI_PERIOD_LEAST * largest) {
+            if (g.periodic[k] &&
+                !(g.extent[k] >= SE3DI_PERIOD_LEAST * largest && g.extent[k] < EXTENT_MOST)) {
                 return SE3D_ERR_UNSUPPORTED;
             }
             if (g.periodic[k]) {
@@ -474,6 +501,7 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         memcpy(wall->old_x, wall->pose.x, sizeof wall->old_x);
         memcpy(wall->old_R, wall->pose.R, sizeof wall->old_R);
     }
+    se3di_cell_begin_list(set);
     ++set->rebuilds;
     return se3di_particles_activate(set);
 }

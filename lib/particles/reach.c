@@ -7,6 +7,7 @@
 #include "particles/reach.h"
 
 #include "math/vec3.h"
+#include "particles/cell.h"
 #include "particles/slabs.h"
 
 #include <math.h>
@@ -23,15 +24,15 @@
 #define LEFT_LEAST  0.5
 #define SQUARE_MOST 1e300 /* of an inverse reach: nothing may move */
 
-static double speed_of(const se3di_particle *particle)
+static double speed_of(const se3di_particles *set, const se3di_particle *particle)
 {
-    return se3di_norm(particle->v);
+    return se3di_cell_strains(set) ? se3di_cell_speed(set, particle) : se3di_norm(particle->v);
 }
 
 /* How far a particle may go in so many steps. */
 static double way(const se3di_particles *set, const se3di_particle *particle, double steps)
 {
-    return steps * (speed_of(particle) * set->drift + SHARE * set->pace);
+    return steps * (speed_of(set, particle) * set->drift + SHARE * set->pace);
 }
 
 static double clamp(double value, double least, double most)
@@ -112,6 +113,9 @@ void se3di_particles_set_reach(se3di_particles *set)
 static double rest_of(const se3di_particles *set, size_t k)
 {
     double shift[3];
+    if (se3di_cell_strains(set)) {
+        return se3di_particles_reach(set)[k] - se3di_cell_shift(set, k);
+    }
     se3di_sub(set->particles[k].x, set->origin + 3 * k, shift);
     return se3di_particles_reach(set)[k] - se3di_norm(shift);
 }

@@ -19,6 +19,7 @@
 #include "contact/bodies/law.h"
 #include "contact/shape/shape.h"
 #include "model/model.h"
+#include "se3d/cell.h"
 #include "se3d/particles.h"
 
 #define SE3DI_PARTICLE_LANES     8  /* pairs of a block */
@@ -145,6 +146,7 @@ typedef struct se3di_slab {
     double overlap;                /* largest excess over what is allowed */
     double fastest;                /* squared speed after the last motion, */
     double hasty;                  /* the same over the squared small reach */
+    double virial[9];              /* of its pairs, in a cell that strains: force x branch */
     uint64_t touching;
     se3di_law_failure failure;
     int32_t begun;  /* in this sweep somebody evaluates its forces, */
@@ -276,6 +278,39 @@ typedef struct se3di_clump {
     uint32_t template_index;
 } se3di_clump;
 
+/* A linear map of a cell: axes are stretched, and `flow` is sheared by `gradient`. */
+typedef struct se3di_cell_map {
+    double along[3], shear;
+} se3di_cell_map;
+
+typedef struct se3di_cell_stage {
+    double start;
+    se3di_cell_map rates; /* without the axes of servo */
+    int32_t servo[3];
+    int32_t reserved;
+    double stress[3], most[3], gain[3];
+} se3di_cell_stage;
+
+/* How the domain strains.                                                        cell.c */
+typedef struct se3di_cell {
+    size_t count; /* of the stages; 0: it stays as it is */
+    se3di_cell_stage stages[SE3D_CELL_STAGES];
+    int32_t flow, gradient;     /* axes of shear */
+    double centre[3], first[3]; /* of the domain; its first lengths */
+    /* what it has done */
+    uint64_t stage;       /* under way; SE3D_CELL_STAGES: none yet */
+    double offset;        /* along `flow`, of the image beyond the upper side along `gradient` */
+    double shear;         /* strain */
+    se3di_cell_map rates; /* of the step under way */
+    se3di_cell_map field; /* mean velocities are this map of x - centre: `rates`, but in the second
+                           * half of a step those of its middle, at places of its end */
+    se3di_cell_map since; /* the map from the places where the list was built */
+    double strained;      /* the sum of the largest strains of the steps since then */
+    double virial[9];     /* of the last forces, */
+    double kinetic[6];    /* and the sum m u u of the last step: xx, yy, zz, xy, yz, xz */
+    double work;
+} se3di_cell;
+
 typedef struct se3di_particles_kept se3di_particles_kept;
 
 typedef struct se3di_particles {
@@ -378,6 +413,7 @@ typedef struct se3di_particles {
     size_t sink_count, sink_capacity;
     se3di_flow *flows;
     size_t flow_count, flow_capacity;
+    se3di_cell cell;
     uint64_t touching;
     int32_t starved;       /* memory was missing in the last evaluation of the forces */
     int32_t failed_placed; /* the overlap was there before any step was made */
@@ -393,6 +429,14 @@ typedef struct se3di_particles {
     se3di_particles_kept *kept; /* of the step under way; NULL: none was needed yet */
 } se3di_particles;
 
+/* The images of a cell that strains: one period along `gradient` is `column`. */
+typedef struct se3di_strain {
+    double across[3];    /* inverse length along the gradient, at its place; else 0 */
+    double column[3];    /* the way to the image across it, */
+    double jump[3];      /* the velocity that this one has more, */
+    double length_up[3]; /* and those along the other axes */
+} se3di_strain;
+
 /* What a force kernel works on. */
 typedef struct se3di_force_task {
     const se3di_particle *particles;
@@ -407,13 +451,15 @@ typedef struct se3di_force_task {
     uint32_t materials;
     uint32_t begin, end; /* blocks */
     int32_t law, periodic, uniform, cohesive;
-    double h;                  /* what the springs advance by */
-    double length[3], rate[3]; /* of the period and its inverse; 0: none */
-    double limit;              /* allowed overlap over the smaller radius */
-    double overlap;            /* out: largest excess, starts at the caller's value */
-    uint64_t touching;         /* out: added to */
-    double *wall_sums;         /* walls: [walls * 6], added to */
-    const se3di_stuff *stuffs; /* of a user-defined law, as the next three */
+    double h;                   /* what the springs advance by */
+    double length[3], rate[3];  /* of the period and its inverse; 0: none */
+    const se3di_strain *strain; /* of a cell that strains; NULL: none */
+    double virial[9];           /* out: force x branch of its pairs, added to */
+    double limit;               /* allowed overlap over the smaller radius */
+    double overlap;             /* out: largest excess, starts at the caller's value */
+    uint64_t touching;          /* out: added to */
+    double *wall_sums;          /* walls: [walls * 6], added to */
+    const se3di_stuff *stuffs;  /* of a user-defined law, as the next three */
     se3d_contact_callback callback;
     void *ctx;
     se3di_law_failure failure; /* out: the first one */

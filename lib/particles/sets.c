@@ -3,6 +3,7 @@
 
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/cell.h"
 #include "particles/flow.h"
 #include "particles/kept.h"
 #include "particles/passage.h"
@@ -96,12 +97,29 @@ static se3d_status report(const se3di_particles *set, se3d_status status, se3di_
     case SE3D_ERR_UNSUPPORTED:
         return se3di_error_set(error, status,
                                "the domain%s%.80s is shorter along a periodic axis than %g of the "
-                               "largest radii",
+                               "largest radii, or has grown without end",
                                of, name, SE3DI_PERIOD_LEAST);
     default:
         return se3di_error_set(error, status, "no memory for contacts%s%.80s at time %g s", of,
                                name, set->time);
     }
+}
+
+/* A cell that strains holds spheres alone. */
+static se3d_status check_cell(const se3di_particles *set, se3di_error *error)
+{
+    const char *of;
+    const char *name = set_name(set, &of);
+    const char *what = set->wall_count > 0    ? "touch shapes"
+                       : set->clump_count > 0 ? "are clumps"
+                       : set->flow_count > 0  ? "are counted by flows"
+                                              : NULL;
+    if (se3di_cell_strains(set) && what) {
+        return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
+                               "the particles%s%.80s %s, but are in a cell that strains", of, name,
+                               what);
+    }
+    return SE3D_OK;
 }
 
 /* What a set touches, where the model has it now. */
@@ -111,6 +129,7 @@ static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3
     if (status < 0) {
         return report(set, status, error);
     }
+    SE3DI_TRY(check_cell(set, error));
     se3di_particles_move_walls(set, model->frames);
     se3di_particles_free_walls(set, NULL);
     return SE3D_OK;

@@ -8,6 +8,7 @@
 #include "contact/bodies/encounter.h"
 #include "math/larger.h"
 #include "math/vec3.h"
+#include "particles/cell.h"
 #include "particles/flow.h"
 #include "particles/grid.h"
 #include "particles/list.h"
@@ -167,7 +168,7 @@ static void sum_walls(se3di_particles *set)
     }
 }
 
-static se3di_force_task prepare(se3di_particles *set, double h)
+static se3di_force_task prepare(se3di_particles *set, double h, const se3di_strain *strain)
 {
     se3di_force_task task = {
         .particles = set->particles,
@@ -187,6 +188,7 @@ static se3di_force_task prepare(se3di_particles *set, double h)
         .callback = set->callback,
         .ctx = set->ctx,
         .clumped = set->clump_count > 0 ? set : NULL,
+        .strain = se3di_cell_strains(set) ? strain : NULL,
     };
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
@@ -219,7 +221,8 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     if (set->count == 0) {
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
-    se3di_force_task task = prepare(set, h);
+    const se3di_strain strain = se3di_cell_images(set);
+    se3di_force_task task = prepare(set, h, &strain);
     se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
     double excess = 0.0;
@@ -361,6 +364,12 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
     for (size_t k = 0; k < set->clump_count; ++k) {
         hash = se3di_hash_numbers(hash, set->clumps[k].q, 4);
         hash = se3di_hash_numbers(hash, set->clumps[k].spin, 3);
+    }
+    if (se3di_cell_strains(set)) {
+        const double cell[] = {set->cell.offset, set->cell.work};
+        hash = se3di_hash_numbers(hash, set->lower, 3);
+        hash = se3di_hash_numbers(hash, set->upper, 3);
+        hash = se3di_hash_numbers(hash, cell, 2);
     }
     return hash;
 }

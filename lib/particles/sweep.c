@@ -13,6 +13,7 @@
 #include "base/floats.h"
 #include "base/threads.h"
 #include "math/larger.h"
+#include "particles/cell.h"
 #include "particles/clump.h"
 #include "particles/mesh.h"
 #include "particles/passage.h"
@@ -119,8 +120,60 @@ static size_t part_begin(size_t count, size_t c)
     return begin < count ? begin : count;
 }
 
+/* Half a kick in a cell that strains, and the drift: the one if it ends a step, the other if it
+ * begins one. */
+static void strain(se3di_particles *set, double h, double drift)
+{
+    se3di_cell_sums sums_of[PASS_PARTS] = {{0.0, 0.0, {0.0}}};
+    const se3di_particle_motion motion = {1, h, drift};
+    const se3di_cell_map change = drift != 0.0 ? se3di_cell_open(set, h) : se3di_cell_rest(set);
+    const size_t count = set->count;
+#ifdef _OPENMP
+    const int32_t team = se3di_particles_team(set);
+#pragma omp parallel for if (team > 1) num_threads(team) schedule(static)
+#endif
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        const se3di_floats host = se3di_floats_set();
+        se3di_cell_move(set, part_begin(count, c), part_begin(count, c + 1), &motion, &change,
+                        &sums_of[c]);
+        se3di_floats_restore(host);
+    }
+    haste most = {0.0, 0.0};
+    double kinetic[6] = {0.0};
+    for (size_t c = 0; c < PASS_PARTS; ++c) {
+        most = hastier(most, (haste){sums_of[c].fastest, sums_of[c].hasty});
+        for (int k = 0; k < 6; ++k) {
+            kinetic[k] += sums_of[c].kinetic[k];
+        }
+    }
+    if (drift != 0.0) {
+        se3di_cell_drift(set, drift);
+    } else {
+        memcpy(set->cell.kinetic, kinetic, sizeof kinetic);
+        se3di_cell_close(set, h);
+    }
+    note_motion(set, &motion, most);
+}
+
+static void strain_all(se3di_particles *set, const se3di_particle_motion *motion)
+{
+    const int opens = motion->drift != 0.0;
+    if (motion->kicks > opens) {
+        strain(set, motion->h, 0.0);
+    }
+    if (opens) {
+        strain(set, motion->h, motion->drift);
+    }
+}
+
 static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
+    if (se3di_cell_strains(set)) {
+        if (set->count > 0) {
+            strain_all(set, motion);
+        }
+        return;
+    }
     haste most_of[PASS_PARTS];
     const size_t count = set->count, clumps = set->clump_count;
 #ifdef _OPENMP
@@ -208,6 +261,7 @@ static void evaluate_forces(const sweep *w, uint32_t s)
         se3di_particles_get_kernels(set)->walls(&task);
         se3di_particles_mesh_forces(set, slab, &task);
     }
+    memcpy(slab->virial, task.virial, sizeof slab->virial);
     slab->overlap = task.overlap;
     slab->failure = task.failure;
     slab->touching = task.touching;
@@ -361,12 +415,24 @@ static void sweep_together(const sweep *w)
 #endif
 }
 
+static void sum_virial(se3di_particles *set)
+{
+    double sum[9] = {0.0};
+    for (uint32_t s = 0; s < set->slab_count; ++s) {
+        for (int k = 0; k < 9; ++k) {
+            sum[k] += set->slabs[s].virial[k];
+        }
+    }
+    memcpy(set->cell.virial, sum, sizeof sum);
+}
+
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
                            const se3di_particle_motion *motion)
 {
     static const se3di_particle_motion still = {0, 0.0, 0.0};
-    const int clumped = set->clump_count > 0; /* they move when all of their spheres are done */
-    const sweep w = {set, task, clumped ? &still : motion};
+    /* clumps move when all of their spheres are done, cells when their stress is known */
+    const int waits = set->clump_count > 0 || se3di_cell_strains(set);
+    const sweep w = {set, task, waits ? &still : motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         set->slabs[s].done = set->slabs[s].begun = set->slabs[s].moving = 0;
@@ -376,7 +442,8 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
     } else {
         sweep_share(&w, 0, 1);
     }
-    if (clumped) {
+    if (waits) {
+        sum_virial(set);
         if (motion->kicks > 0) {
             pass(set, motion);
         }

@@ -133,6 +133,12 @@ void se3di_wall_image(const se3di_wall *wall, const double length[3], double rea
 
 void se3di_particles_wrap(const se3di_particles *set, double d[3])
 {
+    if (set->cell.count > 0) { /* across the gradient first: that shifts them along the flow */
+        const int g = set->cell.gradient;
+        const double length = set->upper[g] - set->lower[g], across = se3di_nearest(d[g] / length);
+        d[g] -= length * across;
+        d[set->cell.flow] -= set->cell.offset * across;
+    }
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
             double length = set->upper[a] - set->lower[a];
@@ -143,6 +149,13 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
 
 void se3di_particles_come_home(const se3di_particles *set, double x[3])
 {
+    if (set->cell.count > 0) {
+        const int g = set->cell.gradient;
+        const double length = set->upper[g] - set->lower[g];
+        const double across = floor((x[g] - set->lower[g]) / length);
+        x[set->cell.flow] -= set->cell.offset * across;
+        x[g] -= length * across;
+    }
     for (int a = 0; a < 3; ++a) {
         const double length = set->upper[a] - set->lower[a];
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {

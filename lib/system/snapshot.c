@@ -44,6 +44,11 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
                                   (uint32_t)set->boundary[2], (uint32_t)set->source_count,
                                   (uint32_t)set->sink_count,  (uint32_t)set->flow_count};
         hash = add_words(hash, words, set->flow_count > 0 ? 6 : 5);
+        if (set->cell.count > 0) {
+            const uint32_t cell[] = {(uint32_t)set->cell.count, (uint32_t)set->cell.flow,
+                                     (uint32_t)set->cell.gradient};
+            hash = add_words(hash, cell, 3);
+        }
     }
     return hash;
 }

@@ -555,6 +555,64 @@ static se3d_status passages_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status cells_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    se3d_cell_state state;
+    uint32_t stage = 7;
+    se3d_particles *open = particles_open(a, &material), *p = NULL;
+    se3d_cell_def def = se3d_cell_def_default();
+    se3d_particles_def box = se3d_particles_def_default();
+    for (int k = 0; k < 3; ++k) {
+        box.boundary[k] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        box.upper[k] = 1.0;
+    }
+    CHECK(!se3d_particles_create(a->system, &box, &p));
+    CHECK(se3d_particles_add_cell_stage(NULL, &def, &stage) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_cell_stage(p, NULL, &stage), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_cell_stage(open, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "not periodic along x");
+    def.gradient = 0;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "gradient = 0");
+    def.gradient = 2;
+    def.flow = -1;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    def.flow = 0;
+    def.rate[1] = (double)NAN;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    def.rate[1] = 1.0;
+    def.servo[1] = 1;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "rate[1] = 1 1/s");
+    def.rate[1] = 0.0;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "gain[1] = 0");
+    def.gain[1] = 1.0;
+    def.rate_max[1] = 0.0;
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    def.servo[1] = 0;
+    def.shear_rate = 1.0;
+    CHECK(stage == 7);
+    for (uint32_t k = 0; k < SE3D_CELL_STAGES; ++k) {
+        def.start = k;
+        CHECK(!se3d_particles_add_cell_stage(p, &def, &stage) && stage == k);
+        REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+        def.start = k + 0.5;
+        def.flow = 1;
+        REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+        def.flow = 0;
+    }
+    REJECTED(se3d_particles_add_cell_stage(p, &def, &stage), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_cell(NULL, &state) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_cell(p, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_particles_get_cell(p, &state) && state.stage == SE3D_CELL_STAGES);
+    CHECK(!se3d_particles_get_cell(open, &state) && state.volume == 0.0);
+    se3d_particles_destroy(p);
+    se3d_particles_destroy(open);
+    return SE3D_OK;
+}
+
 static se3d_status clumps_reject_misuse(arguments *a)
 {
     const double nan = (double)NAN, two[6] = {0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, radii[2] = {0.1, 0.1};

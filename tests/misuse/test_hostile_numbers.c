@@ -310,6 +310,32 @@ static const field flow_fields[] = {NUMBERS(se3d_flow_def, point),  NUMBERS(se3d
                                     NUMBERS(se3d_flow_def, along),  NUMBERS(se3d_flow_def, window),
                                     INTEGER(se3d_flow_def, tag),    FIELDS_END};
 
+FILL_IN(se3d_cell_def, cell)
+{
+    const double r[6] = {0.5, 0.5, 0.5, 0.69, 0.5, 0.5}, radius[2] = {0.1, 0.1};
+    se3d_particles_def box = se3d_particles_def_default();
+    for (int k = 0; k < 3; ++k) {
+        box.boundary[k] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        box.upper[k] = 1.0;
+        def->stress[k] = def->gain[k] = 1.0;
+    }
+    box.mask = 0;
+    CHECK(!se3d_particles_create(w->system, &box, &w->set));
+    CHECK(!se3d_particles_add(w->set, w->material, 2, r, radius, NULL, NULL, NULL));
+    def->servo[1] = 1;
+    def->shear_rate = 1.0;
+}
+static se3d_status create_cell(world *w, const void *def)
+{
+    return se3d_particles_add_cell_stage(w->set, def, NULL);
+}
+static const field cell_fields[] = {
+    NUMBERS(se3d_cell_def, start),    NUMBERS(se3d_cell_def, rate),
+    NUMBERS(se3d_cell_def, gain),     NUMBERS(se3d_cell_def, shear_rate),
+    INTEGER(se3d_cell_def, flow),     INTEGER(se3d_cell_def, gradient),
+    INTEGER(se3d_cell_def, servo),    NUMBERS(se3d_cell_def, stress),
+    NUMBERS(se3d_cell_def, rate_max), FIELDS_END};
+
 static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
 {
     double r[3];
@@ -392,6 +418,7 @@ static const subject subjects[] = {
     {"source", source_fields, fill_in_source, create_source, 1},
     {"sink", sink_fields, fill_in_sink, create_sink, 1},
     {"flow", flow_fields, fill_in_flow, create_flow, 1},
+    {"cell", cell_fields, fill_in_cell, create_cell, 0},
     {"event", event_fields, fill_in_event, create_event, 0},
     {"function", function_fields, fill_in_function, create_function_create, 0},
 };

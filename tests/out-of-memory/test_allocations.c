@@ -476,6 +476,43 @@ static se3d_status make_source_and_sink(workshop *w)
     return status;
 }
 
+/* A cell that strains, whose lists have to be collected. */
+static se3d_status make_cell(workshop *w)
+{
+    const double r[6] = {0.5, 0.5, 0.5, 0.69, 0.5, 0.5}, radius[2] = {0.1, 0.1};
+    se3d_particles *set = NULL;
+    se3d_material material = {0, 0};
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_particles_def box = se3d_particles_def_default();
+    se3d_cell_def stage = se3d_cell_def_default();
+    se3d_cell_state state;
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    for (int k = 0; k < 3; ++k) {
+        box.boundary[k] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        box.upper[k] = 1.0;
+    }
+    box.mask = 0;
+    stage.rate[0] = 0.5;
+    se3d_status status = se3d_particles_create(w->system, &box, &set);
+    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    status =
+        status < 0 ? status : se3d_particles_add(set, material, 2, r, radius, NULL, NULL, NULL);
+    status = status < 0 ? status : se3d_particles_step(set, 2);
+    if (status >= 0) {
+        status = se3d_particles_add_cell_stage(set, &stage, NULL);
+    }
+    status = status < 0 ? status : se3d_particles_step(set, 2);
+    if (status >= 0) {
+        CHECK(se3d_particles_get_cell(set, &state) == SE3D_OK && state.stage == 0);
+    }
+    se3d_particles_destroy(set);
+    if (material.index1 > 0) {
+        CHECK(se3d_material_destroy(w->system, material) == SE3D_OK);
+    }
+    return status;
+}
+
 /* A template of clumps, two of them and a source, and copies of all. */
 static se3d_status make_clumps(workshop *w)
 {
@@ -584,6 +621,7 @@ static const operation_row operations[] = {
     {"particles", make_particles},
     {"source and sink", make_source_and_sink},
     {"clumps", make_clumps},
+    {"cell", make_cell},
     {"check", make_check},
     {"coordinates", make_coordinates},
     {"batch", make_batch},

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Small worlds of particles that together have all that a set can hold: springs of pairs, walls and
- * meshes, rolling, cohesion, periods, sources, sinks, tags, walls that move and that give way. */
+ * meshes, rolling, cohesion, periods, sources, sinks, tags, walls that move and that give way, a
+ * cell that strains. */
 #ifndef SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 #define SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 
@@ -15,11 +16,12 @@ enum {
     PARTICLES_TWO_SETS,
     PARTICLES_CLUMPS,
     PARTICLES_FUNNEL,
+    PARTICLES_CELL,
     PARTICLES_WORLDS
 };
 
 static const char *const particle_world_names[PARTICLES_WORLDS] = {
-    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel"};
+    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel", "cell"};
 
 static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
 {
@@ -204,11 +206,45 @@ static inline void particle_bodies(se3d_system *system, se3d_material material)
     CHECK(!se3d_driver_create(system, &driver, &slide));
 }
 
+/* Spheres in a cell that is sheared and squeezed, and then keeps a pressure. */
+static inline se3d_system *particle_cell(int32_t threads)
+{
+    se3d_system *system = NULL;
+    se3d_particles *set = NULL;
+    se3d_particles_def def = se3d_particles_def_default();
+    se3d_cell_def stage = se3d_cell_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    def.threads = threads;
+    for (int a = 0; a < 3; ++a) {
+        def.boundary[a] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        def.lower[a] = -0.1;
+        def.upper[a] = 0.1;
+        stage.rate[a] = -7.0;
+    }
+    CHECK(!se3d_particles_create(system, &def, &set));
+    const se3d_fill_def fill = particle_fill(particle_material(system, 0.1, 0.0), -0.09, 0.09);
+    CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
+    stage.shear_rate = 20.0;
+    CHECK(!se3d_particles_add_cell_stage(set, &stage, NULL));
+    stage.start = 0.05;
+    for (int a = 0; a < 3; ++a) {
+        stage.rate[a] = 0.0;
+        stage.servo[a] = a != 1;
+        stage.stress[a] = 500.0;
+        stage.rate_max[a] = 10.0;
+    }
+    CHECK(!se3d_particles_add_cell_stage(set, &stage, NULL));
+    return system;
+}
+
 /* The same model each time, but for the threads. */
 static inline se3d_system *particle_world(int kind, int32_t threads)
 {
     se3d_system *system = NULL;
     se3d_contact_settings law = se3d_contact_settings_default();
+    if (kind == PARTICLES_CELL) {
+        return particle_cell(threads);
+    }
     CHECK(!se3d_system_create(NULL, &system));
     law.law = kind == PARTICLES_HEAP ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
     CHECK(!se3d_system_set_contact(system, &law));

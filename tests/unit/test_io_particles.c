@@ -358,6 +358,44 @@ static void clumps_are_read_and_written(void)
     se3d_model_destroy(model);
 }
 
+/* A sphere that is free goes with the cell; then servo pulls it open, as fast as it may. */
+static void cells_are_read_and_strain(void)
+{
+    static const char text[] =
+        "se3d: 1\ngravity: [0, 0, 0]\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e4}]\n"
+        "contact: {boundary: [periodic, periodic, periodic], lower: [0, 0, 0], upper: [1, 1, 1]}\n"
+        "particles: [{name: one, material: m, radius: 0.1, count: 1, lower: [0, 0, 0], upper: "
+        "[1, 1, 1]}]\n"
+        "cell:\n"
+        "  - {shear_rate: 0.5, flow: y, gradient: x, rate: [0, 0, 1]}\n"
+        "  - {start: 0.1, servo: xz, stress: [-5, 0, 7], rate_max: [2, 9, 3], gain: [0, 0, 1]}\n"
+        "analysis: {type: dynamics, duration: 0.2}\n"
+        "output: [{file: s.csv, every: 0.1, channels: [cell.length, cell.strain, cell.rate, "
+        "cell.stress, cell.shear, cell.shear_strain, cell.shear_rate, cell.offset, cell.volume, "
+        "cell.solid_fraction, cell.kinetic, cell.work]}]\n";
+    const double V = 4.0 / 3.0 * 3.14159265358979324 * 1e-3;
+    se3d_status status;
+    se3d_model *model = run_model(text, results_folder(), &status);
+    CHECK(status >= 0);
+    CHECK_NEAR(column_of(model, 0, 0), exp(0.2), 1e-3);
+    CHECK_NEAR(column_of(model, 0, 1), 1.0, 1e-12);
+    CHECK_NEAR(column_of(model, 1, 0), 0.2, 1e-3);
+    CHECK_NEAR(column_of(model, 1, 2), 0.1 - 0.3, 1e-3);
+    CHECK_NEAR(column_of(model, 2, 0), 2.0, 1e-12); /* to a stress of -5: default gain, bounded */
+    CHECK_NEAR(column_of(model, 2, 2), -3.0, 1e-12);
+    CHECK_NEAR(column_of(model, 3, 0), 0.0, 1e-12);
+    CHECK_NEAR(column_of(model, 4, 2), 0.0, 1e-12);
+    CHECK_NEAR(channel(model, 5), 0.05, 1e-4);
+    CHECK_NEAR(channel(model, 6), 0.0, 0.0);
+    CHECK_NEAR(channel(model, 7), 0.05, 1e-4);
+    CHECK_NEAR(channel(model, 8), 1.0, 1e-3);
+    CHECK_NEAR(channel(model, 9), V / channel(model, 8), 1e-12);
+    CHECK_NEAR(channel(model, 10), 0.0, 1e-12);
+    CHECK_NEAR(channel(model, 11), 0.0, 1e-12);
+    se3d_model_destroy(model);
+}
+
 #define WITH_SET                                                                                   \
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, "        \
     "radius: "                                                                                     \
@@ -433,6 +471,7 @@ int main(void)
     RUN(contacts_are_listed_with_their_forces);
     RUN(chute_counts_what_flows);
     RUN(clumps_are_read_and_written);
+    RUN(cells_are_read_and_strain);
     RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);

@@ -147,6 +147,20 @@ static const quantity_name particle_names[] = {{"particles.count", SE3DI_PARTICL
                                                {"particles.left", SE3DI_PARTICLES_LEFT},
                                                {NULL, SE3DI_STEPS}};
 
+static const quantity_name cell_names[] = {{"cell.length", SE3DI_CELL_LENGTH},
+                                           {"cell.offset", SE3DI_CELL_OFFSET},
+                                           {"cell.strain", SE3DI_CELL_STRAIN},
+                                           {"cell.shear_strain", SE3DI_CELL_SHEAR_STRAIN},
+                                           {"cell.rate", SE3DI_CELL_RATE},
+                                           {"cell.shear_rate", SE3DI_CELL_SHEAR_RATE},
+                                           {"cell.stress", SE3DI_CELL_STRESS},
+                                           {"cell.shear", SE3DI_CELL_SHEAR},
+                                           {"cell.volume", SE3DI_CELL_VOLUME},
+                                           {"cell.solid_fraction", SE3DI_CELL_SOLID_FRACTION},
+                                           {"cell.kinetic", SE3DI_CELL_KINETIC},
+                                           {"cell.work", SE3DI_CELL_WORK},
+                                           {NULL, SE3DI_STEPS}};
+
 static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
                                           {"lost", SE3DI_SET_LOST},
                                           {"left", SE3DI_SET_LEFT},
@@ -358,6 +372,19 @@ static bool find_particles(const se3d_model *model, const char *name, se3di_chan
     return false;
 }
 
+/* There are some if the model has a `cell`. */
+static bool find_cell(const se3d_model *model, const char *name, se3di_channel *channel)
+{
+    for (const quantity_name *q = cell_names; model->particles && q->name; ++q) {
+        if (model->particles->cell && strcmp(q->name, name) == 0) {
+            channel->quantity = q->quantity;
+            channel->particles = model->particles->set;
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool find_system(const char *name, se3di_channel *channel)
 {
     for (const quantity_name *q = system_names; q->name; ++q) {
@@ -390,6 +417,14 @@ static bool explain_system(const char *head, const char *name, char *problem, si
         snprintf(problem, size,
                  "`%.60s.%.60s` is unknown, there are contacts.count, contacts.force_max and, with "
                  "`particles`, particles.count, particles.lost, particles.energy, particles.left",
+                 head, name);
+        return true;
+    }
+    if (strcmp(head, "cell") == 0) {
+        snprintf(problem, size,
+                 "`%.60s.%.60s` is unknown, there are, with `cell`, cell.length, cell.strain, "
+                 "cell.rate, cell.stress, cell.shear, cell.shear_strain, cell.shear_rate, "
+                 "cell.offset, cell.volume, cell.solid_fraction, cell.kinetic, cell.work",
                  head, name);
         return true;
     }
@@ -503,7 +538,8 @@ static bool find_absolute(const se3d_model *model, const char *name, se3di_chann
         }
         return true;
     }
-    if (find_contacts(model, name, channel) || find_particles(model, name, channel)) {
+    if (find_contacts(model, name, channel) || find_particles(model, name, channel) ||
+        find_cell(model, name, channel)) {
         return true;
     }
     snprintf(head, sizeof head, "%s", name);

@@ -134,6 +134,18 @@
     X(FLOW_COUNT_RATE, 1, PASSED, 7, JUMPS, 0, 1, 0, 0)                                            \
     X(FLOW_MASS_RATE, 1, PASSED, 8, JUMPS, 0, 1, 1, 0)                                             \
     X(FLOW_MOMENTUM_RATE, 3, PASSED, 9, JUMPS, 1, 2, 1, 0)                                         \
+    X(CELL_LENGTH, 3, CELL, 0, JUMPS, 1, 0, 0, 0)                                                  \
+    X(CELL_OFFSET, 1, CELL, 3, JUMPS, 1, 0, 0, 0)                                                  \
+    X(CELL_STRAIN, 3, CELL, 4, JUMPS, 0, 0, 0, 0)                                                  \
+    X(CELL_SHEAR_STRAIN, 1, CELL, 7, JUMPS, 0, 0, 0, 0)                                            \
+    X(CELL_RATE, 3, CELL, 8, JUMPS, 0, 1, 0, 0)                                                    \
+    X(CELL_SHEAR_RATE, 1, CELL, 11, JUMPS, 0, 1, 0, 0)                                             \
+    X(CELL_STRESS, 3, CELL, 12, JUMPS, -1, 2, 1, 0)                                                \
+    X(CELL_SHEAR, 3, CELL, 15, JUMPS, -1, 2, 1, 0)                                                 \
+    X(CELL_VOLUME, 1, CELL, 18, JUMPS, 3, 0, 0, 0)                                                 \
+    X(CELL_SOLID_FRACTION, 1, CELL, 19, JUMPS, 0, 0, 0, 0)                                         \
+    X(CELL_KINETIC, 1, CELL, 20, JUMPS, 2, 2, 1, 0)                                                \
+    X(CELL_WORK, 1, CELL, 21, JUMPS, 2, 2, 1, 0)                                                   \
     X(STEPS, 1, SOLVER, 0, JUMPS, 0, 0, 0, 0)                                                      \
     X(ITERATIONS, 1, SOLVER, 1, JUMPS, 0, 0, 0, 0)
 /* clang-format on */
@@ -177,6 +189,7 @@ typedef enum se3di_question {
     SE3DI_ASK_SINK,
     SE3DI_ASK_AVERAGE, /* of a region */
     SE3DI_ASK_PASSED,  /* of a flow */
+    SE3DI_ASK_CELL,
     SE3DI_ASK_SOLVER,
     SE3DI_QUESTION_COUNT
 } se3di_question;

@@ -5,6 +5,7 @@
 #include "io/channel/channel.h"
 #include "io/model/tagged.h"
 #include "se3d/average.h"
+#include "se3d/cell.h"
 #include "se3d/flow.h"
 
 /* What the sources of the set have done. */
@@ -87,6 +88,32 @@ se3d_status se3di_tagged_ask_passed(const se3di_channel *c, double numbers[12])
         for (int k = 0; k < 3; ++k) {
             numbers[4 + k] = stats.momentum[k];
             numbers[9 + k] = stats.momentum_rate[k];
+        }
+    }
+    return status;
+}
+
+/* Stresses in the order of a region's. */
+se3d_status se3di_tagged_ask_cell(const se3di_channel *c, double numbers[22])
+{
+    static const int order[6] = {0, 1, 2, 4, 5, 3};
+    se3d_cell_state cell;
+    const se3d_status status = se3d_particles_get_cell(c->particles, &cell);
+    if (status >= 0) {
+        numbers[3] = cell.offset;
+        numbers[7] = cell.shear_strain;
+        numbers[11] = cell.shear_rate;
+        numbers[18] = cell.volume;
+        numbers[19] = cell.solid_fraction;
+        numbers[20] = cell.kinetic_energy;
+        numbers[21] = cell.work;
+        for (int k = 0; k < 3; ++k) {
+            numbers[k] = cell.upper[k] - cell.lower[k];
+            numbers[4 + k] = cell.strain[k];
+            numbers[8 + k] = cell.rate[k];
+        }
+        for (int k = 0; k < 6; ++k) {
+            numbers[12 + k] = cell.stress[order[k]];
         }
     }
     return status;

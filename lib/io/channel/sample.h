@@ -6,7 +6,7 @@
 
 #include "io/channel/channel.h"
 
-enum { SE3DI_ANSWER_NUMBERS = 18 };
+enum { SE3DI_ANSWER_NUMBERS = 22 };
 
 typedef struct se3di_answer {
     uint64_t state; /* that it is of; 0: none */

@@ -29,6 +29,7 @@ typedef struct se3di_tagged {
     size_t region_count;
     const char **flows;
     size_t flow_count;
+    bool cell;           /* the domain strains */
     const char **clumps; /* names of the templates of clumps */
     size_t clump_count;
 } se3di_tagged;

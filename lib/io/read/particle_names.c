@@ -12,7 +12,7 @@
 
 bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const char *name)
 {
-    static const char words[] = " particles contacts energy violation work steps iterations ";
+    static const char words[] = " particles contacts cell energy violation work steps iterations ";
     const se3d_model *model = reader->model;
     if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
         se3di_ionames_find(&model->element_names, name, NULL) ||

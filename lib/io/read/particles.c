@@ -13,6 +13,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/cell.h"
 #include "io/read/clumps.h"
 #include "io/read/flows.h"
 #include "io/read/materials.h"
@@ -518,13 +519,15 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     const se3di_node *sinks = NULL;
     const se3di_node *boxes = NULL;
     const se3di_node *flows = NULL;
+    const se3di_node *stages = NULL;
     if (!se3di_read_list(reader, root, "particles", &list) ||
         !se3di_read_list(reader, root, "sinks", &sinks) ||
         !se3di_read_list(reader, root, "regions", &boxes) ||
-        !se3di_read_list(reader, root, "flows", &flows)) {
+        !se3di_read_list(reader, root, "flows", &flows) ||
+        !se3di_read_list(reader, root, "cell", &stages)) {
         return false;
     }
-    static const char *const sections[] = {"sinks", "clumps", "regions", "flows"};
+    static const char *const sections[] = {"sinks", "clumps", "regions", "flows", "cell"};
     for (size_t k = 0; !list && k < sizeof sections / sizeof *sections; ++k) {
         const se3di_node *section = se3di_node_get(root, sections[k]);
         if (section) {
@@ -550,5 +553,6 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
             return false;
         }
     }
-    return read_regions(reader, boxes) && se3di_read_flows(reader, flows) && check_analyses(reader);
+    return read_regions(reader, boxes) && se3di_read_flows(reader, flows) &&
+           se3di_read_cell(reader, stages) && check_analyses(reader);
 }

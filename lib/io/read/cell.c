@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* `cell`. */
+#include "io/read/cell.h"
+
+#include "io/document/document.h"
+#include "io/document/fields.h"
+#include "io/document/keys.h"
+#include "io/document/value.h"
+#include "io/model/model.h"
+#include "io/model/tagged.h"
+#include "io/read/objects.h"
+#include "se3d/cell.h"
+
+static const char *const axes[] = {"x", "y", "z", NULL};
+
+/* clang-format off */
+static const se3di_key stage_keys[] = {
+    {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_cell_def, start), .standard = "0",
+     .text = "[s], after that of the stage before"},
+    {"rate", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, rate), .standard = "[0, 0, 0]",
+     .text = "of the lengths along x, y, z, over them [1/s]"},
+    {"shear_rate", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_cell_def, shear_rate), .standard = "0",
+     .text = "of the velocity along `flow`, by the place along `gradient` [1/s]"},
+    {"flow", SE3DI_KIND_WORD, SE3DI_INTO(se3d_cell_def, flow), .words = axes, .standard = "x",
+     .text = "the axis along which the cell is sheared"},
+    {"gradient", SE3DI_KIND_WORD, SE3DI_INTO(se3d_cell_def, gradient), .words = axes,
+     .standard = "z", .text = "another axis, the same two in all stages that shear"},
+    {"servo", SE3DI_KIND_TEXT, .standard = "no axis",
+     .text = "the axes whose length keeps `stress`: x, y, z, or several as in xyz"},
+    {"stress", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, stress), .standard = "[0, 0, 0]",
+     .text = "of servo: normal stress, positive where particles press [Pa]"},
+    {"rate_max", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, rate_max), .standard = "[1, 1, 1]",
+     .text = "of servo: the largest rate [1/s]"},
+    {"gain", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, gain),
+     .standard = "rate_max / abs(stress)",
+     .text = "of servo: rate over excess of stress [1/(Pa s)]"},
+    {.key = NULL}};
+const se3di_object se3di_object_stage = {
+    "stage",
+    "A part of the motion of the periodic cell, until the next one starts.",
+    stage_keys, NULL,
+    NULL};
+/* clang-format on */
+
+static bool read_servo(se3di_reader *reader, const se3di_node *node, se3d_cell_def *def)
+{
+    const se3di_node *servo = se3di_node_get(node, "servo");
+    const char *text = "";
+    if (servo && !se3di_read_text(reader, servo, &text)) {
+        return false;
+    }
+    for (const char *c = text; *c; ++c) {
+        const int axis = *c - 'x';
+        if (axis < 0 || axis > 2 || def->servo[axis]) {
+            return se3di_reader_fail(reader, servo,
+                                     "is `%.20s`, must be axes of x, y and z, each once", text);
+        }
+        def->servo[axis] = 1;
+    }
+    return true;
+}
+
+static bool read_stage(se3di_reader *reader, const se3di_node *node)
+{
+    static const char *const keys[3] = {"stress", "rate_max", "gain"};
+    se3di_tagged *particles = reader->model->particles;
+    se3d_cell_def def = se3d_cell_def_default();
+    if (!se3di_read_keys(reader, node, &se3di_object_stage) ||
+        !se3di_read_fields(reader, node, &se3di_object_stage, NULL, "se3d_cell_def", &def) ||
+        !read_servo(reader, node, &def)) {
+        return false;
+    }
+    for (int k = 0; k < 3 && !se3di_node_get(node, "servo"); ++k) {
+        if (se3di_node_get(node, keys[k])) {
+            return se3di_reader_fail_key(reader, node, keys[k],
+                                         "has no effect without `servo`, the axes that it is for");
+        }
+    }
+    particles->cell = true;
+    const se3d_status status = se3d_particles_add_cell_stage(particles->set, &def, NULL);
+    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+}
+
+bool se3di_read_cell(se3di_reader *reader, const se3di_node *list)
+{
+    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
+        if (!read_stage(reader, node)) {
+            return false;
+        }
+    }
+    return true;
+}
