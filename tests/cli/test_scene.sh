@@ -47,6 +47,16 @@ drivers: [{joint: ja, value: sin(t)}]
 analysis: {type: kinematics, duration: 1, step: 0.1}
 END_OF_MODEL
 "$program" run -q "$dir/gears.yaml" -o "$dir/gears"
+cat >"$dir/far.yaml" <<'END_OF_MODEL'
+se3d: 1
+gravity: [0, 0, 0]
+bodies:
+  - {name: front, mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], velocity: [100, 0, 0]}
+  - {name: rear, mass: 1, inertia: [1, 1, 1], position: [-1, 0, 0], velocity: [100, 0, 0]}
+joints: [{name: hitch, type: revolute, body_i: front, body_j: rear, at: [0, 0, 0], axis: [0, 0, 1]}]
+analysis: {type: dynamics, duration: 10}
+END_OF_MODEL
+"$program" run -q "$dir/far.yaml" -o "$dir/far"
 cat >"$dir/roads.yaml" <<'END_OF_MODEL'
 se3d: 1
 bodies: [{name: wheel, mass: 10, inertia: [1, 1, 1], position: [0, 0, 0.3]}, {name: still, mass: 10, inertia: [1, 1, 1], position: [0, 3, 0.3]},
@@ -239,6 +249,10 @@ b, v = corners("b", "right"), corners("bevel", "right")
 assert b and v and "gear" in {n["name"] for n in nodes} and not any(n["name"] == "link" and "extras" in n for n in nodes)
 rack = corners("bar", "rack")
 assert max(p[0] for p in rack) - min(p[0] for p in rack) > .12 * .84 + .4 and abs(min(abs(p[2]) for p in rack) - (.12 - .12 / 9)) < 1e-3, "the rack"
+# The joints of a vehicle are not larger because it goes far.
+doc, _ = load(sys.argv[1] + "/far/scene.glb")
+pin = next(n for n in doc["nodes"] if n["name"] == "hitch")
+assert .01 < pin["scale"][0] < .1, pin
 # Roads: a kerb with its faces and little else, a post that moves, a plane.
 doc, binary = load(sys.argv[1] + "/roads/scene.glb")
 nodes = doc["nodes"]

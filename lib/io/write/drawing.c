@@ -141,20 +141,49 @@ static double choose_radius(const se3d_model *model, const double *poses, double
     return fmin(0.02 * extent, fmax(0.006 * extent, 0.12 * next[found / 2]));
 }
 
+/* Whether a joint or spring holds it to the ground. */
+static bool is_grounded(const se3d_model *model)
+{
+    for (size_t e = 0; e < model->element_count; ++e) {
+        const se3di_element_entry *entry = &model->elements[e];
+        if (entry->drawn > 0 && (se3di_drawing_is_body(model, 0, entry->body_i) ||
+                                 se3di_drawing_is_body(model, 0, entry->body_j))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Half of the diagonal. */
+static double get_extent(const box *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        sum += (b->high[i] - b->low[i]) * (b->high[i] - b->low[i]);
+    }
+    return 0.5 * sqrt(sum);
+}
+
 void se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, se3di_sizes *sizes)
 {
     box b = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-    double sum = 0.0;
+    double own = 0.0; /* the largest at one time */
+    const bool is_vehicle = model->body_count > 2 && !is_grounded(model);
     for (size_t s = 0; s < poses->count; s += 1 + poses->count / 64) {
-        widen_all(model, poses->values + s * poses->bodies * SE3DI_POSE, &b);
+        box now = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
+        const double *at = poses->values + s * poses->bodies * SE3DI_POSE;
+        widen_all(model, at, &b);
+        for (size_t k = 1; k < model->body_count; ++k) {
+            widen(at + SE3DI_POSE * k, now.low, now.high);
+        }
+        own = is_vehicle ? fmax(own, get_extent(&now)) : own;
     }
-    for (int i = 0; i < 3; ++i) {
-        sum += (b.high[i] - b.low[i]) * (b.high[i] - b.low[i]);
-    }
-    const double extent = 0.5 * sqrt(sum);
+    const double extent = get_extent(&b);
     sizes->floor = b.low[2] - 0.1 * extent;
     sizes->extent = extent > 1e-9 ? extent : 1.0;
-    sizes->radius = choose_radius(model, poses->values, sizes->extent);
+    /* A vehicle that goes far has no larger joints for it. */
+    const double near = own > 1e-9 ? fmin(sizes->extent, 2.5 * own) : sizes->extent;
+    sizes->radius = choose_radius(model, poses->values, near);
 }
 
 /* From a colour as it is on a screen (sRGB, IEC 61966-2-1) to the light that glTF asks for. */
