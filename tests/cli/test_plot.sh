@@ -52,6 +52,13 @@ for text in other tsda_mass 'block: position [m]'; do
 done
 ! grep -q 'block.position.x' "$dir/two.svg" || fail 'the name of the channel is repeated'
 
+# Kinematics of a suspension over the travel of its wheel, with units.
+awk 'BEGIN { print "time,hub.travel,hub.toe,tyre.fz"; for (k = 0; k < 9; ++k) print k "," k / 100 "," k / 1000 "," 10 * k }' >"$dir/bump.csv"
+expect 'toe over travel' 0 "$program" plot "$dir/bump.csv" -x hub.travel -y hub.toe -y tyre.fz
+for text in 'hub.travel [m]' 'toe [rad]' 'fz [N]'; do
+    has "$dir/bump.svg" "$text"
+done
+
 # Transfer functions are drawn as Bode plots: 1 / (1 + s / 10)^3, whose phase goes on to -270 degrees.
 python3 - "$dir/modes_transfer.csv" <<'END_OF_PYTHON'
 import math, sys
