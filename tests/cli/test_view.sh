@@ -98,6 +98,25 @@ for pair in suspension:joints hopper:beads; do
     expect "$model" 0 "$program" view -q "$dir/$model"
     opens "$model" "$dir/$model/scene.html" "${pair#*:}" none
 done
+# Khronos' own validator has nothing against the scenes.
+"$program" run -q "$source/examples/fsae/kerb.yaml" -o "$dir/kerb" --duration 0.1
+if command -v node >/dev/null 2>&1 && npm install --prefix "$dir/khronos" --fetch-retries=1 --silent --no-audit --no-fund \
+    --no-save gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1; then
+    cat >"$dir/khronos/check.js" <<'END_OF_SCRIPT'
+const validator = require("gltf-validator"), fs = require("fs");
+(async () => {
+  for (const file of process.argv.slice(2)) {
+    const { issues } = await validator.validateBytes(new Uint8Array(fs.readFileSync(file)));
+    if (issues.numErrors + issues.numWarnings > 0) { console.error(file, JSON.stringify(issues.messages.slice(0, 5))); process.exitCode = 1; }
+  }
+  console.log(`${process.argv.length - 2} scenes`);
+})();
+END_OF_SCRIPT
+    expect 'the glTF validator' 0 node "$dir/khronos/check.js" "$dir"/*/scene.glb
+    has "$dir/out" ' scenes'
+else
+    echo 'SKIPPED: no gltf-validator from npm: the scenes were not validated' >&2
+fi
 expect 'a scene alone' 0 sh -c 'mkdir "$2" && cp "$1/scene.glb" "$2" && "$0" view -q "$2"' "$program" "$dir/pendulum" "$dir/alone"
 opens 'a scene alone' "$dir/alone/scene.html" none none
 echo 'time,bar.position.x' >"$dir/alone/empty.csv"
