@@ -149,9 +149,50 @@ static void files_of_heights_that_are_none_are_refused(void)
     scratch_remove(CSV);
 }
 
+/* A road of a part that is mirrored, turned and moved is the road of the part at the mirrored
+ * place, also twice. */
+static void a_mirrored_road_is_the_road_mirrored(void)
+{
+    static const char obj[] = "v 0 0 0.1\nv 4 0 0.1\nv 0 4 0.5\nf 1 2 3\n";
+    static const char *const roads[] = {
+        "{type: heightfield, spacing: 2, row_spacing: 1, at: [1, 2, 0], forward: [1, 0.5, 0], "
+        "heights: [[0, 0.1, 0.4], [0.2, 0.3, 0.2], [0, 0.7, 0.1]]}",
+        "{type: mesh, file: " OBJ ", at: [1, 2, 0], forward: [1, 0.5, 0]}",
+        "{type: height, height: 0.1*sin(x), at: [1, 2, 0], forward: [1, 0.5, 0]}"};
+    static const char *const signs[] = {"mirror: y", "mirror: x",
+                                        "mirror: z, orientation: {rpy: "
+                                        "[180 deg, 0, 0]}"};
+    scratch_write(OBJ, obj, strlen(obj));
+    for (size_t k = 0; k < sizeof roads / sizeof *roads; ++k) {
+        for (size_t m = 0; m < sizeof signs / sizeof *signs; ++m) {
+            char more[1500];
+            double given[4], at[4], twice[4];
+            /* x and y in the frames of the roads, whose y is the other way round */
+            look(roads[k], "", 0.7, 0.4, given);
+            snprintf(more, sizeof more,
+                     "parts: {p: {roads: [%s]}, q: {instances: [{part: p, %s}]}}\n"
+                     "instances: [{part: p, %s}]\n",
+                     roads[k], signs[m], signs[m]);
+            look("", more, 0.7, -0.4, at);
+            snprintf(more, sizeof more,
+                     "parts: {p: {roads: [%s]}, q: {instances: [{part: p, %s}]}}\n"
+                     "instances: [{part: q, %s}]\n",
+                     roads[k], signs[m], signs[m]);
+            look("", more, 0.7, 0.4, twice);
+            CHECK(fabs(given[0]) > 0.01);
+            for (int c = 0; c < 3; ++c) {
+                CHECK_NEAR(at[c], c == 2 ? -given[c] : given[c], 1e-12);
+                CHECK_NEAR(twice[c], given[c], 1e-12);
+            }
+        }
+    }
+    scratch_remove(OBJ);
+}
+
 int main(void)
 {
     RUN(the_same_road_is_the_same_however_it_is_said);
+    RUN(a_mirrored_road_is_the_road_mirrored);
     RUN(a_mesh_is_as_high_as_its_highest_triangle);
     RUN(what_is_wrong_with_a_road_is_told);
     RUN(files_of_heights_that_are_none_are_refused);

@@ -22,6 +22,14 @@ bool se3di_component_is_mirrored(const se3di_component *part)
     return part != NULL;
 }
 
+bool se3di_placement_is_reflected(const se3di_placement *p)
+{
+    const double *M = p->M;
+    return M[0] * (M[4] * M[8] - M[5] * M[7]) - M[1] * (M[3] * M[8] - M[5] * M[6]) +
+               M[2] * (M[3] * M[7] - M[4] * M[6]) <
+           0.0;
+}
+
 /* a * b, exact if a is 0, 1 or -1, and never -0. */
 static double times(double a, double b)
 {

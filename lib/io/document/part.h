@@ -34,6 +34,8 @@ se3di_placement se3di_placement_join(const se3di_placement *outer, const se3di_p
 /* Whether it, or one that it is in, mirrors: also twice, which leaves the part as it is, but not in
  * the frames of the bodies between. */
 bool se3di_component_is_mirrored(const se3di_component *part);
+/* Whether left is right in it: mirrored an odd number of times. */
+bool se3di_placement_is_reflected(const se3di_placement *p);
 
 /* What is said in the ground frame of the part: points, directions, and what turns (angular
  * velocities, torques, axes by which angles count). Zeros stay 0, not -0. */

@@ -15,14 +15,6 @@
 const char *const se3di_tyre_laws[] = {"brush", "fiala", "mf52", "mf61", NULL};
 const char *const se3di_tyre_sides[] = {"left", "right", NULL};
 
-/* In a part that is mirrored the left side is on the right. */
-static bool is_mirrored(const double M[9])
-{
-    return M[0] * (M[4] * M[8] - M[5] * M[7]) - M[1] * (M[3] * M[8] - M[5] * M[6]) +
-               M[2] * (M[3] * M[7] - M[4] * M[6]) <
-           0.0;
-}
-
 static bool fail_unknown_road(se3di_reader *reader, const se3di_node *node, const char *name)
 {
     const se3d_model *model = reader->model;
@@ -167,7 +159,7 @@ bool se3di_read_tyre(se3di_reader *reader, const se3di_node *node, se3di_element
         !check_given(reader, node, &def)) {
         return false;
     }
-    if (is_mirrored(reader->part->place.M)) {
+    if (se3di_placement_is_reflected(&reader->part->place)) { /* the left side is on the right */
         def.side = def.side == SE3D_TYRE_LEFT ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
     }
     def.name = entry->name;

@@ -2,6 +2,8 @@
 /* `roads`: surfaces under tyres. */
 #include <string.h>
 
+#include "io/base/pool.h"
+#include "io/document/amount.h"
 #include "io/document/document.h"
 #include "io/document/fields.h"
 #include "io/document/function.h"
@@ -55,6 +57,43 @@ const se3di_object se3di_object_road = {
     NULL};
 /* clang-format on */
 
+/* The frame of a road in a part that is mirrored has its z and x where these are mirrored; so y is
+ * the other way round, and heights over y are turned round with it. */
+static bool is_reflected(const se3di_reader *reader)
+{
+    return se3di_placement_is_reflected(&reader->part->place);
+}
+
+static const double *reflect_rows(se3di_reader *reader, const se3di_height_grid *grid)
+{
+    const size_t columns = grid->column_count;
+    double *heights = se3di_iopool_array(reader->pool, grid->row_count * columns, sizeof *heights);
+    for (size_t k = 0; heights && k < grid->row_count; ++k) {
+        memcpy(heights + k * columns, grid->heights + (grid->row_count - 1 - k) * columns,
+               columns * sizeof *heights);
+    }
+    return heights;
+}
+
+static const double *reflect_points(se3di_reader *reader, const se3di_mesh *mesh)
+{
+    double *points = se3di_iopool_array(reader->pool, 3 * mesh->point_count, sizeof *points);
+    for (size_t k = 0; points && k < 3 * mesh->point_count; ++k) {
+        points[k] = k % 3 == 1 ? 0.0 - mesh->points[k] : mesh->points[k];
+    }
+    return points;
+}
+
+static bool has_name(const char *text, const char *name)
+{
+    size_t length = 0;
+    const char *at = se3di_amount_next_name(text, &length);
+    while (at && (length != strlen(name) || strncmp(at, name, length) != 0)) {
+        at = se3di_amount_next_name(at + length, &length);
+    }
+    return at != NULL;
+}
+
 static bool read_heightfield(se3di_reader *reader, const se3di_node *node, const road_values *v,
                              se3d_road_def *def)
 {
@@ -75,7 +114,10 @@ static bool read_heightfield(se3di_reader *reader, const se3di_node *node, const
                   : se3di_read_grid_file(reader, node, "file", &grid))) {
         return false;
     }
-    def->heights = grid.heights;
+    def->heights = is_reflected(reader) ? reflect_rows(reader, &grid) : grid.heights;
+    if (!def->heights) {
+        return se3di_reader_fail_memory(reader);
+    }
     def->column_count = grid.column_count;
     def->row_count = grid.row_count;
     def->spacing[0] = v->spacing;
@@ -91,6 +133,11 @@ static bool read_height(se3di_reader *reader, const se3di_node *node, se3d_road_
     if (!height) {
         return se3di_reader_fail_key(reader, node, "height",
                                      "is missing, must be z over t, x and y [m]");
+    }
+    if (is_reflected(reader) && height->kind == SE3DI_NODE_SCALAR && has_name(height->text, "y")) {
+        return se3di_reader_fail(reader, height,
+                                 "has y in a part that is mirrored: put the road into the model, "
+                                 "or give a heightfield");
     }
     if (!se3di_read_function(reader, height, variables, &constant.constant, &def->height)) {
         return false;
@@ -113,7 +160,11 @@ static bool read_mesh(se3di_reader *reader, const se3di_node *node, const road_v
         return false;
     }
     *surface = mesh;
-    def->vertices = mesh->points;
+    mesh = mesh->source ? mesh->source : mesh; /* mirrored for shapes of bodies */
+    def->vertices = is_reflected(reader) ? reflect_points(reader, mesh) : mesh->points;
+    if (!def->vertices) {
+        return se3di_reader_fail_memory(reader);
+    }
     def->vertex_count = mesh->point_count;
     def->triangles = mesh->triangles;
     def->triangle_count = mesh->triangle_count;
@@ -131,11 +182,6 @@ static bool read_frame(se3di_reader *reader, const se3di_node *node, se3d_road_d
         def->body = body->body;
     } else if (SE3D_FAILED(se3d_system_get_ground(reader->system, &def->body))) {
         return se3di_reader_fail_memory(reader);
-    }
-    if (se3di_component_is_mirrored(reader->part)) {
-        return se3di_reader_fail(reader, node,
-                                 "is in a part that is mirrored, must be in the model "
-                                 "or a part that is only moved and turned");
     }
     se3di_place_point(&reader->part->place, at);
     se3di_place_vector(&reader->part->place, normal);
