@@ -15,10 +15,12 @@
 #include "force/stop.h"
 #include "force/measure.h"
 #include "math/elementary.h"
+#include "math/vec3.h"
 
 #include <math.h>
 
-#define SPEED_MIN 1e-3 /* slower impacts are damped as this one */
+#define SPEED_MIN 1e-3  /* slower impacts are damped as this one */
+#define ROUNDING  4e-15 /* of a coordinate, over the step, in the slope of its cubic */
 
 double se3di_stop_damping(double e)
 {
@@ -119,7 +121,19 @@ double se3di_stop_review(const se3di_model *model, const se3di_force *force, dou
     }
     (void)eval_cubic(begin, end, h, inside, &slope);
     *part = inside;
-    return fabs(fmax(fabs(slope), SPEED_MIN) - fmax(force->state[0], SPEED_MIN));
+    const double *const r[2] = {model->frames[force->body_i].r, model->frames[force->body_j].r};
+    const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
+    const double size = fabs(end[0]) + (turns ? 1.0 : se3di_norm(r[0]) + se3di_norm(r[1]));
+    const double gap = fabs(fmax(fabs(slope), SPEED_MIN) - fmax(force->state[0], SPEED_MIN));
+    return fmax(0.0, gap - ROUNDING * size / h);
+}
+
+int se3di_stop_changes(const se3di_model *model, const se3di_force *force)
+{
+    se3di_measure measure;
+    (void)se3di_measure_force(model, force, 0, &measure);
+    return (fabs(penetration(force, force->state[1])) > 0.0) !=
+           (fabs(penetration(force, measure.value)) > 0.0);
 }
 
 const se3di_force_class se3di_force_class_stop = {

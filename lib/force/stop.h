@@ -13,4 +13,7 @@ double se3di_stop_damping(double e);
 double se3di_stop_review(const se3di_model *model, const se3di_force *force, double h,
                          double *part);
 
+/* It touches at one of both: the last accepted state and the state of the model. */
+int se3di_stop_changes(const se3di_model *model, const se3di_force *force);
+
 #endif

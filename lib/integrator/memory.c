@@ -233,6 +233,16 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
     return worst;
 }
 
+int se3di_memory_meets_stop(const se3di_model *model)
+{
+    int meets = 0;
+    for (size_t k = 0; k < model->force_slots.count && !meets; ++k) {
+        const se3di_force *force = &model->forces[k];
+        meets = force->type == SE3DI_FORCE_STOP && se3di_stop_changes(model, force);
+    }
+    return meets;
+}
+
 /* What the springs of contacts do, as they would be remembered, times a sign. */
 typedef struct springs {
     double sign, h;

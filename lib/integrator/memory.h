@@ -31,6 +31,10 @@ typedef struct se3di_memory_step {
 double se3di_memory_review_stops(const se3di_model *model, double h, double tolerance,
                                  const se3di_state_scale *scale, double *fraction);
 
+/* Whether some stop is touched, or left, within the step that ends at the state of the model: its
+ * force has a kink there. */
+int se3di_memory_meets_stop(const se3di_model *model);
+
 /* What contacts remember of the end of a step of h is made of the beginning and the end alone: what
  * slips and sticks again on the way, or begins to touch, is forgotten. The frames are those at t,
  * half way; the ones of the end, at t_end, in equations->saved, come back. *error is what the

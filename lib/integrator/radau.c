@@ -34,6 +34,9 @@
 
 #define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
+/* Of the tolerance: the estimate at the kink of a force, where the result is no better than it. */
+#define AT_KINK 0.3
+
 #define UNTRUSTED 0.7 /* of a step whose iteration did not converge: from there on they are tried */
 #define TRUST     1.02 /* again, longer and longer with every step */
 
@@ -275,7 +278,10 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
             return SE3D_OK;
         }
     }
-    SE3DI_TRY(review_contacts(m, tolerance, error));
+    if (m->inner > 0.0 && se3di_memory_meets_stop(m->assembly->model)) {
+        *error *= fmax(1.0, m->inner / (AT_KINK * tolerance));
+    }
+    SE3DI_TRY(*error <= 1.0 ? review_contacts(m, tolerance, error) : SE3D_OK);
     if (!(*error <= 1.0)) {
         return SE3D_OK;
     }
