@@ -204,6 +204,10 @@ def lost():
                         "</visual></link>"}.items():
         _, notes = one("sdf_lost", parts, code=1)
         tool.check([n["kind"] for n in notes if what in n["message"]] == ["lost"], f"{what}: notes are {notes}")
+    _, notes = one("sdf_bits", "<link name='b'>" + BODY + "<collision name='foot'><surface><contact><collide_bitmask>"
+                   "0x02</collide_bitmask></contact></surface></collision></link>")
+    tool.check(any("`foot`" in n["message"] and "0x02" in n["message"] and n["kind"] == "note" for n in notes),
+               f"a bitmask: {notes}")
     _, notes = one("sdf_no_mass", "<link name='b'/>")
     tool.check("1 kg" in notes[0]["message"], f"a link without a mass: {notes}")
     for what, parts in {"not followed": "<include><uri>model://x</uri></include>",

@@ -163,9 +163,27 @@ static bool read_shape(se3di_machine *m, const se3di_xml *node, se3di_machine_sh
     return true;
 }
 
+/* Contact is not carried; which collisions touch only some others is told by their names. */
+static void note_bitmasks(se3di_machine *m, const se3di_xml *node)
+{
+    for (const se3di_xml *at = se3di_xml_child(node, "collision"); at; at = se3di_xml_again(at)) {
+        const se3di_xml *surface = se3di_xml_child(at, "surface");
+        const se3di_xml *bits =
+            se3di_xml_child(se3di_xml_child(surface, "contact"), "collide_bitmask");
+        const char *name = se3di_xml_get(at, "name");
+        if (bits) {
+            se3di_machine_note_of(m, SE3D_IMPORT_NOTE, bits->line,
+                                  "the collision `%.80s` touches what shares a bit of its "
+                                  "collide_bitmask %.40s, as shapes do by `group` and `mask`",
+                                  name ? name : "", bits->text);
+        }
+    }
+}
+
 bool se3di_sdf_shapes(se3di_links *links, size_t link, const se3di_xml *node)
 {
     se3di_machine *m = links->m;
+    note_bitmasks(m, node);
     const char *which = se3di_xml_child(node, "visual") ? "visual" : "collision";
     for (const se3di_xml *at = se3di_xml_child(node, which); at; at = se3di_xml_again(at)) {
         const se3di_xml *geometry = se3di_xml_child(at, "geometry");
