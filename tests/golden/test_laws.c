@@ -265,6 +265,36 @@ static void drivers_follow_lengths_positions_and_followers(void)
     text_model_close(&m);
 }
 
+/* A spring holds the cam against a pull of 10 N along the rail: where it stands still at 0.5 rad,
+ * the follower's curvature adds 20 sin 0.5 to the stiffness 40, and its slope 8 cos^2 0.5 to the
+ * inertia 2. */
+static void a_follower_takes_its_part_in_frequencies(void)
+{
+    text_model m = text_model_open(
+        "se3d: 1\ngravity: [5, 0, 0]\nbodies:\n"
+        "  - {name: arm, mass: 1, inertia: [1, 1, 2], orientation: {axis: [0, 0, 1], angle: 0.5}}\n"
+        "  - {name: cart, mass: 2, inertia: [1, 1, 1]}\njoints:\n"
+        "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, 0, "
+        "1], ref: [1, 0, 0], angle0: 0.5}\n"
+        "  - {name: rail, type: prismatic, body_i: ground, body_j: cart, at: [0, 0, 0], axis: [1, "
+        "0, 0]}\n"
+        "drivers: [{name: cam, joint: rail, value: 2*sin(pin.angle) - 2*sin(0.5)}]\n"
+        "forces: [{name: s, type: rsda, joint: pin, k: 40, theta0: 0.5 - 20*cos(0.5)/40}]\n"
+        "analysis: {type: equilibrium}\noutput: [{file: r.csv, channels: [pin.angle]}]\n",
+        -1, -1, 0.0);
+    const double w = sqrt((40.0 + 20.0 * sin(0.5)) / (2.0 + 8.0 * cos(0.5) * cos(0.5)));
+    se3d_modes *modes = NULL;
+    se3d_eigenvalue value = {0};
+    text_model_run(&m, 0.0);
+    CHECK_NEAR(text_model_get(&m, 0, 0), 0.5, 1e-9);
+    CHECK(!se3d_modes_create(m.system, NULL, &modes));
+    CHECK(se3d_modes_count(modes) == 1);
+    CHECK(!se3d_modes_get_eigenvalue(modes, 0, &value));
+    CHECK_NEAR(value.imaginary, w, 1e-8);
+    se3d_modes_destroy(modes);
+    text_model_close(&m);
+}
+
 /* Definitions are given as they were made, what cannot be followed is refused, and what is
  * followed cannot be destroyed. */
 static void followers_are_checked_and_given_back(void)
@@ -320,6 +350,7 @@ int main(void)
     RUN(a_driver_follows_an_angle_that_is_free);
     RUN(a_driver_follows_a_driven_angle);
     RUN(drivers_follow_lengths_positions_and_followers);
+    RUN(a_follower_takes_its_part_in_frequencies);
     RUN(followers_are_checked_and_given_back);
     RUN(a_torque_of_an_angle_is_a_spring);
     RUN(bodies_that_no_element_joins_are_coupled);
