@@ -80,6 +80,9 @@ typedef struct se3d_solver_def {
                        foreseen up to it; 0, or not after t_end: each run by itself */
     se3d_interrupt interrupt; /* asked whether a run is to end now; NULL: none */
     void *interrupt_ctx;      /* of `interrupt` */
+    int32_t sleep;    /* convex: not 0: bodies that have been at rest for .25 s with all that they
+                         touch are left out until something touches them or is set */
+    int32_t reserved; /* 0 */
 } se3d_solver_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_solver_def_default. @since 0.1 */

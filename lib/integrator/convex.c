@@ -34,8 +34,7 @@
 
 static size_t history_count(const se3di_assembly *assembly)
 {
-    (void)assembly;
-    return 1; /* the length of the last step */
+    return 1 + (size_t)assembly->body_count; /* length of the last step; how long each rests */
 }
 
 static size_t work_count(const se3di_assembly *assembly)
@@ -83,7 +82,8 @@ static se3d_status open_room(se3di_integration *integration)
     if (c->work) {
         share_work(c, assembly);
     }
-    return SE3D_OK;
+    c->sleeps = integration->settings.sleeps;
+    return se3di_convex_bed(c, assembly);
 }
 
 static se3d_status open_convex(se3di_integration *integration)
@@ -149,6 +149,11 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations)
         se3di_copy(frame->v, v0);
         se3di_copy(frame->w, v0 + 3);
         se3di_copy(v0, v);
+        if (c->asleep[k]) {
+            memset(v0, 0, 6 * sizeof *v0);
+            memset(v, 0, 6 * sizeof *v);
+            continue;
+        }
         se3di_add_scaled(c->h / model->bodies[body].mass, wrench, v);
         se3di_inertia_matrix(model->bodies[body].J, J);
         turn_freely(J, v0 + 3, wrench + 3, c->h, v + 3);
@@ -177,6 +182,9 @@ static void move(const se3di_convex *c, const se3di_assembly *assembly)
         const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
         const double part = c->touched[k] ? 1.0 : 0.5;
         double turn[3], p[4];
+        if (c->asleep[k]) {
+            continue;
+        }
         se3di_scale(part * c->h, v + 3, turn);
         se3di_add_scaled((1.0 - part) * c->h, v0 + 3, turn);
         se3di_add_scaled(part * c->h, v, frame->r);
@@ -211,8 +219,13 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
 {
     se3di_model *model = equations->assembly.model;
     se3di_contacts_begin(model, 0.0, 1.0, 0);
-    SE3DI_TRY(se3di_state_prepare(equations, t1));
-    se3di_convex_record(c, model);
+    model->contacts.frozen = c->asleep_count > 0 ? c->frozen : NULL;
+    const se3d_status status = se3di_state_prepare(equations, t1);
+    if (status >= 0) {
+        se3di_convex_record(c, model);
+    }
+    model->contacts.frozen = NULL;
+    SE3DI_TRY(status);
     model->time = t1;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
@@ -222,7 +235,15 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     model->work[1] += se3di_convex_fed(c);
     SE3DI_TRY(se3di_work_accept(model, c->h));
     model->history[0] = c->h;
+    se3di_convex_doze(c, &equations->assembly);
     return SE3D_OK;
+}
+
+/* Everything sleeps. */
+static void wait(const se3di_convex *c, se3di_model *model, double t1)
+{
+    model->time = model->contacts.time = t1;
+    model->history[0] = c->h;
 }
 
 static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double t1)
@@ -242,6 +263,12 @@ static se3d_status advance(se3di_integration *integration, double t1)
     se3di_equations *equations = integration->equations;
     se3di_convex *c = integration->convex;
     c->h = t1 - equations->assembly.model->time;
+    se3di_convex_wake(c, &equations->assembly);
+    if (se3di_convex_rests(c, &equations->assembly)) {
+        wait(c, equations->assembly.model, t1);
+        ++equations->counters.steps;
+        return SE3D_OK;
+    }
     se3d_status status = se3di_equations_keep(equations);
     status = status < 0 ? status : try_step(c, equations, t1);
     if (status < 0) {
@@ -299,6 +326,13 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
     return status;
 }
 
+/* All are awake. */
+static void rouse(se3di_integration *integration)
+{
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    memset(assembly->model->history + 1, 0, assembly->body_count * sizeof(double));
+}
+
 /* What contacts do is counted by steps, not by powers. */
 static se3d_status renew(se3di_integration *integration)
 {
@@ -307,6 +341,7 @@ static se3d_status renew(se3di_integration *integration)
     se3di_contacts_power(model, model->time, &into, &fed);
     model->power[0] -= into;
     model->power[1] -= fed;
+    rouse(integration);
     return SE3D_OK;
 }
 

@@ -88,6 +88,16 @@ typedef struct se3di_convex {
     double *own;      /* blocks of the mass, by places, 6 x 6 each */
     size_t place_capacity, root_capacity, number_capacity, order_capacity, mobility_capacity,
         own_capacity;
+    /* What sleeps, see convex_sleep.c: */
+    uint8_t *asleep; /* [free bodies], */
+    uint8_t *bars;   /* [free bodies]: something acts on it that may change: it does not sleep, */
+    uint8_t *frozen; /* [bodies]: asleep or fixed */
+    int32_t *nest;   /* [free bodies] */
+    double *reach;   /* [free bodies]: of its shapes */
+    size_t sleep_capacity, nest_capacity, reach_capacity;
+    size_t asleep_count;
+    int32_t sleeps; /* it is wanted */
+    int32_t reserved;
     double h;
     uint64_t topology_version; /* that `kkt` was made for */
 } se3di_convex;
@@ -127,6 +137,15 @@ static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_
 {
     return &c->contacts[c->order[k]];
 }
+
+/* convex_sleep.c: room, and what may sleep at all. @return OK, NO_MEMORY */
+se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly);
+/* What sleeps in a step from here, after what touches it has woken it. */
+void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly);
+/* Nothing changes in a step. */
+int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly);
+/* Islands that have been at rest for long enough fall asleep at the end of a step. */
+void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly);
 
 /* convex_solve.c: v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);

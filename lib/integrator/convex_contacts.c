@@ -247,7 +247,12 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     const size_t material = (size_t)model->shapes[record->shape_i].material;
     const se3di_pair *pair = &model->pairs[material * model->material_slots.count +
                                            (size_t)model->shapes[record->shape_j].material];
+    const uint32_t bodies[2] = {model->shapes[record->shape_i].body,
+                                model->shapes[record->shape_j].body};
     se3di_convex_contact *c = &convex->contacts[convex->contact_count];
+    if (convex->frozen[bodies[0]] && convex->frozen[bodies[1]]) {
+        return;
+    }
     *c = (se3di_convex_contact){.record = record, .coupling = -1};
     set_geometry(c, assembly);
     if (c->free[0] < 0 && c->free[1] < 0) {
@@ -400,6 +405,9 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
     size_t first = 0;
     for (size_t k = 0; k < model->contacts.next_count; ++k) {
         se3di_body_contact *r = &model->contacts.next[k];
+        if (se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
+            continue;
+        }
         r->kind = SE3DI_CONTACT_NEW;
         r->energy = r->twist = 0.0;
         memset(r->force, 0, sizeof r->force);

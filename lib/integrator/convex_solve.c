@@ -43,6 +43,9 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->coupling, c->coupling_capacity, sizeof *c->coupling);
     se3di_free(allocator, c->work, c->work_capacity, sizeof *c->work);
     se3di_free(allocator, c->touched, c->touched_capacity, sizeof *c->touched);
+    se3di_free(allocator, c->asleep, c->sleep_capacity, 1);
+    se3di_free(allocator, c->nest, c->nest_capacity, sizeof *c->nest);
+    se3di_free(allocator, c->reach, c->reach_capacity, sizeof *c->reach);
     se3di_kkt_destroy(c->kkt);
     se3di_block_cg_destroy(&c->cg, allocator);
     se3di_free(allocator, c, 1, sizeof *c);

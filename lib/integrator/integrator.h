@@ -23,7 +23,7 @@ typedef struct se3di_integrator_settings {
     int32_t iterations_max;
     int32_t order;
     int32_t leaves_stiff; /* a run ends if the method is held by stability */
-    int32_t reserved;
+    int32_t sleeps;       /* convex: islands at rest sleep */
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;

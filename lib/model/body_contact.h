@@ -50,6 +50,8 @@ typedef struct se3di_body_contacts {
     int32_t jumps;          /* its equations may have jumps */
     int32_t changed;        /* what touches, at the last accepted state */
     size_t kept;            /* contacts of `next` that are in `list` */
+    const uint8_t *frozen;  /* [bodies] they stay where they are in the step under way, and so do
+                               the contacts of two of them; NULL: none */
 } se3di_body_contacts;
 
 #endif

@@ -315,6 +315,13 @@ typedef struct se3di_model {
                                       powers and what the history has of them */
 } se3di_model;
 
+/* The bodies of two shapes stay in the step under way. */
+static inline int se3di_contact_is_frozen(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    const uint8_t *frozen = model->contacts.frozen;
+    return frozen && frozen[model->shapes[i].body] && frozen[model->shapes[j].body];
+}
+
 /* A constraint under construction: joints and primitives fill it, se3di_model_add_constraint copies
  * it. */
 #define SE3DI_DRAFT_ROWS  8

@@ -44,6 +44,7 @@ typedef struct visit {
     double elapsed; /* since the state of what is remembered */
     se3di_contact_visitor visitor;
     void *ctx;
+    se3di_pair_visitor keep; /* of a pair that stays; NULL: it is looked at as others are */
 } visit;
 
 /* Both shapes are near enough for a closer look. */
@@ -51,6 +52,9 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
 {
     const visit *v = ctx;
     const se3di_model *model = v->model;
+    if (v->keep && se3di_contact_is_frozen(model, i, j)) {
+        return v->keep(v->ctx, i, j);
+    }
     const se3di_shape *a = &model->shapes[i];
     const se3di_shape *b = &model->shapes[j];
     se3di_shape_pose at_a, at_b;
@@ -79,7 +83,7 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
 se3d_status se3di_contacts_visit(const se3di_model *model, double t, se3di_contact_visitor visitor,
                                  void *ctx)
 {
-    visit v = {model, t - model->contacts.time, visitor, ctx};
+    visit v = {model, t - model->contacts.time, visitor, ctx, NULL};
     return se3di_broad_visit(model, visit_pair, &v);
 }
 
@@ -230,6 +234,30 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
+/* The contacts of two bodies that stay go on as they are. */
+static se3d_status keep_pair(void *ctx, uint32_t i, uint32_t j)
+{
+    const preparation *p = ctx;
+    se3di_body_contacts *c = &p->model->contacts;
+    const size_t first = find_pair(c, i, j);
+    size_t end = first;
+    while (end < c->count && c->list[end].shape_i == i && c->list[end].shape_j == j) {
+        ++end;
+    }
+    void *next = c->next;
+    const se3d_status status = se3di_array_reserve(&p->model->allocator, &next, &c->next_capacity,
+                                                   c->next_count + end - first, sizeof *c->next);
+    c->next = next;
+    if (status < 0) {
+        return se3di_error_set(p->error, status, "t = %g s: no memory for %zu contacts", p->t,
+                               c->next_count + end - first);
+    }
+    memcpy(c->next + c->next_count, c->list + first, (end - first) * sizeof *c->next);
+    c->next_count += end - first;
+    c->kept += end - first;
+    return SE3D_OK;
+}
+
 se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *error)
 {
     se3di_body_contacts *contacts = &model->contacts;
@@ -254,7 +282,8 @@ static se3d_status note_all(se3di_model *model, double t, double overlap_limit, 
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     model->contacts.next_time = t;
-    return model->shape_slots.count < 2 ? SE3D_OK : se3di_contacts_visit(model, t, note, &p);
+    visit v = {model, t - model->contacts.time, note, &p, keep_pair};
+    return model->shape_slots.count < 2 ? SE3D_OK : se3di_broad_visit(model, visit_pair, &v);
 }
 
 static se3d_status prepare(se3di_model *model, double t, double overlap_limit, se3di_error *error)

@@ -112,7 +112,8 @@ se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visit
     }
     if (list_holds(model, 0.5)) {
         for (size_t k = 0; k < c->pair_count; ++k) {
-            if (near(model, c->pairs[2 * k], c->pairs[2 * k + 1], 0.0)) {
+            if (se3di_contact_is_frozen(model, c->pairs[2 * k], c->pairs[2 * k + 1]) ||
+                near(model, c->pairs[2 * k], c->pairs[2 * k + 1], 0.0)) {
                 SE3DI_TRY(visitor(ctx, c->pairs[2 * k], c->pairs[2 * k + 1]));
             }
         }

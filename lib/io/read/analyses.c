@@ -63,6 +63,9 @@ static const se3di_key analysis_keys[] = {
     {"spectral_radius", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_solver_def, spectral_radius),
      .text = "of generalized_alpha: at infinite frequency, 0 to 1"},
     {"alpha", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_solver_def, alpha), .text = "of hht: -1/3 to 0"},
+    {"sleep", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_solver_def, sleep), .standard = "false",
+     .text = "of convex: bodies that have been at rest for .25 s with all that they touch cost "
+         "nothing until something touches them"},
     {"iterations_max", SE3DI_KIND_COUNT, .most = 1e6, .standard = "25",
      .text = "Newton iterations a step, 1 to 1000000"},
     {"steps_max", SE3DI_KIND_COUNT, .most = STEPS_MAX_MOST, .standard = "1e9",

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Islands of bodies at rest sleep: they stay where they are, to the bit, with the contacts and
+ * forces that they had, and are neither looked at nor solved for. An island falls asleep when all of
+ * its bodies have been slower than SLOW for LONG. A body that something may set in motion without
+ * touching it (force elements, constraints, gravity that changes, a surface that moves) does not,
+ * and so does not what touches it. What touches a sleeping body wakes its whole island before the
+ * step in which it acts; whatever is set wakes all (renew, start).
+ *
+ * The history has how long each body has been at rest, or ASLEEP.        docs/theory/convex.md */
+#include "integrator/convex.h"
+
+#include "contact/shape/shape.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SLOW   1e-5 /* m/s, of any point of a body */
+#define LONG   0.25 /* s */
+#define ASLEEP (-1.0)
+
+/* Times at rest of the free bodies. */
+static double *times_of(const se3di_assembly *assembly)
+{
+    return assembly->model->history + 1;
+}
+
+static void bar(const se3di_convex *c, const se3di_assembly *assembly, uint32_t body)
+{
+    const int32_t free = assembly->free_index[body];
+    if (free >= 0) {
+        c->bars[free] = 1;
+    }
+}
+
+static void bar_all(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    const int changes = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
+                        model->gravity_function[2] >= 0 || model->state_count > 0;
+    memset(c->bars, changes, assembly->body_count);
+    for (uint32_t k = 0; k < assembly->joint_body_count; ++k) {
+        c->bars[assembly->joint_body[k]] = 1;
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        bar(c, assembly, model->forces[k].body_i);
+        bar(c, assembly, model->forces[k].body_j);
+    }
+}
+
+static void measure_reaches(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    memset(c->reach, 0, assembly->body_count * sizeof *c->reach);
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        const int32_t free = assembly->free_index[shape->body];
+        if (free >= 0) {
+            c->reach[free] = fmax(c->reach[free], shape->bound + se3di_norm(shape->x));
+        }
+    }
+}
+
+se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3d_allocator *allocator = &assembly->model->allocator;
+    const size_t bodies = assembly->body_count;
+    void *bytes = c->asleep, *nest = c->nest, *reach = c->reach;
+    se3d_status status = se3di_array_reserve(allocator, &bytes, &c->sleep_capacity,
+                                             2 * bodies + assembly->dense_count + 1, 1);
+    c->asleep = bytes;
+    SE3DI_TRY(status);
+    status = se3di_array_reserve(allocator, &nest, &c->nest_capacity, bodies + 1, sizeof *c->nest);
+    c->nest = nest;
+    SE3DI_TRY(status);
+    status =
+        se3di_array_reserve(allocator, &reach, &c->reach_capacity, bodies + 1, sizeof *c->reach);
+    c->reach = reach;
+    SE3DI_TRY(status);
+    c->bars = c->asleep + bodies;
+    c->frozen = c->bars + bodies;
+    memset(c->asleep, 0, bodies);
+    c->asleep_count = 0;
+    if (c->sleeps) {
+        bar_all(c, assembly);
+        measure_reaches(c, assembly);
+    }
+    return SE3D_OK;
+}
+
+static int32_t find_nest(const se3di_convex *c, int32_t body)
+{
+    while (c->nest[body] != body) {
+        c->nest[body] = c->nest[c->nest[body]];
+        body = c->nest[body];
+    }
+    return body;
+}
+
+/* Bodies that touch are of one nest, called by its first body. */
+static void find_nests(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        c->nest[k] = (int32_t)k;
+    }
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *r = &model->contacts.list[k];
+        const int32_t i = assembly->free_index[model->shapes[r->shape_i].body];
+        const int32_t j = assembly->free_index[model->shapes[r->shape_j].body];
+        if (i >= 0 && j >= 0) {
+            const int32_t a = find_nest(c, i), b = find_nest(c, j);
+            c->nest[a < b ? b : a] = a < b ? a : b;
+        }
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        c->nest[k] = find_nest(c, (int32_t)k);
+    }
+}
+
+/* A mark on any body of a nest becomes one of its first body. */
+static void spread(const se3di_convex *c, uint32_t count, uint8_t *marks)
+{
+    for (uint32_t k = count; k-- > 0;) {
+        marks[c->nest[k]] |= marks[k];
+    }
+}
+
+static void freeze(se3di_convex *c, const se3di_assembly *assembly)
+{
+    c->asleep_count = 0;
+    for (uint32_t k = 0; k < assembly->dense_count; ++k) {
+        const int32_t free = assembly->free_index[k];
+        c->frozen[k] = free < 0 || c->asleep[free];
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        c->asleep_count += c->asleep[k];
+    }
+}
+
+void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *times = times_of(assembly);
+    uint8_t *awake = c->touched; /* of the step before */
+    const size_t before = c->asleep_count;
+    size_t sleepers = 0;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        times[k] = c->sleeps ? times[k] : 0.0;
+        c->asleep[k] = times[k] < 0.0;
+        awake[k] = !c->asleep[k];
+        sleepers += c->asleep[k];
+    }
+    if (sleepers > 0 && (sleepers < assembly->body_count || before != sleepers)) {
+        find_nests(c, assembly);
+        spread(c, assembly->body_count, awake);
+        for (uint32_t k = 0; k < assembly->body_count; ++k) {
+            if (c->asleep[k] && awake[c->nest[k]]) {
+                times[k] = 0.0;
+                c->asleep[k] = 0;
+            }
+        }
+    }
+    freeze(c, assembly);
+}
+
+int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    return c->asleep_count > 0 && c->asleep_count == assembly->body_count &&
+           assembly->row_count == 0 && model->force_slots.count == 0;
+}
+
+/* How long each body has been at rest. */
+static void count_times(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *times = times_of(assembly);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        const double turning =
+            c->reach[k] < HUGE_VAL ? c->reach[k] * se3di_norm(frame->w) : HUGE_VAL;
+        const int rests = c->touched[k] && !c->bars[k] && se3di_norm(frame->v) + turning < SLOW;
+        if (!c->asleep[k]) {
+            times[k] = rests ? times[k] + c->h : 0.0;
+        }
+    }
+}
+
+/* Which nests do not sleep: [first bodies] of `restless`. */
+static void find_restless(const se3di_convex *c, const se3di_assembly *assembly, uint8_t *restless)
+{
+    const se3di_model *model = assembly->model;
+    const double *times = times_of(assembly);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        restless[k] = !c->asleep[k] && !(times[k] >= LONG);
+    }
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *r = &model->contacts.list[k];
+        const int moves = se3di_surface_moves(&model->shapes[r->shape_i]) ||
+                          se3di_surface_moves(&model->shapes[r->shape_j]);
+        for (int side = 0; moves && side < 2; ++side) {
+            const uint32_t shape = side ? r->shape_j : r->shape_i;
+            const int32_t free = assembly->free_index[model->shapes[shape].body];
+            if (free >= 0) {
+                restless[free] = 1;
+            }
+        }
+    }
+    spread(c, assembly->body_count, restless);
+}
+
+/* What it still moves with is lost. */
+static void stop(se3di_model *model, uint32_t body)
+{
+    const double *J = model->bodies[body].J;
+    se3di_frame *frame = &model->frames[body];
+    const double *v = frame->v, *w = frame->w;
+    model->work[0] += 0.5 * model->bodies[body].mass * se3di_dot(v, v) +
+                      0.5 * (J[0] * w[0] * w[0] + J[1] * w[1] * w[1] + J[2] * w[2] * w[2]) +
+                      J[3] * w[0] * w[1] + J[4] * w[1] * w[2] + J[5] * w[0] * w[2];
+    memset(frame->v, 0, sizeof frame->v);
+    memset(frame->w, 0, sizeof frame->w);
+    memset(frame->pdot, 0, sizeof frame->pdot);
+    memset(model->acceleration + 6 * (size_t)body, 0, 6 * sizeof *model->acceleration);
+}
+
+void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *times = times_of(assembly);
+    uint8_t *restless = c->touched;
+    size_t ready = 0;
+    if (!c->sleeps) {
+        return;
+    }
+    count_times(c, assembly);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        ready += times[k] >= LONG;
+    }
+    if (ready == 0) {
+        return;
+    }
+    find_nests(c, assembly);
+    find_restless(c, assembly, restless);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        if (!c->asleep[k] && !restless[c->nest[k]]) {
+            times[k] = ASLEEP;
+            stop(assembly->model, assembly->free_body[k]);
+        }
+    }
+}

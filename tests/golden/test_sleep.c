@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Bodies at rest sleep in convex: they stay to the bit, wake when something touches or changes
+ * them, and what happens is what happens without. */
+#include "support/scene.h"
+
+#define STEP 1e-3
+#define HIGH 5
+
+typedef struct pile {
+    scene s;
+    se3d_body box[HIGH + 2]; /* a stack, one beside it, a ball above that falls later */
+} pile;
+
+static void solve(pile *p, int sleep)
+{
+    se3d_solver_def def = se3d_solver_def_default();
+    def.method = SE3D_METHOD_CONVEX;
+    def.step = STEP;
+    def.sleep = sleep;
+    CHECK(se3d_solver_create(p->s.system, &def, &p->s.solver) == SE3D_OK);
+}
+
+static pile pile_up(int sleep, double high)
+{
+    const double size[3] = {0.1, 0.1, 0.1};
+    pile p = {.s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5)};
+    se3d_contact_settings settings = se3d_contact_settings_default();
+    settings.overlap_limit = 0.5; /* the ball is fast */
+    CHECK(se3d_system_set_contact(p.s.system, &settings) == SE3D_OK);
+    for (int k = 0; k < HIGH; ++k) {
+        const double r[3] = {1e-3 * (k % 2), 0.0, 0.05 + 0.1001 * k};
+        p.box[k] = scene_box(&p.s, size, 1.0, r, scene_zero);
+    }
+    const double beside[3] = {5.0, 0.0, 0.05}, above[3] = {0.0, 0.0, high};
+    p.box[HIGH] = scene_box(&p.s, size, 1.0, beside, scene_zero);
+    p.box[HIGH + 1] = scene_ball(&p.s, 0.1, 0.02, above, scene_zero);
+    scene_floor(&p.s, 0.0);
+    solve(&p, sleep);
+    return p;
+}
+
+static double speed(const pile *p, int k)
+{
+    double v[3];
+    CHECK(se3d_body_get_velocity(p->s.system, p->box[k], v) == SE3D_OK);
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static int count_still(const pile *p)
+{
+    int still = 0;
+    for (int k = 0; k <= HIGH; ++k) {
+        const double v = speed(p, k);
+        still += !(v > 0.0);
+    }
+    return still;
+}
+
+static double gap(const pile *p)
+{
+    se3d_energy energy;
+    se3d_work work;
+    CHECK(se3d_system_get_energy(p->s.system, &energy) == SE3D_OK);
+    CHECK(se3d_system_get_work(p->s.system, &work) == SE3D_OK);
+    return energy.total + work.dissipated - work.actuators - work.drivers;
+}
+
+/* The ball is still falling: the others have come to rest. */
+static void what_rests_sleeps_and_is_where_it_is_without(void)
+{
+    pile p = pile_up(1, 100.0), q = pile_up(0, 100.0);
+    double r[3], u[3], before[3], force[3], torque[3];
+    scene_run(&p.s, 1.45);
+    scene_run(&q.s, 1.45);
+    CHECK(count_still(&p) == HIGH + 1 && count_still(&q) == 0);
+    CHECK(speed(&p, HIGH + 1) > 12.0);
+    for (int k = 0; k <= HIGH; ++k) {
+        CHECK(se3d_body_get_position(p.s.system, p.box[k], r) == SE3D_OK);
+        CHECK(se3d_body_get_position(q.s.system, q.box[k], u) == SE3D_OK);
+        for (int c = 0; c < 3; ++c) {
+            CHECK_NEAR(r[c], u[c], 2e-6);
+        }
+        CHECK(se3d_body_get_contact_wrench(p.s.system, p.box[k], force, torque) == SE3D_OK);
+        CHECK_NEAR(force[2], G, 1e-3 * G);
+    }
+    CHECK(se3d_system_count_contacts(p.s.system) == se3d_system_count_contacts(q.s.system));
+    CHECK(se3d_body_get_position(p.s.system, p.box[2], before) == SE3D_OK);
+    scene_run(&p.s, 1.5);
+    CHECK(se3d_body_get_position(p.s.system, p.box[2], r) == SE3D_OK);
+    CHECK(memcmp(r, before, sizeof r) == 0);
+    CHECK_NEAR(gap(&p), gap(&q), 1e-5);
+    scene_end(&p.s);
+    scene_end(&q.s);
+}
+
+/* It falls onto the stack after 1.52 s: the same step sees it as without sleep, and the box beside
+ * goes on sleeping. */
+static void what_is_touched_wakes_with_its_island(void)
+{
+    pile p = pile_up(1, 12.0), q = pile_up(0, 12.0);
+    double most = 0.0, v[3], w[3];
+    scene_run(&p.s, 1.5);
+    scene_run(&q.s, 1.5);
+    CHECK(count_still(&p) == HIGH + 1);
+    for (double t = 1.5 + STEP; t < 1.6; t += STEP) {
+        scene_run(&p.s, t);
+        scene_run(&q.s, t);
+        CHECK(se3d_body_get_velocity(p.s.system, p.box[HIGH - 1], v) == SE3D_OK);
+        CHECK(se3d_body_get_velocity(q.s.system, q.box[HIGH - 1], w) == SE3D_OK);
+        most = fmax(most, fabs(v[2]));
+        CHECK_NEAR(v[2], w[2], 1e-3 + 0.02 * fabs(w[2]));
+    }
+    CHECK(most > 0.02);
+    CHECK(count_still(&p) == 1 && !(speed(&p, HIGH) > 0.0));
+    scene_end(&p.s);
+    scene_end(&q.s);
+}
+
+static void what_is_set_wakes(void)
+{
+    const double push[3] = {0.5, 0.0, 0.0}, down[3] = {0.0, 3.0, -G};
+    pile p = pile_up(1, 100.0);
+    double r[3], u[3];
+    scene_run(&p.s, 1.6);
+    CHECK(count_still(&p) == HIGH + 1);
+    CHECK(se3d_body_get_position(p.s.system, p.box[HIGH], r) == SE3D_OK);
+    CHECK(se3d_body_set_velocity(p.s.system, p.box[HIGH], push) == SE3D_OK);
+    scene_run(&p.s, 1.7);
+    CHECK(se3d_body_get_position(p.s.system, p.box[HIGH], u) == SE3D_OK);
+    CHECK(u[0] > r[0] + 5e-3);
+    scene_run(&p.s, 3.2);
+    CHECK(count_still(&p) == HIGH + 1);
+    CHECK(se3d_system_set_gravity(p.s.system, down) == SE3D_OK); /* below the angle of friction */
+    scene_run(&p.s, 3.2 + 2.0 * STEP);
+    CHECK(count_still(&p) == 0);
+    scene_end(&p.s);
+}
+
+/* What a load acts on does not sleep, nor what it touches. */
+static void what_loads_may_move_stays_awake(void)
+{
+    pile p = pile_up(1, 100.0);
+    se3d_load_def load = se3d_load_def_default();
+    se3d_force force;
+    double v[3];
+    CHECK(se3d_function_create_expression(p.s.system, "max(0, 20*(t - 1.6))", &load.function[0]) ==
+          SE3D_OK);
+    load.body = p.box[HIGH];
+    CHECK(se3d_force_create_load(p.s.system, &load, &force) == SE3D_OK);
+    scene_run(&p.s, 1.6);
+    CHECK(count_still(&p) == HIGH);
+    scene_run(&p.s, 2.0);
+    CHECK(se3d_body_get_velocity(p.s.system, p.box[HIGH], v) == SE3D_OK);
+    CHECK(v[0] > 0.1); /* it slides from 1.845 s on */
+    scene_end(&p.s);
+}
+
+static void a_snapshot_knows_what_sleeps(void)
+{
+    pile p = pile_up(1, 100.0);
+    se3d_snapshot *snapshot = NULL;
+    scene_run(&p.s, 1.6);
+    CHECK(se3d_snapshot_create(p.s.system, &snapshot) == SE3D_OK);
+    scene_run(&p.s, 2.2);
+    const uint64_t hash = se3d_system_hash(p.s.system);
+    CHECK(se3d_snapshot_restore(snapshot, p.s.system) == SE3D_OK);
+    CHECK(count_still(&p) == HIGH + 1);
+    scene_run(&p.s, 2.2);
+    CHECK(se3d_system_hash(p.s.system) == hash);
+    se3d_snapshot_destroy(snapshot);
+    scene_end(&p.s);
+}
+
+int main(void)
+{
+    RUN(what_rests_sleeps_and_is_where_it_is_without);
+    RUN(what_is_touched_wakes_with_its_island);
+    RUN(what_is_set_wakes);
+    RUN(what_loads_may_move_stays_awake);
+    RUN(a_snapshot_knows_what_sleeps);
+    return check_finish();
+}
