@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Islands of bodies at rest sleep: they stay where they are, to the bit, with the contacts and
- * forces that they had, and are neither looked at nor solved for. An island falls asleep when all of
- * its bodies have been slower than SLOW for LONG. A body that something may set in motion without
- * touching it (force elements, constraints, gravity that changes, a surface that moves) does not,
- * and so does not what touches it. What touches a sleeping body wakes its whole island before the
- * step in which it acts; whatever is set wakes all (renew, start).
+ * forces that they had, and are neither looked at nor solved for. An island falls asleep when all
+ * of its bodies have been slower than SLOW for LONG. A body that something may set in motion
+ * without touching it (force elements, constraints, gravity that changes, a surface that moves)
+ * does not, and so does not what touches it. What touches a sleeping body wakes its whole island
+ * before the step in which it acts; whatever is set wakes all (renew, start).
  *
  * The history has how long each body has been at rest, or ASLEEP.        docs/theory/convex.md */
 #include "integrator/convex.h"
