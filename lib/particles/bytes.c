@@ -135,7 +135,7 @@ static void code_passed(se3di_coder *c, se3di_particles *set)
     }
 }
 
-static void code_map(se3di_coder *c, se3di_cell_map *map)
+static void code_map(se3di_coder *c, se3di_domain_map *map)
 {
     se3di_code_numbers(c, map->along, 3);
     se3di_code_numbers(c, &map->shear, 1);
@@ -144,7 +144,7 @@ static void code_map(se3di_coder *c, se3di_cell_map *map)
 /* What a cell has done. */
 static void code_cell(se3di_coder *c, se3di_particles *set)
 {
-    se3di_cell *cell = &set->cell;
+    se3di_domain *cell = &set->cell;
     if (cell->count == 0) {
         return;
     }

@@ -51,14 +51,14 @@ static int are_flows(const se3di_particles *set)
     return good;
 }
 
-static int is_map(const se3di_cell_map *map)
+static int is_map(const se3di_domain_map *map)
 {
     return are_finite(map->along, 3) && isfinite(map->shear);
 }
 
 static int is_cell(const se3di_particles *set)
 {
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     const double numbers[] = {cell->offset, cell->shear, cell->strained, cell->work};
     int good =
         cell->count == 0 || (are_finite(numbers, sizeof numbers / sizeof *numbers) &&

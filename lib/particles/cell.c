@@ -23,38 +23,38 @@ static double length_of(const se3di_particles *set, int axis)
     return set->upper[axis] - set->lower[axis];
 }
 
-double se3di_cell_volume(const se3di_particles *set)
+double se3di_domain_volume(const se3di_particles *set)
 {
     return length_of(set, 0) * length_of(set, 1) * length_of(set, 2);
 }
 
-static se3di_cell_map difference(const se3di_cell_map *a, const se3di_cell_map *b)
+static se3di_domain_map difference(const se3di_domain_map *a, const se3di_domain_map *b)
 {
-    se3di_cell_map out = {.shear = a->shear - b->shear};
+    se3di_domain_map out = {.shear = a->shear - b->shear};
     for (int k = 0; k < 3; ++k) {
         out.along[k] = a->along[k] - b->along[k];
     }
     return out;
 }
 
-se3di_strain se3di_cell_images(const se3di_particles *set)
+se3di_strain se3di_domain_images(const se3di_particles *set)
 {
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     se3di_strain s;
     memset(&s, 0, sizeof s);
     s.across[cell->gradient] = 1.0 / length_of(set, cell->gradient);
     s.column[cell->gradient] = length_of(set, cell->gradient);
     s.column[cell->flow] = cell->offset;
-    se3di_cell_map_eval(cell, &cell->field, s.column, s.jump);
+    se3di_domain_map_eval(cell, &cell->field, s.column, s.jump);
     for (int a = 0; a < 3; ++a) {
         s.length_up[a] = cell->field.along[a] * length_of(set, a);
     }
     return s;
 }
 
-void se3di_cell_come_home(const se3di_particles *set, double x[3], double v[3])
+void se3di_domain_come_home(const se3di_particles *set, double x[3], double v[3])
 {
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     const int g = cell->gradient;
     double way[3] = {0.0, 0.0, 0.0}, more[3];
     const double across = floor((x[g] - set->lower[g]) / length_of(set, g));
@@ -64,13 +64,13 @@ void se3di_cell_come_home(const se3di_particles *set, double x[3], double v[3])
         const double length = length_of(set, a);
         way[a] += a == g ? 0.0 : length * floor((x[a] - way[a] - set->lower[a]) / length);
     }
-    se3di_cell_map_eval(cell, &cell->field, way, more);
+    se3di_domain_map_eval(cell, &cell->field, way, more);
     se3di_sub(x, way, x);
     se3di_sub(v, more, v);
 }
 
 /* A bound of how fast a length changes, over it: of the symmetric part of L. */
-static double strain_rate(const se3di_cell_map *rates)
+static double strain_rate(const se3di_domain_map *rates)
 {
     double sum = 0.5 * rates->shear * rates->shear;
     for (int a = 0; a < 3; ++a) {
@@ -79,36 +79,36 @@ static double strain_rate(const se3di_cell_map *rates)
     return sqrt(sum);
 }
 
-double se3di_cell_speed(const se3di_particles *set, const se3di_particle *particle)
+double se3di_domain_speed(const se3di_particles *set, const se3di_particle *particle)
 {
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     double at[3], mean[3], u[3];
-    se3di_cell_place(cell, particle->x, at);
-    se3di_cell_map_eval(cell, &cell->field, at, mean);
+    se3di_domain_place(cell, particle->x, at);
+    se3di_domain_map_eval(cell, &cell->field, at, mean);
     se3di_sub(particle->v, mean, u);
     return se3di_norm(u) + strain_rate(&cell->rates) * (particle->radius + 2.0 * set->skin);
 }
 
-double se3di_cell_shift(const se3di_particles *set, size_t k)
+double se3di_domain_shift(const se3di_particles *set, size_t k)
 {
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     double now[3], then[3], led[3];
-    se3di_cell_place(cell, set->particles[k].x, now);
-    se3di_cell_place(cell, set->origin + 3 * k, then);
-    se3di_cell_map_eval(cell, &cell->since, then, led);
+    se3di_domain_place(cell, set->particles[k].x, now);
+    se3di_domain_place(cell, set->origin + 3 * k, then);
+    se3di_domain_map_eval(cell, &cell->since, then, led);
     se3di_sub(now, led, now);
     return se3di_norm(now) +
            cell->strained * (set->particles[k].radius + se3di_particles_reach(set)[k]);
 }
 
-void se3di_cell_begin_list(se3di_particles *set)
+void se3di_domain_begin_list(se3di_particles *set)
 {
-    set->cell.since = (se3di_cell_map){{1.0, 1.0, 1.0}, 0.0};
+    set->cell.since = (se3di_domain_map){{1.0, 1.0, 1.0}, 0.0};
     set->cell.strained = 0.0;
 }
 
 /* The sum force x branch + m u u, of which the volume times the stress is the symmetric part. */
-static void get_sums(const se3di_cell *cell, double sums[9])
+static void get_sums(const se3di_domain *cell, double sums[9])
 {
     static const int place[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
     for (int k = 0; k < 9; ++k) {
@@ -116,10 +116,10 @@ static void get_sums(const se3di_cell *cell, double sums[9])
     }
 }
 
-void se3di_cell_stress(const se3di_particles *set, double stress[6])
+void se3di_domain_stress(const se3di_particles *set, double stress[6])
 {
     static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-    const double volume = se3di_cell_volume(set);
+    const double volume = se3di_domain_volume(set);
     double sums[9];
     get_sums(&set->cell, sums);
     for (int k = 0; k < 6; ++k) {
@@ -128,7 +128,7 @@ void se3di_cell_stress(const se3di_particles *set, double stress[6])
 }
 
 /* Of half a step at the rates. */
-static void add_work(se3di_cell *cell, double h)
+static void add_work(se3di_domain *cell, double h)
 {
     double sums[9];
     get_sums(cell, sums);
@@ -139,12 +139,12 @@ static void add_work(se3di_cell *cell, double h)
     cell->work -= 0.5 * h * power;
 }
 
-se3di_cell_map se3di_cell_rest(const se3di_particles *set)
+se3di_domain_map se3di_domain_rest(const se3di_particles *set)
 {
     return difference(&set->cell.rates, &set->cell.field);
 }
 
-void se3di_cell_close(se3di_particles *set, double h)
+void se3di_domain_close(se3di_particles *set, double h)
 {
     set->cell.field = set->cell.rates;
     add_work(&set->cell, h);
@@ -156,7 +156,7 @@ static double clamp(double value, double most)
 }
 
 /* The stage at a time, up to the last one that has begun. */
-static void choose_stage(se3di_cell *cell, double time)
+static void choose_stage(se3di_domain *cell, double time)
 {
     const double early = 1e-9 * fabs(time);
     uint64_t next = cell->stage == SE3D_CELL_STAGES ? 0 : cell->stage + 1;
@@ -165,15 +165,15 @@ static void choose_stage(se3di_cell *cell, double time)
     }
 }
 
-se3di_cell_map se3di_cell_open(se3di_particles *set, double h)
+se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
 {
-    se3di_cell *cell = &set->cell;
-    const se3di_cell_map before = cell->field;
+    se3di_domain *cell = &set->cell;
+    const se3di_domain_map before = cell->field;
     choose_stage(cell, set->time);
     if (cell->stage < SE3D_CELL_STAGES) {
-        const se3di_cell_stage *stage = &cell->stages[cell->stage];
+        const se3di_domain_stage *stage = &cell->stages[cell->stage];
         double stress[6];
-        se3di_cell_stress(set, stress);
+        se3di_domain_stress(set, stress);
         cell->rates = stage->rates;
         for (int a = 0; a < 3; ++a) {
             if (stage->servo[a]) {
@@ -188,9 +188,9 @@ se3di_cell_map se3di_cell_open(se3di_particles *set, double h)
 }
 
 /* By (1 + h L). */
-static void step_map(const se3di_cell *cell, double h, se3di_cell_map *map)
+static void step_map(const se3di_domain *cell, double h, se3di_domain_map *map)
 {
-    const se3di_cell_map *L = &cell->rates;
+    const se3di_domain_map *L = &cell->rates;
     map->shear =
         (1.0 + h * L->along[cell->flow]) * map->shear + h * L->shear * map->along[cell->gradient];
     for (int a = 0; a < 3; ++a) {
@@ -198,11 +198,11 @@ static void step_map(const se3di_cell *cell, double h, se3di_cell_map *map)
     }
 }
 
-void se3di_cell_drift(se3di_particles *set, double h)
+void se3di_domain_drift(se3di_particles *set, double h)
 {
-    se3di_cell *cell = &set->cell;
-    const se3di_cell_map *L = &cell->rates;
-    se3di_cell_map sides = {.shear = cell->offset};
+    se3di_domain *cell = &set->cell;
+    const se3di_domain_map *L = &cell->rates;
+    se3di_domain_map sides = {.shear = cell->offset};
     for (int a = 0; a < 3; ++a) {
         sides.along[a] = length_of(set, a);
     }
@@ -221,12 +221,12 @@ void se3di_cell_drift(se3di_particles *set, double h)
     cell->strained += h * strain_rate(L);
 }
 
-void se3di_cell_move(se3di_particles *set, size_t begin, size_t end,
-                     const se3di_particle_motion *motion, const se3di_cell_map *change,
-                     se3di_cell_sums *sums)
+void se3di_domain_move(se3di_particles *set, size_t begin, size_t end,
+                       const se3di_particle_motion *motion, const se3di_domain_map *change,
+                       se3di_domain_sums *sums)
 {
     static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     const double half = 0.5 * motion->h, drift = motion->drift;
     const double *wear = se3di_particles_wear(set);
     const double strain = strain_rate(&cell->rates);
@@ -237,9 +237,9 @@ void se3di_cell_move(se3di_particles *set, size_t begin, size_t end,
         const double mobility = particle->inverse_mass;
         const double turn = 2.5 * mobility / (particle->radius * particle->radius);
         double at[3], more[3], mean[3], u[3];
-        se3di_cell_place(cell, particle->x, at);
-        se3di_cell_map_eval(cell, change, at, more);
-        se3di_cell_map_eval(cell, &cell->rates, at, mean);
+        se3di_domain_place(cell, particle->x, at);
+        se3di_domain_map_eval(cell, change, at, more);
+        se3di_domain_map_eval(cell, &cell->rates, at, mean);
         for (int a = 0; a < 3; ++a) {
             particle->v[a] += half * (load->force[a] * mobility + set->gravity[a]) + more[a];
             spin->w[a] += half * (load->torque[a] * turn);

@@ -90,10 +90,10 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     se3di_sub(c.particles[0].x, c.particles[1].x, d);
     se3di_copy(d, way);
     se3di_particles_wrap(set, d);
-    if (se3di_cell_strains(set)) { /* the image moves with its side of the cell */
+    if (se3di_domain_strains(set)) { /* the image moves with its side of the cell */
         double jump[3];
         se3di_sub(way, d, way);
-        se3di_cell_map_eval(&set->cell, &set->cell.field, way, jump);
+        se3di_domain_map_eval(&set->cell, &set->cell.field, way, jump);
         se3di_add(c.particles[1].v, jump, c.particles[1].v);
     }
     double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);

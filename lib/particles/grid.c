@@ -74,8 +74,8 @@ static size_t leave(se3di_particles *set)
         se3di_particles_come_home(set, set->clumps[k].x);
     }
     for (size_t k = 0; k < set->count; ++k) {
-        if (se3di_cell_strains(set)) {
-            se3di_cell_come_home(set, set->particles[k].x, set->particles[k].v);
+        if (se3di_domain_strains(set)) {
+            se3di_domain_come_home(set, set->particles[k].x, set->particles[k].v);
         } else {
             se3di_particles_come_home(set, set->particles[k].x);
         }
@@ -146,7 +146,7 @@ static void choose_axes(const se3di_particles *set, grid *g)
             main_axis = a;
         }
     }
-    main_axis = se3di_cell_strains(set) ? set->cell.gradient : main_axis;
+    main_axis = se3di_domain_strains(set) ? set->cell.gradient : main_axis;
     g->axis[2] = main_axis;
     g->axis[0] = main_axis == 0 ? 1 : 0;
     g->axis[1] = main_axis == 2 ? 1 : 2;
@@ -383,7 +383,7 @@ static se3d_status search_slab(se3di_particles *set, const search *q, int s, int
 static se3d_status search_beyond(se3di_particles *set, const search *q, int s)
 {
     search beyond = *q;
-    for (int k = 0; k < 2 && se3di_cell_strains(set); ++k) {
+    for (int k = 0; k < 2 && se3di_domain_strains(set); ++k) {
         beyond.x[k] -= q->g->axis[k] == set->cell.flow ? set->cell.offset : 0.0;
     }
     return search_slab(set, &beyond, 0, s + 1, 0);
@@ -394,7 +394,7 @@ static se3d_status search_particle(se3di_particles *set, const grid *g, int s, u
 {
     const se3di_particle *particle = &set->particles[i];
     search q = {.g = g, .i = i, .whole = -1};
-    if (se3di_cell_strains(set) && g->slabs == 1) {
+    if (se3di_domain_strains(set) && g->slabs == 1) {
         q.whole = g->axis[0] == set->cell.flow ? 0 : 1;
     }
     for (int k = 0; k < 3; ++k) {
@@ -501,7 +501,7 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         memcpy(wall->old_x, wall->pose.x, sizeof wall->old_x);
         memcpy(wall->old_R, wall->pose.R, sizeof wall->old_R);
     }
-    se3di_cell_begin_list(set);
+    se3di_domain_begin_list(set);
     ++set->rebuilds;
     return se3di_particles_activate(set);
 }

@@ -26,7 +26,7 @@
 
 static double speed_of(const se3di_particles *set, const se3di_particle *particle)
 {
-    return se3di_cell_strains(set) ? se3di_cell_speed(set, particle) : se3di_norm(particle->v);
+    return se3di_domain_strains(set) ? se3di_domain_speed(set, particle) : se3di_norm(particle->v);
 }
 
 /* How far a particle may go in so many steps. */
@@ -113,8 +113,8 @@ void se3di_particles_set_reach(se3di_particles *set)
 static double rest_of(const se3di_particles *set, size_t k)
 {
     double shift[3];
-    if (se3di_cell_strains(set)) {
-        return se3di_particles_reach(set)[k] - se3di_cell_shift(set, k);
+    if (se3di_domain_strains(set)) {
+        return se3di_particles_reach(set)[k] - se3di_domain_shift(set, k);
     }
     se3di_sub(set->particles[k].x, set->origin + 3 * k, shift);
     return se3di_particles_reach(set)[k] - se3di_norm(shift);

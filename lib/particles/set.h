@@ -279,37 +279,38 @@ typedef struct se3di_clump {
 } se3di_clump;
 
 /* A linear map of a cell: axes are stretched, and `flow` is sheared by `gradient`. */
-typedef struct se3di_cell_map {
+typedef struct se3di_domain_map {
     double along[3], shear;
-} se3di_cell_map;
+} se3di_domain_map;
 
-typedef struct se3di_cell_stage {
+typedef struct se3di_domain_stage {
     double start;
-    se3di_cell_map rates; /* without the axes of servo */
+    se3di_domain_map rates; /* without the axes of servo */
     int32_t servo[3];
     int32_t reserved;
     double stress[3], most[3], gain[3];
-} se3di_cell_stage;
+} se3di_domain_stage;
 
 /* How the domain strains.                                                        cell.c */
-typedef struct se3di_cell {
+typedef struct se3di_domain {
     size_t count; /* of the stages; 0: it stays as it is */
-    se3di_cell_stage stages[SE3D_CELL_STAGES];
+    se3di_domain_stage stages[SE3D_CELL_STAGES];
     int32_t flow, gradient;     /* axes of shear */
     double centre[3], first[3]; /* of the domain; its first lengths */
     /* what it has done */
-    uint64_t stage;       /* under way; SE3D_CELL_STAGES: none yet */
-    double offset;        /* along `flow`, of the image beyond the upper side along `gradient` */
-    double shear;         /* strain */
-    se3di_cell_map rates; /* of the step under way */
-    se3di_cell_map field; /* mean velocities are this map of x - centre: `rates`, but in the second
+    uint64_t stage;         /* under way; SE3D_CELL_STAGES: none yet */
+    double offset;          /* along `flow`, of the image beyond the upper side along `gradient` */
+    double shear;           /* strain */
+    se3di_domain_map rates; /* of the step under way */
+    se3di_domain_map
+        field; /* mean velocities are this map of x - centre: `rates`, but in the second
                            * half of a step those of its middle, at places of its end */
-    se3di_cell_map since; /* the map from the places where the list was built */
-    double strained;      /* the sum of the largest strains of the steps since then */
-    double virial[9];     /* of the last forces, */
-    double kinetic[6];    /* and the sum m u u of the last step: xx, yy, zz, xy, yz, xz */
+    se3di_domain_map since; /* the map from the places where the list was built */
+    double strained;        /* the sum of the largest strains of the steps since then */
+    double virial[9];       /* of the last forces, */
+    double kinetic[6];      /* and the sum m u u of the last step: xx, yy, zz, xy, yz, xz */
     double work;
-} se3di_cell;
+} se3di_domain;
 
 typedef struct se3di_particles_kept se3di_particles_kept;
 
@@ -413,7 +414,7 @@ typedef struct se3di_particles {
     size_t sink_count, sink_capacity;
     se3di_flow *flows;
     size_t flow_count, flow_capacity;
-    se3di_cell cell;
+    se3di_domain cell;
     uint64_t touching;
     int32_t starved;       /* memory was missing in the last evaluation of the forces */
     int32_t failed_placed; /* the overlap was there before any step was made */

@@ -114,7 +114,7 @@ static se3d_status check_cell(const se3di_particles *set, se3di_error *error)
                        : set->clump_count > 0 ? "are clumps"
                        : set->flow_count > 0  ? "are counted by flows"
                                               : NULL;
-    if (se3di_cell_strains(set) && what) {
+    if (se3di_domain_strains(set) && what) {
         return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
                                "the particles%s%.80s %s, but are in a cell that strains", of, name,
                                what);

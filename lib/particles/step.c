@@ -188,7 +188,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .callback = set->callback,
         .ctx = set->ctx,
         .clumped = set->clump_count > 0 ? set : NULL,
-        .strain = se3di_cell_strains(set) ? strain : NULL,
+        .strain = se3di_domain_strains(set) ? strain : NULL,
     };
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
@@ -221,7 +221,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     if (set->count == 0) {
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
-    const se3di_strain strain = se3di_cell_images(set);
+    const se3di_strain strain = se3di_domain_images(set);
     se3di_force_task task = prepare(set, h, &strain);
     se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
@@ -365,7 +365,7 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
         hash = se3di_hash_numbers(hash, set->clumps[k].q, 4);
         hash = se3di_hash_numbers(hash, set->clumps[k].spin, 3);
     }
-    if (se3di_cell_strains(set)) {
+    if (se3di_domain_strains(set)) {
         const double cell[] = {set->cell.offset, set->cell.work};
         hash = se3di_hash_numbers(hash, set->lower, 3);
         hash = se3di_hash_numbers(hash, set->upper, 3);

@@ -124,9 +124,10 @@ static size_t part_begin(size_t count, size_t c)
  * begins one. */
 static void strain(se3di_particles *set, double h, double drift)
 {
-    se3di_cell_sums sums_of[PASS_PARTS] = {{0.0, 0.0, {0.0}}};
+    se3di_domain_sums sums_of[PASS_PARTS] = {{0.0, 0.0, {0.0}}};
     const se3di_particle_motion motion = {1, h, drift};
-    const se3di_cell_map change = drift != 0.0 ? se3di_cell_open(set, h) : se3di_cell_rest(set);
+    const se3di_domain_map change =
+        drift != 0.0 ? se3di_domain_open(set, h) : se3di_domain_rest(set);
     const size_t count = set->count;
 #ifdef _OPENMP
     const int32_t team = se3di_particles_team(set);
@@ -134,8 +135,8 @@ static void strain(se3di_particles *set, double h, double drift)
 #endif
     for (size_t c = 0; c < PASS_PARTS; ++c) {
         const se3di_floats host = se3di_floats_set();
-        se3di_cell_move(set, part_begin(count, c), part_begin(count, c + 1), &motion, &change,
-                        &sums_of[c]);
+        se3di_domain_move(set, part_begin(count, c), part_begin(count, c + 1), &motion, &change,
+                          &sums_of[c]);
         se3di_floats_restore(host);
     }
     haste most = {0.0, 0.0};
@@ -147,10 +148,10 @@ static void strain(se3di_particles *set, double h, double drift)
         }
     }
     if (drift != 0.0) {
-        se3di_cell_drift(set, drift);
+        se3di_domain_drift(set, drift);
     } else {
         memcpy(set->cell.kinetic, kinetic, sizeof kinetic);
-        se3di_cell_close(set, h);
+        se3di_domain_close(set, h);
     }
     note_motion(set, &motion, most);
 }
@@ -168,7 +169,7 @@ static void strain_all(se3di_particles *set, const se3di_particle_motion *motion
 
 static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
-    if (se3di_cell_strains(set)) {
+    if (se3di_domain_strains(set)) {
         if (set->count > 0) {
             strain_all(set, motion);
         }
@@ -431,7 +432,7 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
 {
     static const se3di_particle_motion still = {0, 0.0, 0.0};
     /* clumps move when all of their spheres are done, cells when their stress is known */
-    const int waits = set->clump_count > 0 || se3di_cell_strains(set);
+    const int waits = set->clump_count > 0 || se3di_domain_strains(set);
     const sweep w = {set, task, waits ? &still : motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {

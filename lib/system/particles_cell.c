@@ -74,7 +74,7 @@ static se3d_status check_cell(se3d_system *system, const se3d_cell_def *def)
 static se3d_status check_set(const se3d_particles *particles, const se3d_cell_def *def)
 {
     const se3di_particles *set = &particles->set;
-    const se3di_cell *cell = &set->cell;
+    const se3di_domain *cell = &set->cell;
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] != SE3DI_BOUNDARY_PERIODIC) {
             return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
@@ -104,9 +104,9 @@ static se3d_status check_set(const se3d_particles *particles, const se3d_cell_de
     return SE3D_OK;
 }
 
-static se3di_cell_stage make_stage(const se3d_cell_def *def)
+static se3di_domain_stage make_stage(const se3d_cell_def *def)
 {
-    se3di_cell_stage stage = {.start = def->start, .rates = {.shear = def->shear_rate}};
+    se3di_domain_stage stage = {.start = def->start, .rates = {.shear = def->shear_rate}};
     for (int a = 0; a < 3; ++a) {
         stage.rates.along[a] = def->rate[a];
         stage.servo[a] = def->servo[a] != 0;
@@ -121,14 +121,14 @@ static se3di_cell_stage make_stage(const se3d_cell_def *def)
 
 static void begin_cell(se3di_particles *set)
 {
-    se3di_cell *cell = &set->cell;
+    se3di_domain *cell = &set->cell;
     memset(cell, 0, sizeof *cell);
     cell->stage = SE3D_CELL_STAGES;
     for (int a = 0; a < 3; ++a) {
         cell->centre[a] = 0.5 * (set->lower[a] + set->upper[a]);
         cell->first[a] = set->upper[a] - set->lower[a];
     }
-    cell->since = (se3di_cell_map){{1.0, 1.0, 1.0}, 0.0};
+    cell->since = (se3di_domain_map){{1.0, 1.0, 1.0}, 0.0};
 }
 
 se3d_status se3d_particles_add_cell_stage(se3d_particles *particles, const se3d_cell_def *def,
@@ -137,7 +137,7 @@ se3d_status se3d_particles_add_cell_stage(se3d_particles *particles, const se3d_
     SE3DI_EDIT_OF(particles);
     se3d_system *system = particles->system;
     se3di_particles *set = &particles->set;
-    se3di_cell *cell = &set->cell;
+    se3di_domain *cell = &set->cell;
     se3d_cell_def full = se3d_cell_def_default();
     SE3DI_TRY(se3di_check_def(system, "cell def", def, &full, sizeof full));
     SE3DI_TRY(check_cell(system, &full));
@@ -175,8 +175,8 @@ static double solid_volume(const se3di_particles *set)
 
 static void fill_state(const se3di_particles *set, se3d_cell_state *state)
 {
-    const se3di_cell *cell = &set->cell;
-    state->volume = se3di_cell_volume(set);
+    const se3di_domain *cell = &set->cell;
+    state->volume = se3di_domain_volume(set);
     state->solid_fraction = state->volume > 0.0 ? solid_volume(set) / state->volume : 0.0;
     memcpy(state->lower, set->lower, sizeof state->lower);
     memcpy(state->upper, set->upper, sizeof state->upper);
@@ -189,7 +189,7 @@ static void fill_state(const se3di_particles *set, se3d_cell_state *state)
         state->rate[a] = cell->rates.along[a];
         state->kinetic_energy += 0.5 * cell->kinetic[a];
     }
-    se3di_cell_stress(set, state->stress);
+    se3di_domain_stress(set, state->stress);
     state->offset = cell->offset;
     state->shear_strain = cell->shear;
     state->shear_rate = cell->rates.shear;
