@@ -105,6 +105,9 @@ static void what_is_wrong_with_a_road_is_told(void)
         {"roads: [{type: heightfield, spacing: 1, heights: [[0, a], [1, 1]]}]", "heights[0][1]"},
         {"roads: [{type: heightfield, spacing: 1, file: nowhere.csv}]", "nowhere.csv"},
         {"roads: [{type: mesh}]", "file: is missing"},
+        {"parts: {p: {roads: [{type: height, height: 0.1*x*y}]}}\n"
+         "instances: [{part: p, mirror: y}]",
+         "height: has y in a part that is mirrored"},
         {"roads: [{type: plane, normal: [1, 0, 0]}]", "are parallel"},
         {"roads: [{type: plane, body: nobody}]", "nobody"},
         {"roads: [{name: a, type: plane}, {name: a, type: plane}]", "the name of two elements"},
