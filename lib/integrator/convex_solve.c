@@ -300,15 +300,17 @@ static double measure(const se3di_convex *c, se3di_equations *equations,
     return rest <= 0.0 ? 0.0 : sqrt(rest / fmax(size, rest)); /* NaN stays */
 }
 
-/* The matrix of an island, whose bodies count from 0. */
+/* The matrix of an island, whose bodies count from 0; without any pair of bodies there are no
+ * arrays of them. */
 static se3di_block_matrix matrix_of(const se3di_convex *c, const se3di_convex_island *island)
 {
+    const int has_pairs = island->pair_end > island->pair;
     return (se3di_block_matrix){.count = island->body_end - island->body,
                                 .first = (int32_t)island->body,
                                 .pair_count = island->pair_end - island->pair,
-                                .pairs = c->pairs + 2 * island->pair,
+                                .pairs = has_pairs ? c->pairs + 2 * island->pair : NULL,
                                 .diagonal = c->body + 36 * island->body,
-                                .coupling = c->coupling + 36 * island->pair};
+                                .coupling = has_pairs ? c->coupling + 36 * island->pair : NULL};
 }
 
 /* `change` to the accuracy that an iteration needs. */
