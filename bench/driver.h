@@ -6,11 +6,13 @@
  *     answer    ok SECONDS X Y Z DRIFT GAP STEPS EVALUATIONS ITERATIONS FACTORIZATIONS
  *               or: no REASON
  *
- * KIND: a chain with revolutes, b chain with balls, f four-bar windows, p pendulum; METHOD is the
- * driver's own; SETTING the step [s] or the tolerance; SAMPLES parts of the run between which
- * energy and constraints are looked at (1 if time is measured); SECONDS of CPU, the least of
- * REPEATS runs, model building not counted. X Y Z is the tip at the end, DRIFT the largest change
- * of the energy [J], GAP the largest violation. */
+ * KIND: a chain with revolutes, b chain with balls, f four-bar windows, p pendulum, and of this
+ * library alone c chain closed at its end, g grid of four-bars; METHOD is the driver's own; SETTING
+ * the step [s] or the tolerance; SAMPLES parts of the run between which energy and constraints are
+ * looked at (1 if time is measured); SECONDS of CPU, the least of REPEATS runs, model building not
+ * counted. X Y Z is the tip at the end, DRIFT the largest change of the energy [J], GAP the largest
+ * violation.
+ */
 #ifndef BENCH_DRIVER_H
 #define BENCH_DRIVER_H
 

@@ -99,6 +99,58 @@ static inline void bench_build_fourbars(bench_mechanism *m, int n)
     m->point[0] = 0.5;
 }
 
+/* n bars along half a circle from the origin, pinned to the ground at both ends; at rest. */
+static inline void bench_build_arch(bench_mechanism *m, int n)
+{
+    const double inertia[3] = {0.008125, 1.6290625, 1.6290625}, part = 3.14159265358979312 / n;
+    double x = 0.0, y = 0.0;
+    se3d_body ground, last;
+    bench_note(m, se3d_system_get_ground(m->system, &ground));
+    last = ground;
+    for (int k = 0; k < n; ++k) {
+        const double turn = (k + 0.5) * part - 1.57079632679489656;
+        const double c = cos(turn), s = sin(turn);
+        se3d_body bar = bench_add_bar(m, x + 0.5 * c, y + 0.5 * s, turn, 19.5, inertia);
+        bench_add_joint(m, last, bar, x, y, 0);
+        m->tip = 2 * k < n ? bar : m->tip;
+        last = bar;
+        x += c;
+        y += s;
+    }
+    bench_add_joint(m, last, ground, x, y, 0);
+    m->point[0] = 0.5;
+}
+
+/* n floors of n windows of four-bars on each other, bars of 1 kg; all posts turn alike. */
+static inline void bench_build_grid(bench_mechanism *m, int n)
+{
+    const double inertia[3] = {1e-3, 1.0 / 12.0, 1.0 / 12.0}, right = 1.5707963267948966;
+    const double w[3] = {0.0, 0.0, -1.0};
+    se3d_body below[65], ground, beam = {0, 0};
+    bench_note(m, se3d_system_get_ground(m->system, &ground));
+    for (int k = 0; k <= n && k < 65; ++k) {
+        below[k] = ground;
+    }
+    for (int floor = 0; floor < n; ++floor) {
+        for (int k = 0; k <= n && k < 65; ++k) {
+            const double v[3] = {floor + 0.5, 0.0, 0.0}, top[3] = {floor + 1.0, 0.0, 0.0};
+            se3d_body post = bench_add_bar(m, k, floor + 0.5, right, 1.0, inertia);
+            bench_note(m, se3d_body_set_velocity(m->system, post, v));
+            bench_note(m, se3d_body_set_angular_velocity(m->system, post, w));
+            bench_add_joint(m, below[k], post, k, floor, 0);
+            if (k > 0) {
+                beam = bench_add_bar(m, k - 0.5, floor + 1.0, 0.0, 1.0, inertia);
+                bench_note(m, se3d_body_set_velocity(m->system, beam, top));
+                bench_add_joint(m, below[k - 1], beam, k - 1.0, floor + 1.0, 0);
+                bench_add_joint(m, beam, post, k, floor + 1.0, 0);
+            }
+            below[k] = post;
+            m->tip = post;
+        }
+    }
+    m->point[0] = 0.5;
+}
+
 /* IFToMM A01: 1 kg at 1 m from a pin, along -x, at rest. A body must have inertia: that of a ball
  * of a tenth of a millimetre. */
 static inline void bench_build_pendulum(bench_mechanism *m)
@@ -110,7 +162,8 @@ static inline void bench_build_pendulum(bench_mechanism *m)
     bench_add_joint(m, ground, m->tip, 0.0, 0.0, 0);
 }
 
-/* kind: a chain with revolutes, b with balls, f four-bars, p pendulum. Destroy m->system. */
+/* kind: a chain with revolutes, b with balls, c closed at its end, f four-bars, g a grid of them, p
+ * pendulum. Destroy m->system. */
 static inline bench_mechanism bench_build(char kind, int n)
 {
     const double gravity[3] = {0.0, -9.81, 0.0};
@@ -119,6 +172,10 @@ static inline bench_mechanism bench_build(char kind, int n)
     bench_note(&m, se3d_system_set_gravity(m.system, gravity));
     if (kind == 'f') {
         bench_build_fourbars(&m, n);
+    } else if (kind == 'c') {
+        bench_build_arch(&m, n);
+    } else if (kind == 'g') {
+        bench_build_grid(&m, n);
     } else if (kind == 'p') {
         bench_build_pendulum(&m);
     } else {
