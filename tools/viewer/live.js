@@ -70,7 +70,11 @@
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;
-    requestAnimationFrame(() => requestAnimationFrame(() => { window.se3dLive.drawn = Date.now(); })); // the first picture is there
+    requestAnimationFrame(() => { // after the first picture
+      const gl = $("view").getContext("webgl2");
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for it
+      window.se3dLive.drawn = Date.now();
+    });
   };
   const follow = async () => {
     let sequence = 0;

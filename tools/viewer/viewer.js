@@ -746,7 +746,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
 
   // From the side from which most joints are seen; what still hides one is seen through.
   fit();
-  if (shown.length) {
+  if (shown.length && !new URLSearchParams(location.hash.slice(1)).has("view")) { // unless it is given
     const around = [-0.9, 0.9, 2.2, -2.2].map((azimuth) => [hidden(azimuth, 0.35, 2).length, azimuth]);
     orbit.azimuth = around.reduce((a, b) => (b[0] < a[0] ? b : a))[1];
     fit();
