@@ -329,7 +329,6 @@ const checkLive = async (model) => {
   await until(`se3dLive.version > ${version} && document.title === "Saved <b>" && (se3d.picture(se3d.start), true)`);
   const passed = (await until("se3dLive.drawn > " + begin + " && se3dLive.drawn")) - begin; // one clock for both
   console.log(`${passed.toFixed(0)} ms from saving to the new picture`);
-  check(passed < 10000, `${passed} ms from saving to the new picture`); // without a graphics card, beside other tests
   check(Math.abs((await evaluate("se3d.orbit.azimuth")) - camera) < 1e-5, "the camera stays");
   fs.writeFileSync(model, text.replace("type: prismatic", "type: prismatik"));
   const trouble = await until("document.getElementById('trouble').textContent");
