@@ -42,6 +42,9 @@ se3di_strain se3di_domain_images(const se3di_particles *set)
     const se3di_domain *cell = &set->cell;
     se3di_strain s;
     memset(&s, 0, sizeof s);
+    if (cell->count == 0) {
+        return s;
+    }
     s.across[cell->gradient] = 1.0 / length_of(set, cell->gradient);
     s.column[cell->gradient] = length_of(set, cell->gradient);
     s.column[cell->flow] = cell->offset;
