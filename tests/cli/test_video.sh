@@ -15,7 +15,7 @@ says 'the speed is `0`, must be a number > 0'
 expect 'a speed in words' 2 "$program" video "$dir" --speed 2x
 expect 'a view in words' 2 "$program" video "$dir" --view above
 says 'the view is `above`, must be AZIMUTH,ELEVATION in degrees'
-for caption in 'words' '1,0,backwards' '0,1,' 'nan,1,a'; do
+for caption in 'words' '1,0,backwards' '0,1,' 'nan,1,a' '0,inf,a'; do
     expect "a caption $caption" 2 "$program" video "$dir" --caption "$caption"
     says 'must be FROM,TO,TEXT'
 done

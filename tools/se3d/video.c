@@ -91,7 +91,8 @@ static const char *read_caption(const char *word, double *from, double *to)
     }
     const char *second = rest + 1;
     *to = strtod(second, &rest);
-    const int good = rest != second && *rest == ',' && rest[1] && isfinite(*from) && *to > *from;
+    const int good = rest != second && *rest == ',' && rest[1] && isfinite(*from) &&
+                     isfinite(*to) && *to > *from;
     return good && strlen(rest + 1) <= TEXT_MOST && text_is_plain(rest + 1) ? rest + 1 : NULL;
 }
 
