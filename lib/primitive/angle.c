@@ -59,41 +59,20 @@ double se3di_primitive_angle_value(const se3di_term *t, const se3di_frame *i, co
     return se3di_atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
 }
 
-void se3di_primitive_angle_jacobian_romega(const se3di_term *t, const se3di_frame *i,
-                                           const se3di_frame *j, double phi_i[6], double phi_j[6])
+SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     const angle_vectors x = vectors_of(t, i, j);
     for (int k = 0; k < 3; ++k) {
         phi_i[k] = phi_j[k] = 0.0;
     }
-    se3di_dot_gradient_romega(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
+    se3di_dot_gradient(way, i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-void se3di_primitive_angle_jacobian_rp(const se3di_term *t, const se3di_frame *i,
-                                       const se3di_frame *j, double phi_i[7], double phi_j[7])
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     const angle_vectors x = vectors_of(t, i, j);
-    for (int k = 0; k < 3; ++k) {
-        phi_i[k] = phi_j[k] = 0.0;
-    }
-    se3di_dot_gradient_rp(i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
-}
-
-double se3di_primitive_angle_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                          const se3di_frame *j)
-{
-    const angle_vectors x = vectors_of(t, i, j);
-    return se3di_dot_gamma_romega(i, x.m, j, t->a_j) +
-           2.0 * se3di_dot_rate_romega(i, x.m, j, t->a_j) *
-               se3di_dot_rate_romega(i, x.n, j, t->a_j);
-}
-
-double se3di_primitive_angle_gamma_rp(const se3di_term *t, const se3di_frame *i,
-                                      const se3di_frame *j)
-{
-    const angle_vectors x = vectors_of(t, i, j);
-    return se3di_dot_gamma_rp(i, x.m, j, t->a_j) +
-           2.0 * se3di_dot_rate_rp(i, x.m, j, t->a_j) * se3di_dot_rate_rp(i, x.n, j, t->a_j);
+    return se3di_dot_gamma(way, i, x.m, j, t->a_j) +
+           2.0 * se3di_dot_rate(way, i, x.m, j, t->a_j) * se3di_dot_rate(way, i, x.n, j, t->a_j);
 }
 
 /* H -= lambda (theta_q^T rho_q + rho_q^T theta_q), where theta_q and rho_q hold the `half`
@@ -113,26 +92,18 @@ static inline void add_rank_two(double *H, int n, double lambda, const double *t
     }
 }
 
-void se3di_primitive_angle_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                            const se3di_frame *j, double lambda, double H[144])
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    const angle_vectors x = vectors_of(t, i, j);
-    double theta_q[6];
-    double rho_q[6];
-    se3di_dot_gradient_romega(i, x.m, j, t->a_j, theta_q, theta_q + 3);
-    se3di_dot_gradient_romega(i, x.n, j, t->a_j, rho_q, rho_q + 3);
-    se3di_dot_curvature_romega(i, x.m, j, t->a_j, lambda, H);
-    add_rank_two(H, SE3DI_ROMEGA_TOTAL, lambda, theta_q, rho_q, 3);
-}
-
-void se3di_primitive_angle_curvature_rp(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j, double lambda, double H[196])
-{
+    const int m = se3di_turns(way);
     const angle_vectors x = vectors_of(t, i, j);
     double theta_q[8];
     double rho_q[8];
-    se3di_dot_gradient_rp(i, x.m, j, t->a_j, theta_q, theta_q + 4);
-    se3di_dot_gradient_rp(i, x.n, j, t->a_j, rho_q, rho_q + 4);
-    se3di_dot_curvature_rp(i, x.m, j, t->a_j, lambda, H);
-    add_rank_two(H, SE3DI_RP_TOTAL, lambda, theta_q, rho_q, 4);
+    se3di_dot_gradient(way, i, x.m, j, t->a_j, theta_q, theta_q + m);
+    se3di_dot_gradient(way, i, x.n, j, t->a_j, rho_q, rho_q + m);
+    se3di_dot_curvature(way, i, x.m, j, t->a_j, lambda, H);
+    add_rank_two(H, se3di_columns(way), lambda, theta_q, rho_q, m);
 }
+
+SE3DI_PRIMITIVE_JACOBIANS(angle, jacobian)
+SE3DI_PRIMITIVE_GAMMAS(angle, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(angle, curvature)

@@ -19,54 +19,29 @@ double se3di_primitive_cd_value(const se3di_term *t, const se3di_frame *i, const
     return se3di_dot(t->c, d);
 }
 
-void se3di_primitive_cd_jacobian_romega(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j, double phi_i[6], double phi_j[6])
+SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     se3di_copy(t->c, phi_j);
     se3di_scale(-1.0, t->c, phi_i);
-    se3di_romega_gradient(i, t->s_i, phi_i, phi_i + 3);
-    se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
+    se3di_gradient(way, i, t->s_i, phi_i, phi_i + 3);
+    se3di_gradient(way, j, t->s_j, phi_j, phi_j + 3);
 }
 
-void se3di_primitive_cd_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                    double phi_i[7], double phi_j[7])
-{
-    se3di_copy(t->c, phi_j);
-    se3di_scale(-1.0, t->c, phi_i);
-    se3di_rp_gradient(i, t->s_i, phi_i, phi_i + 3);
-    se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
-}
-
-double se3di_primitive_cd_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                       const se3di_frame *j)
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double d_term[3];
-    se3di_romega_distance_velocity_term(t, i, j, d_term);
+    se3di_distance_velocity_term(way, t, i, j, d_term);
     return -se3di_dot(t->c, d_term);
 }
 
-double se3di_primitive_cd_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
+/* In r-p independent of the pose: CD is quadratic in p. */
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    double d_term[3];
-    se3di_rp_distance_velocity_term(t, i, j, d_term);
-    return -se3di_dot(t->c, d_term);
+    const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, -lambda, t->s_i, t->c);
+    se3di_add_curvature(way, se3di_block(H, n, J, J), j, lambda, t->s_j, t->c);
 }
 
-void se3di_primitive_cd_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                         const se3di_frame *j, double lambda, double H[144])
-{
-    enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -lambda, t->s_i, t->c);
-    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->s_j, t->c);
-}
-
-/* Independent of the pose: CD is quadratic in p. */
-void se3di_primitive_cd_curvature_rp(const se3di_term *t, const se3di_frame *i,
-                                     const se3di_frame *j, double lambda, double H[196])
-{
-    enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
-    (void)i;
-    (void)j;
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), -lambda, t->s_i, t->c);
-    se3di_rp_add_curvature(se3di_block(H, N, J, J), lambda, t->s_j, t->c);
-}
+SE3DI_PRIMITIVE_JACOBIANS(cd, jacobian)
+SE3DI_PRIMITIVE_GAMMAS(cd, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(cd, curvature)

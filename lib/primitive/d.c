@@ -20,72 +20,39 @@ double se3di_primitive_d_value(const se3di_term *t, const se3di_frame *i, const 
     return se3di_dot(d, d);
 }
 
-void se3di_primitive_d_jacobian_romega(const se3di_term *t, const se3di_frame *i,
-                                       const se3di_frame *j, double phi_i[6], double phi_j[6])
+SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     se3di_term_distance(t, i, j, phi_j);
     se3di_scale(2.0, phi_j, phi_j);
     se3di_scale(-1.0, phi_j, phi_i);
-    se3di_romega_gradient(i, t->s_i, phi_i, phi_i + 3);
-    se3di_romega_gradient(j, t->s_j, phi_j, phi_j + 3);
+    se3di_gradient(way, i, t->s_i, phi_i, phi_i + 3);
+    se3di_gradient(way, j, t->s_j, phi_j, phi_j + 3);
 }
 
-void se3di_primitive_d_jacobian_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                   double phi_i[7], double phi_j[7])
-{
-    se3di_term_distance(t, i, j, phi_j);
-    se3di_scale(2.0, phi_j, phi_j);
-    se3di_scale(-1.0, phi_j, phi_i);
-    se3di_rp_gradient(i, t->s_i, phi_i, phi_i + 3);
-    se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
-}
-
-double se3di_primitive_d_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                      const se3di_frame *j)
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double d[3];
     double ddot[3];
     double d_term[3];
     se3di_term_distance(t, i, j, d);
-    se3di_romega_distance_rate(t, i, j, ddot);
-    se3di_romega_distance_velocity_term(t, i, j, d_term);
-    return -2.0 * (se3di_dot(ddot, ddot) + se3di_dot(d, d_term));
-}
-
-double se3di_primitive_d_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
-{
-    double d[3];
-    double ddot[3];
-    double d_term[3];
-    se3di_term_distance(t, i, j, d);
-    se3di_rp_distance_rate(t, i, j, ddot);
-    se3di_rp_distance_velocity_term(t, i, j, d_term);
+    se3di_distance_rate(way, t, i, j, ddot);
+    se3di_distance_velocity_term(way, t, i, j, d_term);
     return -2.0 * (se3di_dot(ddot, ddot) + se3di_dot(d, d_term));
 }
 
 /* With D the derivative of d: 2 D^T D, and the second derivatives of A_i s_i and A_j s_j. */
-void se3di_primitive_d_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j, double lambda, double H[144])
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
+    const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     double d[3];
-    double D[3 * N];
+    double D[3 * SE3DI_TERM_TOTAL];
     se3di_term_distance(t, i, j, d);
-    se3di_romega_distance_derivative(t, i, j, D);
-    se3di_block_add_product(H, N, 2.0 * lambda, D, N, D, N);
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -2.0 * lambda, t->s_i, d);
-    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, 2.0 * lambda, t->s_j, d);
+    se3di_distance_derivative(way, t, i, j, D);
+    se3di_block_add_product(H, n, 2.0 * lambda, D, n, D, n);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, -2.0 * lambda, t->s_i, d);
+    se3di_add_curvature(way, se3di_block(H, n, J, J), j, 2.0 * lambda, t->s_j, d);
 }
 
-void se3di_primitive_d_curvature_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j,
-                                    double lambda, double H[196])
-{
-    enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
-    double d[3];
-    double D[3 * N];
-    se3di_term_distance(t, i, j, d);
-    se3di_rp_distance_derivative(t, i, j, D);
-    se3di_block_add_product(H, N, 2.0 * lambda, D, N, D, N);
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), -2.0 * lambda, t->s_i, d);
-    se3di_rp_add_curvature(se3di_block(H, N, J, J), 2.0 * lambda, t->s_j, d);
-}
+SE3DI_PRIMITIVE_JACOBIANS(d, jacobian)
+SE3DI_PRIMITIVE_GAMMAS(d, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(d, curvature)

@@ -19,43 +19,24 @@ double se3di_primitive_dp1_value(const se3di_term *t, const se3di_frame *i, cons
     return se3di_dot_value(i, t->a_i, j, t->a_j);
 }
 
-void se3di_primitive_dp1_jacobian_romega(const se3di_term *t, const se3di_frame *i,
-                                         const se3di_frame *j, double phi_i[6], double phi_j[6])
+SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     for (int k = 0; k < 3; ++k) {
         phi_i[k] = phi_j[k] = 0.0;
     }
-    se3di_dot_gradient_romega(i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
+    se3di_dot_gradient(way, i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-void se3di_primitive_dp1_jacobian_rp(const se3di_term *t, const se3di_frame *i,
-                                     const se3di_frame *j, double phi_i[7], double phi_j[7])
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
-    for (int k = 0; k < 3; ++k) {
-        phi_i[k] = phi_j[k] = 0.0;
-    }
-    se3di_dot_gradient_rp(i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
+    return se3di_dot_gamma(way, i, t->a_i, j, t->a_j);
 }
 
-double se3di_primitive_dp1_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j)
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    return se3di_dot_gamma_romega(i, t->a_i, j, t->a_j);
+    se3di_dot_curvature(way, i, t->a_i, j, t->a_j, lambda, H);
 }
 
-double se3di_primitive_dp1_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
-{
-    return se3di_dot_gamma_rp(i, t->a_i, j, t->a_j);
-}
-
-void se3di_primitive_dp1_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                          const se3di_frame *j, double lambda, double H[144])
-{
-    se3di_dot_curvature_romega(i, t->a_i, j, t->a_j, lambda, H);
-}
-
-void se3di_primitive_dp1_curvature_rp(const se3di_term *t, const se3di_frame *i,
-                                      const se3di_frame *j, double lambda, double H[196])
-{
-    se3di_dot_curvature_rp(i, t->a_i, j, t->a_j, lambda, H);
-}
+SE3DI_PRIMITIVE_JACOBIANS(dp1, jacobian)
+SE3DI_PRIMITIVE_GAMMAS(dp1, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(dp1, curvature)

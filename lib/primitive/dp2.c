@@ -53,8 +53,7 @@ void se3di_primitive_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i,
     se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-double se3di_primitive_dp2_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j)
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double u[3];
     double d[3];
@@ -64,66 +63,33 @@ double se3di_primitive_dp2_gamma_romega(const se3di_term *t, const se3di_frame *
     double d_term[3];
     se3di_mul(i->A, t->a_i, u);
     se3di_term_distance(t, i, j, d);
-    se3di_romega_rate(i, t->a_i, udot);
-    se3di_romega_distance_rate(t, i, j, ddot);
-    se3di_romega_velocity_term(i, t->a_i, u_term);
-    se3di_romega_distance_velocity_term(t, i, j, d_term);
-    return -se3di_dot(d, u_term) - 2.0 * se3di_dot(udot, ddot) - se3di_dot(u, d_term);
-}
-
-double se3di_primitive_dp2_gamma_rp(const se3di_term *t, const se3di_frame *i, const se3di_frame *j)
-{
-    double u[3];
-    double d[3];
-    double udot[3];
-    double ddot[3];
-    double u_term[3];
-    double d_term[3];
-    se3di_mul(i->A, t->a_i, u);
-    se3di_term_distance(t, i, j, d);
-    se3di_rp_rate(i, t->a_i, udot);
-    se3di_rp_distance_rate(t, i, j, ddot);
-    se3di_rp_velocity_term(i, t->a_i, u_term);
-    se3di_rp_distance_velocity_term(t, i, j, d_term);
+    se3di_rate(way, i, t->a_i, udot);
+    se3di_distance_rate(way, t, i, j, ddot);
+    se3di_velocity_term(way, i, t->a_i, u_term);
+    se3di_distance_velocity_term(way, t, i, j, d_term);
     return -se3di_dot(d, u_term) - 2.0 * se3di_dot(udot, ddot) - se3di_dot(u, d_term);
 }
 
 /* With U and D the derivatives of u and d: U^T D + D^T U, and the second derivatives of A_i a_i,
  * A_i s_i and A_j s_j. */
-void se3di_primitive_dp2_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                          const se3di_frame *j, double lambda, double H[144])
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
-    double u[3];
-    double d[3];
-    double U[9];
-    double D[3 * N];
-    se3di_mul(i->A, t->a_i, u);
-    se3di_term_distance(t, i, j, d);
-    se3di_romega_derivative(i, t->a_i, U);
-    se3di_romega_distance_derivative(t, i, j, D);
-    se3di_block_add_product(se3di_block(H, N, I, 0), N, lambda, U, 3, D, N);
-    se3di_block_add_product(se3di_block(H, N, 0, I), N, lambda, D, N, U, 3);
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, lambda, t->a_i, d);
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -lambda, t->s_i, u);
-    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->s_j, u);
-}
-
-void se3di_primitive_dp2_curvature_rp(const se3di_term *t, const se3di_frame *i,
-                                      const se3di_frame *j, double lambda, double H[196])
-{
-    enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
+    const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
+    const int m = se3di_turns(way);
     double u[3];
     double d[3];
     double U[12];
-    double D[3 * N];
+    double D[3 * SE3DI_TERM_TOTAL];
     se3di_mul(i->A, t->a_i, u);
     se3di_term_distance(t, i, j, d);
-    se3di_rp_derivative(i, t->a_i, U);
-    se3di_rp_distance_derivative(t, i, j, D);
-    se3di_block_add_product(se3di_block(H, N, I, 0), N, lambda, U, 4, D, N);
-    se3di_block_add_product(se3di_block(H, N, 0, I), N, lambda, D, N, U, 4);
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), lambda, t->a_i, d);
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), -lambda, t->s_i, u);
-    se3di_rp_add_curvature(se3di_block(H, N, J, J), lambda, t->s_j, u);
+    se3di_derivative(way, i, t->a_i, U);
+    se3di_distance_derivative(way, t, i, j, D);
+    se3di_block_add_product(se3di_block(H, n, I, 0), n, lambda, U, m, D, n);
+    se3di_block_add_product(se3di_block(H, n, 0, I), n, lambda, D, n, U, m);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, lambda, t->a_i, d);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, -lambda, t->s_i, u);
+    se3di_add_curvature(way, se3di_block(H, n, J, J), j, lambda, t->s_j, u);
 }
+
+SE3DI_PRIMITIVE_GAMMAS(dp2, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(dp2, curvature)

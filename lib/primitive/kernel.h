@@ -11,7 +11,8 @@
  *     derivative of gradient   tilde(a) tilde(A^T y)         K(a,y)
  *
  * The two columns are coded independently of each other, so that the tests' comparison of the
- * formulations compares two things.  docs/theory/rotations.md */
+ * formulations compares two things. What is made of them is written once: `way` names the column.
+ * docs/theory/rotations.md */
 #ifndef SE3DI_PRIMITIVE_KERNEL_H
 #define SE3DI_PRIMITIVE_KERNEL_H
 
@@ -19,16 +20,31 @@
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 
-/* Unknowns per body, and where the rotational block of bodies i and j begins in a term's rows. */
-enum {
-    SE3DI_ROMEGA_SIZE = 6,
-    SE3DI_ROMEGA_TOTAL = 12,
-    SE3DI_RP_SIZE = 7,
-    SE3DI_RP_TOTAL = 14,
-    SE3DI_ROTATION_I = 3,
-    SE3DI_ROTATION_J_ROMEGA = 9,
-    SE3DI_ROTATION_J_RP = 10
-};
+/* A function of both columns; its callers give `way` as a constant, and no choice is left. */
+#define SE3DI_EITHER static inline __attribute__((always_inline))
+
+typedef enum se3di_way { SE3DI_WAY_ROMEGA, SE3DI_WAY_RP } se3di_way;
+
+/* First column of the rotational block of body i in a term's rows, and the most columns of one. */
+enum { SE3DI_ROTATION_I = 3, SE3DI_TERM_TOTAL = 14 };
+
+/* Rotational unknowns of a body. */
+SE3DI_EITHER int se3di_turns(se3di_way way)
+{
+    return way == SE3DI_WAY_RP ? 4 : 3;
+}
+
+/* Columns of a term's rows. */
+SE3DI_EITHER int se3di_columns(se3di_way way)
+{
+    return 2 * (3 + se3di_turns(way));
+}
+
+/* First column of the rotational block of body j. */
+SE3DI_EITHER int se3di_rotation_j(se3di_way way)
+{
+    return 6 + se3di_turns(way);
+}
 
 static inline void se3di_romega_gradient(const se3di_frame *f, const double a[3], const double y[3],
                                          double out[3])
@@ -83,6 +99,45 @@ static inline void se3di_rp_velocity_term(const se3di_frame *f, const double a[3
     se3di_b_mul(f->pdot, a, f->pdot, out);
 }
 
+SE3DI_EITHER void se3di_gradient(se3di_way way, const se3di_frame *f, const double a[3],
+                                 const double y[3], double *out)
+{
+    if (way == SE3DI_WAY_RP) {
+        se3di_rp_gradient(f, a, y, out);
+    } else {
+        se3di_romega_gradient(f, a, y, out);
+    }
+}
+
+SE3DI_EITHER void se3di_derivative(se3di_way way, const se3di_frame *f, const double a[3],
+                                   double *D)
+{
+    if (way == SE3DI_WAY_RP) {
+        se3di_rp_derivative(f, a, D);
+    } else {
+        se3di_romega_derivative(f, a, D);
+    }
+}
+
+SE3DI_EITHER void se3di_rate(se3di_way way, const se3di_frame *f, const double a[3], double out[3])
+{
+    if (way == SE3DI_WAY_RP) {
+        se3di_rp_rate(f, a, out);
+    } else {
+        se3di_romega_rate(f, a, out);
+    }
+}
+
+SE3DI_EITHER void se3di_velocity_term(se3di_way way, const se3di_frame *f, const double a[3],
+                                      double out[3])
+{
+    if (way == SE3DI_WAY_RP) {
+        se3di_rp_velocity_term(f, a, out);
+    } else {
+        se3di_romega_velocity_term(f, a, out);
+    }
+}
+
 /* d_ij = r_j + A_j s_j - r_i - A_i s_i */
 static inline void se3di_term_distance(const se3di_term *t, const se3di_frame *i,
                                        const se3di_frame *j, double d[3])
@@ -96,83 +151,46 @@ static inline void se3di_term_distance(const se3di_term *t, const se3di_frame *i
 }
 
 /* The rate of d_ij. */
-static inline void se3di_romega_distance_rate(const se3di_term *t, const se3di_frame *i,
-                                              const se3di_frame *j, double out[3])
+SE3DI_EITHER void se3di_distance_rate(se3di_way way, const se3di_term *t, const se3di_frame *i,
+                                      const se3di_frame *j, double out[3])
 {
     double arm[3];
-    se3di_romega_rate(j, t->s_j, out);
-    se3di_romega_rate(i, t->s_i, arm);
-    for (int k = 0; k < 3; ++k) {
-        out[k] += j->v[k] - i->v[k] - arm[k];
-    }
-}
-
-static inline void se3di_rp_distance_rate(const se3di_term *t, const se3di_frame *i,
-                                          const se3di_frame *j, double out[3])
-{
-    double arm[3];
-    se3di_rp_rate(j, t->s_j, out);
-    se3di_rp_rate(i, t->s_i, arm);
+    se3di_rate(way, j, t->s_j, out);
+    se3di_rate(way, i, t->s_i, arm);
     for (int k = 0; k < 3; ++k) {
         out[k] += j->v[k] - i->v[k] - arm[k];
     }
 }
 
 /* The velocity part of the second time derivative of d_ij. */
-static inline void se3di_romega_distance_velocity_term(const se3di_term *t, const se3di_frame *i,
-                                                       const se3di_frame *j, double out[3])
+SE3DI_EITHER void se3di_distance_velocity_term(se3di_way way, const se3di_term *t,
+                                               const se3di_frame *i, const se3di_frame *j,
+                                               double out[3])
 {
     double arm[3];
-    se3di_romega_velocity_term(j, t->s_j, out);
-    se3di_romega_velocity_term(i, t->s_i, arm);
-    se3di_sub(out, arm, out);
-}
-
-static inline void se3di_rp_distance_velocity_term(const se3di_term *t, const se3di_frame *i,
-                                                   const se3di_frame *j, double out[3])
-{
-    double arm[3];
-    se3di_rp_velocity_term(j, t->s_j, out);
-    se3di_rp_velocity_term(i, t->s_i, arm);
+    se3di_velocity_term(way, j, t->s_j, out);
+    se3di_velocity_term(way, i, t->s_i, arm);
     se3di_sub(out, arm, out);
 }
 
 /* The derivative of d_ij: [-I, -D(s_i), I, D(s_j)], 3 x 12 or 3 x 14, row-major. */
-static inline void se3di_romega_distance_derivative(const se3di_term *t, const se3di_frame *i,
-                                                    const se3di_frame *j,
-                                                    double D[3 * SE3DI_ROMEGA_TOTAL])
+SE3DI_EITHER void se3di_distance_derivative(se3di_way way, const se3di_term *t,
+                                            const se3di_frame *i, const se3di_frame *j, double *D)
 {
-    double D_i[9];
-    double D_j[9];
-    se3di_romega_derivative(i, t->s_i, D_i);
-    se3di_romega_derivative(j, t->s_j, D_j);
-    for (int r = 0; r < 3; ++r) {
-        double *row = D + SE3DI_ROMEGA_TOTAL * r;
-        for (int c = 0; c < 3; ++c) {
-            row[c] = r == c ? -1.0 : 0.0;
-            row[SE3DI_ROTATION_I + c] = -D_i[3 * r + c];
-            row[SE3DI_ROMEGA_SIZE + c] = r == c ? 1.0 : 0.0;
-            row[SE3DI_ROTATION_J_ROMEGA + c] = D_j[3 * r + c];
-        }
-    }
-}
-
-static inline void se3di_rp_distance_derivative(const se3di_term *t, const se3di_frame *i,
-                                                const se3di_frame *j, double D[3 * SE3DI_RP_TOTAL])
-{
+    const int m = se3di_turns(way);
     double D_i[12];
     double D_j[12];
-    se3di_rp_derivative(i, t->s_i, D_i);
-    se3di_rp_derivative(j, t->s_j, D_j);
+    se3di_derivative(way, i, t->s_i, D_i);
+    se3di_derivative(way, j, t->s_j, D_j);
     for (int r = 0; r < 3; ++r) {
-        double *row = D + SE3DI_RP_TOTAL * r;
+        double *row = D + se3di_columns(way) * r;
         for (int c = 0; c < 3; ++c) {
             row[c] = r == c ? -1.0 : 0.0;
-            row[SE3DI_RP_SIZE + c] = r == c ? 1.0 : 0.0;
+            row[3 + m + c] = r == c ? 1.0 : 0.0;
         }
-        for (int c = 0; c < 4; ++c) {
-            row[SE3DI_ROTATION_I + c] = -D_i[4 * r + c];
-            row[SE3DI_ROTATION_J_RP + c] = D_j[4 * r + c];
+        for (int c = 0; c < m; ++c) {
+            row[SE3DI_ROTATION_I + c] = -D_i[m * r + c];
+            row[se3di_rotation_j(way) + c] = D_j[m * r + c];
         }
     }
 }
@@ -206,7 +224,7 @@ static inline void se3di_romega_add_curvature(double *block, const se3di_frame *
     se3di_mul_transposed(f->A, y, u);
     const double along = s * se3di_dot(a, u);
     for (int r = 0; r < 3; ++r) {
-        double *row = block + SE3DI_ROMEGA_TOTAL * r;
+        double *row = block + se3di_columns(SE3DI_WAY_ROMEGA) * r;
         for (int c = 0; c < 3; ++c) {
             row[c] += s * u[r] * a[c]; /* tilde(a) tilde(u) = u a^T - (a.u) I */
         }
@@ -221,8 +239,18 @@ static inline void se3di_rp_add_curvature(double *block, double s, const double 
     se3di_k_matrix(a, y, K);
     for (int r = 0; r < 4; ++r) {
         for (int c = 0; c < 4; ++c) {
-            block[SE3DI_RP_TOTAL * r + c] += s * K[4 * r + c];
+            block[se3di_columns(SE3DI_WAY_RP) * r + c] += s * K[4 * r + c];
         }
+    }
+}
+
+SE3DI_EITHER void se3di_add_curvature(se3di_way way, double *block, const se3di_frame *f, double s,
+                                      const double a[3], const double y[3])
+{
+    if (way == SE3DI_WAY_RP) {
+        se3di_rp_add_curvature(block, s, a, y);
+    } else {
+        se3di_romega_add_curvature(block, f, s, a, y);
     }
 }
 

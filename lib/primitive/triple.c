@@ -37,34 +37,18 @@ double se3di_primitive_triple_value(const se3di_term *t, const se3di_frame *i, c
     return se3di_dot(x.d, x.n);
 }
 
-void se3di_primitive_triple_jacobian_romega(const se3di_term *t, const se3di_frame *i,
-                                            const se3di_frame *j, double phi_i[6], double phi_j[6])
-{
-    vectors x = vectors_of(t, i, j);
-    double arm[3];
-    se3di_copy(x.n, phi_j);
-    se3di_scale(-1.0, x.n, phi_i);
-    se3di_romega_gradient(i, t->a_i, x.y, phi_i + 3);
-    se3di_romega_gradient(i, t->s_i, x.n, arm);
-    se3di_sub(phi_i + 3, arm, phi_i + 3);
-    se3di_romega_gradient(j, t->a_j, x.z, phi_j + 3);
-    se3di_romega_gradient(j, t->s_j, x.n, arm);
-    se3di_add(phi_j + 3, arm, phi_j + 3);
-}
-
-void se3di_primitive_triple_jacobian_rp(const se3di_term *t, const se3di_frame *i,
-                                        const se3di_frame *j, double phi_i[7], double phi_j[7])
+SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     vectors x = vectors_of(t, i, j);
     double arm_i[4];
     double arm_j[4];
     se3di_copy(x.n, phi_j);
     se3di_scale(-1.0, x.n, phi_i);
-    se3di_rp_gradient(i, t->a_i, x.y, phi_i + 3);
-    se3di_rp_gradient(i, t->s_i, x.n, arm_i);
-    se3di_rp_gradient(j, t->a_j, x.z, phi_j + 3);
-    se3di_rp_gradient(j, t->s_j, x.n, arm_j);
-    for (int k = 0; k < 4; ++k) {
+    se3di_gradient(way, i, t->a_i, x.y, phi_i + 3);
+    se3di_gradient(way, i, t->s_i, x.n, arm_i);
+    se3di_gradient(way, j, t->a_j, x.z, phi_j + 3);
+    se3di_gradient(way, j, t->s_j, x.n, arm_j);
+    for (int k = 0; k < se3di_turns(way); ++k) {
         phi_i[3 + k] -= arm_i[k];
         phi_j[3 + k] += arm_j[k];
     }
@@ -76,7 +60,7 @@ typedef struct motion {
     double u_term[3], v_term[3], d_term[3];
 } motion;
 
-static double gamma_of(const vectors *x, const motion *m)
+static double gamma_by(const vectors *x, const motion *m)
 {
     double both[3];
     double left[3];
@@ -88,32 +72,17 @@ static double gamma_of(const vectors *x, const motion *m)
            2.0 * (se3di_dot(x->d, both) + se3di_dot(m->ddot, left) + se3di_dot(m->ddot, right));
 }
 
-double se3di_primitive_triple_gamma_romega(const se3di_term *t, const se3di_frame *i,
-                                           const se3di_frame *j)
+SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     vectors x = vectors_of(t, i, j);
     motion m;
-    se3di_romega_rate(i, t->a_i, m.udot);
-    se3di_romega_rate(j, t->a_j, m.vdot);
-    se3di_romega_distance_rate(t, i, j, m.ddot);
-    se3di_romega_velocity_term(i, t->a_i, m.u_term);
-    se3di_romega_velocity_term(j, t->a_j, m.v_term);
-    se3di_romega_distance_velocity_term(t, i, j, m.d_term);
-    return gamma_of(&x, &m);
-}
-
-double se3di_primitive_triple_gamma_rp(const se3di_term *t, const se3di_frame *i,
-                                       const se3di_frame *j)
-{
-    vectors x = vectors_of(t, i, j);
-    motion m;
-    se3di_rp_rate(i, t->a_i, m.udot);
-    se3di_rp_rate(j, t->a_j, m.vdot);
-    se3di_rp_distance_rate(t, i, j, m.ddot);
-    se3di_rp_velocity_term(i, t->a_i, m.u_term);
-    se3di_rp_velocity_term(j, t->a_j, m.v_term);
-    se3di_rp_distance_velocity_term(t, i, j, m.d_term);
-    return gamma_of(&x, &m);
+    se3di_rate(way, i, t->a_i, m.udot);
+    se3di_rate(way, j, t->a_j, m.vdot);
+    se3di_distance_rate(way, t, i, j, m.ddot);
+    se3di_velocity_term(way, i, t->a_i, m.u_term);
+    se3di_velocity_term(way, j, t->a_j, m.v_term);
+    se3di_distance_velocity_term(way, t, i, j, m.d_term);
+    return gamma_by(&x, &m);
 }
 
 /* out = tilde(w) X, X 3 x columns */
@@ -138,8 +107,8 @@ static void add_products(const vectors *x, double lambda, const double *U, const
 {
     const int i = SE3DI_ROTATION_I;
     const int j = n / 2 + SE3DI_ROTATION_I;
-    double vD[3 * SE3DI_RP_TOTAL];
-    double uD[3 * SE3DI_RP_TOTAL];
+    double vD[3 * SE3DI_TERM_TOTAL];
+    double uD[3 * SE3DI_TERM_TOTAL];
     double dU[12];
     double dV[12];
     double vU[12];
@@ -158,38 +127,23 @@ static void add_products(const vectors *x, double lambda, const double *U, const
     se3di_block_add_product(se3di_block(H, n, 0, i), n, -lambda, D, n, vU, m);
 }
 
-void se3di_primitive_triple_curvature_romega(const se3di_term *t, const se3di_frame *i,
-                                             const se3di_frame *j, double lambda, double H[144])
+SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
-    enum { N = SE3DI_ROMEGA_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_ROMEGA };
-    vectors x = vectors_of(t, i, j);
-    double U[9];
-    double V[9];
-    double D[3 * N];
-    se3di_romega_derivative(i, t->a_i, U);
-    se3di_romega_derivative(j, t->a_j, V);
-    se3di_romega_distance_derivative(t, i, j, D);
-    add_products(&x, lambda, U, V, 3, D, N, H);
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, lambda, t->a_i, x.y);
-    se3di_romega_add_curvature(se3di_block(H, N, I, I), i, -lambda, t->s_i, x.n);
-    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->a_j, x.z);
-    se3di_romega_add_curvature(se3di_block(H, N, J, J), j, lambda, t->s_j, x.n);
-}
-
-void se3di_primitive_triple_curvature_rp(const se3di_term *t, const se3di_frame *i,
-                                         const se3di_frame *j, double lambda, double H[196])
-{
-    enum { N = SE3DI_RP_TOTAL, I = SE3DI_ROTATION_I, J = SE3DI_ROTATION_J_RP };
+    const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     vectors x = vectors_of(t, i, j);
     double U[12];
     double V[12];
-    double D[3 * N];
-    se3di_rp_derivative(i, t->a_i, U);
-    se3di_rp_derivative(j, t->a_j, V);
-    se3di_rp_distance_derivative(t, i, j, D);
-    add_products(&x, lambda, U, V, 4, D, N, H);
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), lambda, t->a_i, x.y);
-    se3di_rp_add_curvature(se3di_block(H, N, I, I), -lambda, t->s_i, x.n);
-    se3di_rp_add_curvature(se3di_block(H, N, J, J), lambda, t->a_j, x.z);
-    se3di_rp_add_curvature(se3di_block(H, N, J, J), lambda, t->s_j, x.n);
+    double D[3 * SE3DI_TERM_TOTAL];
+    se3di_derivative(way, i, t->a_i, U);
+    se3di_derivative(way, j, t->a_j, V);
+    se3di_distance_derivative(way, t, i, j, D);
+    add_products(&x, lambda, U, V, se3di_turns(way), D, n, H);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, lambda, t->a_i, x.y);
+    se3di_add_curvature(way, se3di_block(H, n, I, I), i, -lambda, t->s_i, x.n);
+    se3di_add_curvature(way, se3di_block(H, n, J, J), j, lambda, t->a_j, x.z);
+    se3di_add_curvature(way, se3di_block(H, n, J, J), j, lambda, t->s_j, x.n);
 }
+
+SE3DI_PRIMITIVE_JACOBIANS(triple, jacobian)
+SE3DI_PRIMITIVE_GAMMAS(triple, gamma_of)
+SE3DI_PRIMITIVE_CURVATURES(triple, curvature)
