@@ -111,14 +111,9 @@ se3d_status se3d_body_find(const se3d_system *system, const char *name, se3d_bod
 
 se3d_status se3d_body_get_name(const se3d_system *system, se3d_body body, const char **name)
 {
-    if (name) {
-        *name = NULL;
-    }
     uint32_t index;
-    SE3DI_TRY(find_reader(system, body, name, &index));
-    const char *text = system->model.bodies[index].name;
-    *name = text ? text : "";
-    return SE3D_OK;
+    const se3d_status status = find_reader(system, body, name, &index);
+    return se3di_give_name(status, status < 0 ? NULL : system->model.bodies[index].name, name);
 }
 
 se3d_status se3d_body_get_fixed(const se3d_system *system, se3d_body body, int32_t *fixed)

@@ -52,11 +52,8 @@ se3d_status se3d_constraint_get_name(const se3d_system *system, se3d_constraint 
                                      const char **name)
 {
     const se3di_constraint *found;
-    se3d_status status = find_for(system, constraint, name, &found);
-    if (name) {
-        *name = !found ? NULL : found->name ? found->name : "";
-    }
-    return status;
+    const se3d_status status = find_for(system, constraint, name, &found);
+    return se3di_give_name(status, found ? found->name : NULL, name);
 }
 
 se3d_status se3d_constraint_get_type(const se3d_system *system, se3d_constraint constraint,

@@ -219,13 +219,9 @@ se3d_status se3d_force_find(const se3d_system *system, const char *name, se3d_fo
 
 se3d_status se3d_force_get_name(const se3d_system *system, se3d_force force, const char **name)
 {
-    if (name) {
-        *name = NULL;
-    }
-    const se3di_force *data;
-    SE3DI_TRY(se3di_force_find_reader(system, force, name, &data));
-    *name = data->name ? data->name : "";
-    return SE3D_OK;
+    const se3di_force *data = NULL;
+    const se3d_status status = se3di_force_find_reader(system, force, name, &data);
+    return se3di_give_name(status, data ? data->name : NULL, name);
 }
 
 se3d_status se3d_force_get_type(const se3d_system *system, se3d_force force, const char **type)

@@ -54,13 +54,9 @@ static se3d_status find_reader(const se3d_system *system, se3d_marker marker, co
 
 se3d_status se3d_marker_get_name(const se3d_system *system, se3d_marker marker, const char **name)
 {
-    if (name) {
-        *name = NULL;
-    }
-    const se3di_marker *data;
-    SE3DI_TRY(find_reader(system, marker, name, &data));
-    *name = data->name ? data->name : "";
-    return SE3D_OK;
+    const se3di_marker *data = NULL;
+    const se3d_status status = find_reader(system, marker, name, &data);
+    return se3di_give_name(status, data ? data->name : NULL, name);
 }
 
 se3d_status se3d_marker_get_body(const se3d_system *system, se3d_marker marker, se3d_body *body)

@@ -163,13 +163,9 @@ se3d_status se3d_road_destroy(se3d_system *system, se3d_road road)
 se3d_status se3d_road_get_name(const se3d_system *system, se3d_road road, const char **name)
 {
     uint32_t index;
-    if (name) {
-        *name = NULL;
-    }
-    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, road), SE3DI_HANDLE(road), name, &index));
-    const char *own = system->model.roads[index].name;
-    *name = own ? own : "";
-    return SE3D_OK;
+    const se3d_status status =
+        se3di_read_index(SE3DI_SLOTS(system, road), SE3DI_HANDLE(road), name, &index);
+    return se3di_give_name(status, status < 0 ? NULL : system->model.roads[index].name, name);
 }
 
 se3d_status se3d_road_get_height(const se3d_system *system, se3d_road road, double x, double y,

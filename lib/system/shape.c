@@ -146,13 +146,9 @@ se3d_status se3d_shape_find(const se3d_system *system, const char *name, se3d_sh
 
 se3d_status se3d_shape_get_name(const se3d_system *system, se3d_shape shape, const char **name)
 {
-    if (name) {
-        *name = NULL;
-    }
-    const se3di_shape *data;
-    SE3DI_TRY(find_reader(system, shape, name, &data));
-    *name = data->name ? data->name : "";
-    return SE3D_OK;
+    const se3di_shape *data = NULL;
+    const se3d_status status = find_reader(system, shape, name, &data);
+    return se3di_give_name(status, data ? data->name : NULL, name);
 }
 
 se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape, se3d_body *body)

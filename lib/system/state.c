@@ -213,14 +213,9 @@ se3d_status se3d_system_get_state(const se3d_system *system, size_t index, se3d_
 
 se3d_status se3d_state_get_name(const se3d_system *system, se3d_state state, const char **name)
 {
-    if (name) {
-        *name = NULL;
-    }
     uint32_t index;
-    SE3DI_TRY(find_reader(system, state, name, &index));
-    const char *own = system->model.forces[index].name;
-    *name = own ? own : "";
-    return SE3D_OK;
+    const se3d_status status = find_reader(system, state, name, &index);
+    return se3di_give_name(status, status < 0 ? NULL : system->model.forces[index].name, name);
 }
 
 se3d_status se3d_state_get_def(const se3d_system *system, se3d_state state, se3d_state_def *def)

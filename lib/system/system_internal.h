@@ -173,6 +173,16 @@ se3d_status se3di_read_handle(const se3di_slots *slots, size_t index, void *hand
 /* The dense index of an element, to write something of it to `out`. */
 se3d_status se3di_read_index(const se3di_slots *slots, se3di_handle handle, const void *out,
                              uint32_t *index);
+
+/* The end of a getter of a name: *name = `own`, "" for none, NULL if nothing was found. */
+static inline se3d_status se3di_give_name(se3d_status found, const char *own, const char **name)
+{
+    if (name) {
+        *name = found < 0 ? NULL : own ? own : "";
+    }
+    return found;
+}
+
 /* A public handle as an internal one. */
 #define SE3DI_HANDLE(handle) ((se3di_handle){(handle).index1, (handle).generation})
 

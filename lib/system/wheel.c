@@ -161,13 +161,9 @@ se3d_status se3d_wheel_destroy(se3d_system *system, se3d_wheel wheel)
 se3d_status se3d_wheel_get_name(const se3d_system *system, se3d_wheel wheel, const char **name)
 {
     uint32_t index;
-    if (name) {
-        *name = NULL;
-    }
-    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, wheel), SE3DI_HANDLE(wheel), name, &index));
-    const char *own = system->model.wheels[index].name;
-    *name = own ? own : "";
-    return SE3D_OK;
+    const se3d_status status =
+        se3di_read_index(SE3DI_SLOTS(system, wheel), SE3DI_HANDLE(wheel), name, &index);
+    return se3di_give_name(status, status < 0 ? NULL : system->model.wheels[index].name, name);
 }
 
 se3d_status se3d_wheel_get_measures(const se3d_system *system, se3d_wheel wheel, size_t first,
