@@ -7,6 +7,7 @@
 #include "check.h"
 #include "se3d/import.h"
 #include "se3d/io.h"
+#include "support/damage.h"
 
 enum { TEXT_MAX = 8192, ITERATIONS = 1200 };
 
@@ -55,12 +56,6 @@ static const seed_text seeds[] = {
 };
 enum { SEEDS = sizeof seeds / sizeof *seeds };
 
-static size_t pick(uint64_t *seed, size_t count)
-{
-    const double r = 0.5 * (check_random(seed) + 1.0);
-    return (size_t)(r * (double)count) % count;
-}
-
 static size_t read_seed(const seed_text *s, char *text)
 {
     const char *source = getenv("SE3D_SOURCE_DIR");
@@ -81,44 +76,12 @@ static size_t read_seed(const seed_text *s, char *text)
     return length;
 }
 
-/* Damage a text in place at one point; return its new length (at most TEXT_MAX). */
-static size_t damage(char *text, size_t length, uint64_t *seed)
-{
-    static const char *const pieces[] = {
-        "1e308",   "-1e-320", "1e999", "nan",  "inf",  "-",     "0",     "\"",   "/>",
-        "<a>",     "&#0;",    "&lt;",  "<!--", "\n",   "\t",    ",",     "=",    "/",
-        "(",       ")",       "[",     "]",    "{",    "}",     ": ",    "\xff", "\xc3",
-        "1/0",     "9999",    "IF(",   "**",   "name", "world", "a",     "99D",  "PART/",
-        "MARKER/", "CM=21",   "\\",    "!",    "-1",   "0 0 0", "1 1 1", "x y z"};
-    const size_t at = pick(seed, length), other = pick(seed, length);
-    const size_t span = 1 + pick(seed, 40), rest = length - (at > other ? at : other);
-    const char *piece = pieces[pick(seed, sizeof pieces / sizeof *pieces)];
-    const size_t size = strlen(piece);
-    switch (pick(seed, 5)) {
-    case 0:
-        text[at] = (char)pick(seed, 256);
-        return length;
-    case 1: /* a piece removed */
-        if (length - at <= span) {
-            return at > 0 ? at : 1;
-        }
-        memmove(text + at, text + at + span, length - at - span);
-        return length - span;
-    case 2: /* a piece put in */
-        if (length + size > TEXT_MAX) {
-            return length;
-        }
-        memmove(text + at + size, text + at, length - at);
-        memcpy(text + at, piece, size);
-        return length + size;
-    case 3: /* a piece over this place */
-        memcpy(text + at, piece, size < length - at ? size : length - at);
-        return length;
-    default: /* one from elsewhere */
-        memmove(text + at, text + other, span < rest ? span : rest);
-        return length;
-    }
-}
+static const char *const pieces[] = {
+    "1e308",   "-1e-320", "1e999", "nan",  "inf",  "-",     "0",     "\"",   "/>",
+    "<a>",     "&#0;",    "&lt;",  "<!--", "\n",   "\t",    ",",     "=",    "/",
+    "(",       ")",       "[",     "]",    "{",    "}",     ": ",    "\xff", "\xc3",
+    "1/0",     "9999",    "IF(",   "**",   "name", "world", "a",     "99D",  "PART/",
+    "MARKER/", "CM=21",   "\\",    "!",    "-1",   "0 0 0", "1 1 1", "x y z"};
 
 /* @return whether a model was made, which must be one that can be read. */
 static int try_text(const char *name, const char *text, size_t length)
@@ -162,11 +125,12 @@ static void damaged_texts_never_crash_an_importer(void)
     uint64_t seed = 20250117;
     long accepted = 0;
     for (long k = 0; k < iterations && check_failures == 0; ++k) {
-        const seed_text *s = &seeds[pick(&seed, SEEDS)];
+        const seed_text *s = &seeds[damage_pick(&seed, SEEDS)];
         size_t length = read_seed(s, text);
-        const size_t times = 1 + pick(&seed, 3);
+        const size_t times = 1 + damage_pick(&seed, 3);
         for (size_t i = 0; i < times; ++i) {
-            length = damage(text, length, &seed);
+            length =
+                damage_text(text, length, TEXT_MAX, pieces, sizeof pieces / sizeof *pieces, &seed);
         }
         accepted += try_text(s->name, text, length);
     }

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "se3d/io.h"
+#include "support/damage.h"
 
 static const char *const models[] = {
     "pendulum",           "double_pendulum", "spatial_slider_crank", "planar_slider_crank",
@@ -60,51 +61,11 @@ static se3d_status read_text(const char *text, size_t length, se3d_model_error *
     return status;
 }
 
-static size_t pick(uint64_t *seed, size_t count)
-{
-    const double r = 0.5 * (check_random(seed) + 1.0);
-    return (size_t)(r * (double)count) % count;
-}
-
-/* Damage a text in place at one point; return its new length (at most TEXT_MAX). */
-static size_t damage(char *text, size_t length, uint64_t *seed)
-{
-    static const char *const pieces[] = {
-        "[",  "]",     "{",      "}",      ":",   "- ",           "\"",   "'",    "#",    "\n",
-        "\t", "&a ",   "*a",     "!!int ", "|\n", ">\n",          "? ",   "---",  "...",  "%YAML",
-        "1e", "1e999", "-1",     ".nan",   "~",   "null",         "\xff", "\xc3", "\r\n", "sin(",
-        ")",  "^",     "ground", "<<: *a", "0x1", "\xEF\xBB\xBF", "\x01", ", ,",  "bar",  "t"};
-    const size_t at = pick(seed, length);
-    const size_t other = pick(seed, length);
-    const size_t span = 1 + pick(seed, 40);
-    const char *piece = pieces[pick(seed, sizeof pieces / sizeof *pieces)];
-    const size_t size = strlen(piece);
-    switch (pick(seed, 5)) {
-    case 0: /* one byte changed */
-        text[at] = (char)pick(seed, 256);
-        return length;
-    case 1: /* a piece removed */
-        if (length - at <= span) {
-            return at > 0 ? at : 1;
-        }
-        memmove(text + at, text + at + span, length - at - span);
-        return length - span;
-    case 2: /* a piece put in */
-        if (length + size > TEXT_MAX) {
-            return length;
-        }
-        memmove(text + at + size, text + at, length - at);
-        memcpy(text + at, piece, size);
-        return length + size;
-    case 3: /* a piece copied from elsewhere over this place */
-        memmove(text + at, text + other,
-                span < length - (at > other ? at : other) ? span
-                                                          : length - (at > other ? at : other));
-        return length;
-    default: /* cut off */
-        return at > 0 ? at : 1;
-    }
-}
+static const char *const pieces[] = {
+    "[",  "]",     "{",      "}",      ":",   "- ",           "\"",   "'",    "#",    "\n",
+    "\t", "&a ",   "*a",     "!!int ", "|\n", ">\n",          "? ",   "---",  "...",  "%YAML",
+    "1e", "1e999", "-1",     ".nan",   "~",   "null",         "\xff", "\xc3", "\r\n", "sin(",
+    ")",  "^",     "ground", "<<: *a", "0x1", "\xEF\xBB\xBF", "\x01", ", ,",  "bar",  "t"};
 
 static void damaged_models_never_crash_the_reader(void)
 {
@@ -114,12 +75,13 @@ static void damaged_models_never_crash_the_reader(void)
     read_examples();
     for (int k = 0; k < ITERATIONS; ++k) {
         se3d_model_error error;
-        const size_t which = pick(&seed, MODELS);
+        const size_t which = damage_pick(&seed, MODELS);
         size_t length = lengths[which];
         memcpy(text, texts[which], length);
-        const size_t times = 1 + pick(&seed, 4);
+        const size_t times = 1 + damage_pick(&seed, 4);
         for (size_t i = 0; i < times; ++i) {
-            length = damage(text, length, &seed);
+            length =
+                damage_text(text, length, TEXT_MAX, pieces, sizeof pieces / sizeof *pieces, &seed);
         }
         accepted += read_text(text, length, &error) == SE3D_OK;
     }
@@ -150,11 +112,11 @@ static void fill(char *text, size_t count, const char *piece)
 
 static void depth_bombs_are_refused(void)
 {
-    static const char *const pieces[] = {"[", "{a: ", "- ", "a:\n", "? ", "[{a: ", "(", "!!"};
+    static const char *const openings[] = {"[", "{a: ", "- ", "a:\n", "? ", "[{a: ", "(", "!!"};
     static char text[400000];
-    for (size_t k = 0; k < sizeof pieces / sizeof *pieces; ++k) {
+    for (size_t k = 0; k < sizeof openings / sizeof *openings; ++k) {
         se3d_model_error error;
-        fill(text, 50000, pieces[k]);
+        fill(text, 50000, openings[k]);
         CHECK(read_text(text, strlen(text), &error) == SE3D_ERR_MODEL);
     }
     se3d_model_error error;

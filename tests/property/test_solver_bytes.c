@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "check.h"
+#include "support/damage.h"
 #include "support/models.h"
 
 enum { ROOM = 40000, EVENTS = 3 };
@@ -168,13 +169,6 @@ static void damaged_and_foreign_bytes_are_refused(void)
 
 static void made_up_words_do_no_harm(void)
 {
-    static const uint64_t words[] = {0,
-                                     1,
-                                     UINT64_C(0x7FF8000000000000),
-                                     UINT64_C(0x4014000000000000),
-                                     UINT64_C(0xFFFFFFFF),
-                                     UINT64_C(0x7FFFFFFF),
-                                     UINT64_MAX};
     static world w;
     static unsigned char bytes[ROOM];
     size_t taken = 0, refused = 0;
@@ -182,11 +176,9 @@ static void made_up_words_do_no_harm(void)
     CHECK(se3d_solver_run(w.solver, 0.3) >= 0);
     write_world(&w);
     for (size_t at = 16; at + 16 <= w.size; at += 8) {
-        for (size_t n = 0; n < sizeof words / sizeof *words; ++n) {
+        for (size_t n = 0; n < DAMAGE_WORDS; ++n) {
             memcpy(bytes, w.bytes, w.size);
-            for (int k = 0; k < 8; ++k) {
-                bytes[at + (size_t)k] = (unsigned char)(words[n] >> (8 * k));
-            }
+            damage_write(bytes, at, damage_words[n]);
             sign(bytes, w.size);
             restore_state(&w, &w);
             const se3d_status status = se3d_solver_read(w.solver, bytes, w.size);

@@ -5,6 +5,7 @@
 #include "contact/narrow/internal.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "support/poses.h"
 
 #define SOLIDS 6
 
@@ -29,13 +30,7 @@ static const int kinds[SOLIDS] = {SE3DI_SHAPE_SPHERE,   SE3DI_SHAPE_BOX,  SE3DI_
 
 static void random_pose(uint64_t *seed, double spread, se3di_shape_pose *pose)
 {
-    double q[4], p[4];
-    memset(pose, 0, sizeof *pose);
-    for (int k = 0; k < 4; ++k) {
-        q[k] = check_random(seed);
-    }
-    se3di_quat_normalize(q, p);
-    se3di_quat_to_matrix(p, pose->R);
+    poses_turn(seed, pose);
     for (int k = 0; k < 3; ++k) {
         pose->x[k] = spread * check_random(seed);
     }

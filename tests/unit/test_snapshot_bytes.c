@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "check.h"
+#include "support/damage.h"
 #include "support/models.h"
 
 enum { ROOM = 20000 };
@@ -122,13 +123,6 @@ static void another_model_is_refused(void)
  * gone on with: the run ends well or with a message. */
 static void made_up_words_do_no_harm(void)
 {
-    static const uint64_t words[] = {0,
-                                     1,
-                                     UINT64_C(0x7FF8000000000000),
-                                     UINT64_C(0x4014000000000000),
-                                     UINT64_C(0x43E0000000000000),
-                                     UINT64_C(0xFFFFFFFF),
-                                     UINT64_MAX};
     static const int32_t methods[] = {
         SE3D_METHOD_DOP853, SE3D_METHOD_BDF,    SE3D_METHOD_RADAU, SE3D_METHOD_GENERALIZED_ALPHA,
         SE3D_METHOD_RATTLE, SE3D_METHOD_CONVEX, SE3D_METHOD_GAUSS};
@@ -138,12 +132,10 @@ static void made_up_words_do_no_harm(void)
         size_t taken = 0, refused = 0;
         open_world(&w, methods[m]);
         for (size_t at = 16; at + 16 <= w.size; at += 8) {
-            const uint64_t word = words[(at / 8) % (sizeof words / sizeof *words)];
+            const uint64_t word = damage_words[(at / 8) % DAMAGE_WORDS];
             se3d_snapshot *snapshot = NULL;
             memcpy(bytes, w.bytes, w.size);
-            for (int k = 0; k < 8; ++k) {
-                bytes[at + (size_t)k] = (unsigned char)(word >> (8 * k));
-            }
+            damage_write(bytes, at, word);
             sign(bytes, w.size);
             const se3d_status status = read_bytes(&w, bytes, w.size, &snapshot);
             CHECK((status >= 0) == (snapshot != NULL));
@@ -162,13 +154,6 @@ static void made_up_words_do_no_harm(void)
     }
 }
 
-static void put(unsigned char *bytes, size_t at, uint64_t word)
-{
-    for (int k = 0; k < 8; ++k) {
-        bytes[at + (size_t)k] = (unsigned char)(word >> (8 * k));
-    }
-}
-
 /* Every number of every method, whatever it is of: but for the number of redundant rows and the
  * ages of what acts, whole numbers of which any will do. */
 static void numbers_that_are_not_finite_are_refused(void)
@@ -182,7 +167,7 @@ static void numbers_that_are_not_finite_are_refused(void)
         for (size_t at = 16; at + 16 <= w.size; at += 8) {
             se3d_snapshot *snapshot = NULL;
             memcpy(bytes, w.bytes, w.size);
-            put(bytes, at, words[at / 8 % 2]);
+            damage_write(bytes, at, words[at / 8 % 2]);
             sign(bytes, w.size);
             taken += read_bytes(&w, bytes, w.size, &snapshot) >= 0;
             se3d_snapshot_destroy(snapshot);
