@@ -12,7 +12,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 smoke=
-stages="tests long memory asan tsan fuzz unset analyzer tidy coverage mutation kills bits"
+stages="tests long memory gcc asan tsan fuzz unset analyzer tidy coverage mutation kills bits"
 if [ "${1:-}" = --smoke ]; then
     smoke=1
     shift
@@ -77,15 +77,16 @@ tests() {
 long() { SE3D_LONG=1 SE3D_POSES=100000 ctest_sum --preset dev -L 'long|numeric'; }
 memory() { sh tools/check_memory.sh; }
 
-# sanitizer PRESET: build, test, take away
-sanitizer() {
+# whole PRESET: build, test, take away
+whole() {
     configured "$1" && cmake --build --preset "$1" -j "$jobs" && ctest_sum --preset "$1"
     status=$?
     rm -rf "build/$1"
     return $status
 }
-asan() { sanitizer asan; }
-tsan() { sanitizer tsan; }
+with_gcc() { whole ci-gcc; }
+asan() { whole asan; }
+tsan() { whole tsan; }
 fuzz() { sh tools/check_fuzz.sh "${SE3D_FUZZ_SECONDS:-86400}"; }
 
 some_files() { find lib/base lib/joint -name '*.c' | sort; }
@@ -151,6 +152,7 @@ for each in $stages; do
     tests) stage tests 'ctest --preset dev' tests ;;
     long) stage long 'SE3D_LONG=1 ctest --preset dev -L long' long ;;
     memory) stage memory 'sh tools/check_memory.sh' memory ;;
+    gcc) stage gcc 'ctest --preset ci-gcc' with_gcc ;;
     asan) stage asan 'ctest --preset asan' asan ;;
     tsan) stage tsan 'ctest --preset tsan' tsan ;;
     fuzz) stage fuzz 'sh tools/check_fuzz.sh 86400' fuzz ;;
