@@ -20,8 +20,12 @@
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 
-/* A function of both columns; its callers give `way` as a constant, and no choice is left. */
+/* A function of both columns: callers give `way` as a constant, no choice is left when it runs. */
+#ifdef __OPTIMIZE__
 #define SE3DI_EITHER static inline __attribute__((always_inline))
+#else
+#define SE3DI_EITHER static inline
+#endif
 
 typedef enum se3di_way { SE3DI_WAY_ROMEGA, SE3DI_WAY_RP } se3di_way;
 
