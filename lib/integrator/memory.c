@@ -39,8 +39,11 @@ static double eval_excursion(const excursion *e, double s)
 static void review_excursion(const excursion *e, double allowed, se3di_memory_end *end)
 {
     const double bend = e->begin + e->end - 2.0 * e->mean;
+    if (!(bend > 0.0)) {
+        return;
+    }
     const double place = (2.0 * e->begin + e->end - 3.0 * e->mean) / (3.0 * bend);
-    if (!(bend > 0.0) || !(place > 0.0) || !(place < 1.0)) {
+    if (!(place > 0.0) || !(place < 1.0)) {
         return;
     }
     const double against = -eval_excursion(e, place);
