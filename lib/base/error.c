@@ -12,6 +12,7 @@
 static void restore_decimal_point(char *text)
 {
     const char *separator = localeconv()->decimal_point;
+    /* unreached: a separator of several bytes, which few locales have */
     if (strlen(separator) != 1 || separator[0] == '.') {
         return;
     }

@@ -4,12 +4,12 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* From within, all calls on the system but readers are refused. What they record there is not left
- * behind. */
+/* To a log with a callback. From within, all calls on the system but readers are refused. What they
+ * record there is not left behind. */
 static void tell(se3di_error *error, se3d_log_level level, se3d_log_kind kind, const char *text)
 {
     se3di_logger *log = error->log;
-    if (!log || !log->callback || atomic_exchange(&log->writing, 1) != 0) {
+    if (atomic_exchange(&log->writing, 1) != 0) {
         return;
     }
     const se3di_error before = *error;

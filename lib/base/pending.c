@@ -54,7 +54,9 @@ void se3di_pending_complete(se3di_pending *pending)
     int tries = 0;
     /* a microsecond or two: who comes second waits without sleeping, but not for ever */
     while (pending && atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
+        /* unreached: another thread is at it */
         if (!atomic_flag_test_and_set_explicit(&pending->working, memory_order_acquire)) {
+            /* unreached: another thread was faster */
             if (atomic_load_explicit(&pending->is_open, memory_order_acquire)) {
                 const se3di_floats host = se3di_floats_set();
                 pending->complete(pending->ctx);
@@ -62,7 +64,7 @@ void se3di_pending_complete(se3di_pending *pending)
                 atomic_store_explicit(&pending->is_open, 0, memory_order_release);
             }
             atomic_flag_clear_explicit(&pending->working, memory_order_release);
-        } else if (++tries > PATIENCE) {
+        } else if (++tries > PATIENCE) { /* unreached: another thread is at it */
             give_way();
         }
     }

@@ -3,6 +3,7 @@
 #ifndef SE3DI_BASE_SHORTEST_H
 #define SE3DI_BASE_SHORTEST_H
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static inline int se3di_shortest_digits(double value, char digits[20])
 {
     char text[48];
     int used = 0;
-    for (int precision = 0; precision < 17; ++precision) {
+    for (int precision = 0; precision < 17; ++precision) { /* unreached: 17 digits always do */
         snprintf(text, sizeof text, "%.*e", precision, value);
         if (strtod(text, NULL) == value) {
             break;
@@ -24,12 +25,9 @@ static inline int se3di_shortest_digits(double value, char digits[20])
     }
     const char *exponent = strchr(text, 'e');
     for (const char *c = text; c < exponent; ++c) {
-        if (*c >= '0' && *c <= '9' && used < 19) {
+        if (isdigit((unsigned char)*c)) {
             digits[used++] = *c;
         }
-    }
-    while (used > 1 && digits[used - 1] == '0') {
-        --used;
     }
     digits[used] = '\0';
     return (int)strtol(exponent + 1, NULL, 10);

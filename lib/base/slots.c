@@ -44,7 +44,7 @@ static se3d_status reserve(se3di_slots *slots, const se3d_allocator *allocator, 
 
 se3d_status se3di_slots_reserve(se3di_slots *slots, const se3d_allocator *allocator)
 {
-    if (slots->slot_count >= UINT32_MAX - 1) {
+    if (slots->slot_count >= UINT32_MAX - 1) { /* unreached: there is no memory for them */
         return SE3D_ERR_NO_MEMORY;
     }
     return reserve(slots, allocator, slots->slot_count + 1);

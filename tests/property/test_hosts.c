@@ -193,7 +193,11 @@ static void *run_all_in_a_thread(void *data)
 #if defined(__SANITIZE_ADDRESS__)
 #define STACK ((size_t)512 << 10) /* what it adds to frames */
 #else
+#ifdef __OPTIMIZE__
 #define STACK ((size_t)64 << 10)
+#else
+#define STACK ((size_t)256 << 10) /* each variable has a place of its own */
+#endif
 #endif
 
 static void stacks_of_64_kilobytes_suffice(void)

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Records of errors and the log beneath the public interface, coders that run out of room, and the
+ * integers that are nearest. */
+#include "base/coder.h"
+#include "base/error.h"
+#include "base/floats.h"
+#include "base/log.h"
+#include "check.h"
+
+#include <locale.h>
+#include <string.h>
+
+static void an_error_without_a_record_keeps_its_status(void)
+{
+    CHECK(se3di_error_set(NULL, SE3D_ERR_NULL, "a %d", 1) == SE3D_ERR_NULL);
+    CHECK(se3di_error_set_of(NULL, "mass", SE3D_ERR_NULL, " = %d", 1) == SE3D_ERR_NULL);
+    se3di_error error = {0};
+    CHECK(se3di_error_set_of(&error, "mass[1]", SE3D_ERR_NULL, " = %d", 1) == SE3D_ERR_NULL);
+    CHECK(strcmp(error.message, "mass[1] = 1") == 0 && strcmp(error.field, "mass") == 0);
+}
+
+static void count_lines(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
+{
+    (void)level;
+    (void)kind;
+    (void)message;
+    ++*(int *)ctx;
+}
+
+static void a_log_without_a_callback_is_not_written(void)
+{
+    int lines = 0;
+    se3di_busy busy = {0};
+    se3di_logger log = {.ctx = &lines, .busy = &busy};
+    se3di_error error = {0};
+    se3di_log_write(NULL, SE3D_LOG_INFO, SE3D_LOG_FAILURE, "a");
+    se3di_log_write(&error, SE3D_LOG_INFO, SE3D_LOG_FAILURE, "a");
+    CHECK(se3di_log_error(&error, SE3D_ERR_NULL) == SE3D_ERR_NULL);
+    error.log = &log;
+    se3di_log_write(&error, SE3D_LOG_INFO, SE3D_LOG_FAILURE, "a");
+    CHECK(se3di_log_error(&error, SE3D_ERR_NULL) == SE3D_ERR_NULL);
+    CHECK(lines == 0);
+    log.callback = count_lines;
+    se3di_log_write(&error, SE3D_LOG_INFO, SE3D_LOG_FAILURE, "a");
+    CHECK(se3di_log_error(&error, SE3D_ERR_NULL) == SE3D_ERR_NULL);
+    CHECK(lines == 2);
+}
+
+static void messages_have_points_in_a_locale_with_decimal_commas(void)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
+    const char *set = NULL;
+    se3di_error error = {0};
+    for (size_t k = 0; !set && k < sizeof names / sizeof *names; ++k) {
+        set = setlocale(LC_NUMERIC, names[k]);
+    }
+    if (!set) {
+        printf("skipped: no locale with a decimal comma is installed\n");
+        return;
+    }
+    (void)se3di_error_set(&error, SE3D_ERR_NULL, "%g, [1,2], a, %.1f,5,%d", 0.5, 1e3, 7);
+    CHECK(setlocale(LC_NUMERIC, "C") != NULL);
+    CHECK(strcmp(error.message, "0.5, [1.2], a, 1000.0.5.7") == 0);
+}
+
+static void a_coder_without_room_says_so(void)
+{
+    unsigned char bytes[12] = {1};
+    uint64_t word = 7;
+    se3di_coder c = {.out = bytes, .size = sizeof bytes};
+    se3di_code_word(&c, &word);
+    CHECK(!c.failed);
+    se3di_code_word(&c, &word);
+    CHECK(c.failed && word == 7);
+    c = (se3di_coder){.in = bytes, .size = sizeof bytes};
+    se3di_code_word(&c, &word);
+    CHECK(!c.failed && word == 7);
+    se3di_code_word(&c, &word);
+    CHECK(c.failed && word == 0);
+}
+
+static void halves_go_to_the_even_integer(void)
+{
+    static const double rows[][2] = {{0.5, 0.0},  {1.5, 2.0},   {2.5, 2.0},  {-0.5, 0.0},
+                                     {-1.5, -2.}, {0.75, 1.0},  {0.25, 0.0}, {-2.5, -2.0},
+                                     {3.0, 3.0},  {-0.75, -1.0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        CHECK(se3di_nearest(rows[k][0]) == rows[k][1]);
+    }
+    CHECK(se3di_nearest(0x1.fffffffffffffp-2) == 0.0); /* the sum with a half is rounded up */
+}
+
+int main(void)
+{
+    RUN(an_error_without_a_record_keeps_its_status);
+    RUN(a_log_without_a_callback_is_not_written);
+    RUN(messages_have_points_in_a_locale_with_decimal_commas);
+    RUN(a_coder_without_room_says_so);
+    RUN(halves_go_to_the_even_integer);
+    return check_finish();
+}
