@@ -124,7 +124,7 @@ static inline void eval_along(const se3di_instruction *code, size_t count, const
     jet *top = stack;
     double poison = 0.0, d[3];
     for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
-        switch ((se3di_op)in->op) {
+        switch ((se3di_op)in->op) { /* unreached: no other operation is compiled */
         case SE3DI_OP_CONSTANT:
             *++top = (jet){in->value, 0.0, 0.0};
             break;
@@ -293,7 +293,7 @@ void se3di_program_eval(const se3di_instruction *code, size_t count, const doubl
     slope *top = stack;
     double poison = 0.0, d[3];
     for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
-        switch ((se3di_op)in->op) {
+        switch ((se3di_op)in->op) { /* unreached: no other operation is compiled */
         case SE3DI_OP_CONSTANT:
             slope_push(++top, in->value, 0u, n);
             break;

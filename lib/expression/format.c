@@ -7,6 +7,7 @@
 #include "base/shortest.h"
 #include "expression/functions.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -105,8 +106,7 @@ static void put_number(writer *w, double value)
 
 static int is_operator(size_t function)
 {
-    const char first = se3di_functions[function].name[0];
-    return !(first >= 'a' && first <= 'z');
+    return !isalpha((unsigned char)se3di_functions[function].name[0]);
 }
 
 static tightness tightness_of(const se3di_instruction *in)

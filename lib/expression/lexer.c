@@ -80,10 +80,11 @@ static double convert(const char *start, const char *end)
     size_t size = 0;
     for (const char *c = start; c < end; ++c) {
         if (*c == '.') {
+            /* unreached: a longer number, which was refused */
             for (const char *p = point; *p && size < NUMBER_SIZE; ++p) {
                 buffer[size++] = *p;
             }
-        } else if (size < NUMBER_SIZE) {
+        } else if (size < NUMBER_SIZE) { /* unreached: the same */
             buffer[size++] = *c;
         }
     }

@@ -237,7 +237,7 @@ static se3d_status parse_primary(parser *p, se3di_operand *out)
         if (*after != '(') {
             return parse_name(p, out);
         }
-        SE3DI_TRY(next(p));
+        SE3DI_TRY(next(p)); /* unreached: a failure, as there is a '(' */
         return parse_call(p, &token, out);
     }
     if (!at_mark(p, '(')) {
