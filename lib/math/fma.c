@@ -30,12 +30,12 @@ static int top_of(const wide *x)
     return bit;
 }
 
-static void shift_left(wide *x, int count)
+static void shift_left(wide *x, int count) /* 0 < count < 128 */
 {
     if (count >= 64) {
         x->high = x->low << (count - 64);
         x->low = 0;
-    } else if (count > 0) {
+    } else {
         x->high = x->high << count | x->low >> (64 - count);
         x->low <<= count;
     }

@@ -57,6 +57,7 @@ void se3di_symmetric_abs(int n, double *A)
     for (int k = 0; k < n; ++k) {
         V[n * k + k] = 1.0;
     }
+    /* unreached: so many sweeps, as it converges quadratically */
     for (int sweep = 0; sweep < SWEEPS && off_diagonal(n, M) > 1e-15 * size; ++sweep) {
         for (int r = 0; r < n; ++r) {
             for (int s = r + 1; s < n; ++s) {

@@ -112,6 +112,12 @@ static const struct {
     {"log1p", se3di_log1p, 0x1.e000000000000p-20, 0x1.dfffe3e002328p-20},
     {"log1p", se3di_log1p, -0x1.6000000000000p-40, -0x1.6000000000f20p-40},
     {"log1p", se3di_log1p, 0x1.8000000000000p+70, 0x1.8767f8ebb2e8ep+5},
+    /* the first phase cannot round these */
+    {"log", se3di_log, 0x1.205601a526c2ap+1, 0x1.9fcb0e76d34dap-1},
+    {"log10", se3di_log10, 0x1.202f448265161p+3, 0x1.e8b6f4f37b065p-1},
+    {"log1p", se3di_log1p, 0x1.d70386ea03d5cp-1, 0x1.4dfa1204f483cp-1},
+    {"asin", se3di_asin, 0x1.7ff388b4728d8p-2, 0x1.8991dc625b3b5p-2},
+    {"cosh", se3di_cosh, 0x1.361993f59a066p+2, 0x1.fc9a51aacd14ap+5},
 };
 
 static const struct {
@@ -291,6 +297,19 @@ static void both_phases_round_alike(void)
     }
 }
 
+/* Zeros and equal arguments, which have exact results or never come to it. */
+static void the_second_phase_takes_what_needs_none(void)
+{
+    double out[2];
+    se3di_big_sincos(0.0, out);
+    CHECK(out[0] == 0.0 && out[1] == 1.0);
+    CHECK(se3di_big_atan2(0.0, 2.0) == 0.0);
+    CHECK(se3di_big_atan2(3.0, 3.0) == 0x1.921fb54442d18p-1);
+    CHECK(se3di_big_asin(1.0) == 0x1.921fb54442d18p+0);
+    CHECK(se3di_big_acos(1.0) == 0.0);
+    CHECK(se3di_big_hypot(0.0, 0.0) == 0.0);
+}
+
 /* Ties, which a first phase cannot decide. */
 static void exact_results_and_ties_are_rounded_to_even(void)
 {
@@ -336,7 +355,23 @@ static void both_first_phases_give_the_same_bits(void)
         CHECK(a->hypot(1.0, x, one) == b->hypot(1.0, x, two) && same(one[0], two[0]));
     }
 }
+
+/* Arguments at which the scale of the result, or the reduction of the argument, ends. */
+static void a_first_phase_knows_its_ends(void)
+{
+    const se3di_fast *const both[2] = {&se3di_fast_plain, &se3di_fast_fused};
+    for (int k = 0; k < (__builtin_cpu_supports("fma") ? 2 : 1); ++k) {
+        double out[2];
+        CHECK(!both[k]->exp(750.0, out) && !both[k]->exp(-750.0, out));
+        CHECK(!both[k]->sincos(1e6, NULL, out) && !both[k]->tan(1e6, NULL, out));
+        CHECK(!both[k]->pow(2.5, -750.0, out) && !both[k]->atan2(1e-300, 1.0, out));
+    }
+}
 #else
+static void a_first_phase_knows_its_ends(void)
+{
+}
+
 static void both_first_phases_give_the_same_bits(void)
 {
     printf("skipped: there is one first phase on this kind of machine\n");
@@ -433,6 +468,8 @@ int main(void)
     RUN(both_phases_round_alike);
     RUN(exact_results_and_ties_are_rounded_to_even);
     RUN(both_first_phases_give_the_same_bits);
+    RUN(a_first_phase_knows_its_ends);
+    RUN(the_second_phase_takes_what_needs_none);
     RUN(all_agree_with_mpfr);
     return check_finish();
 }
