@@ -53,6 +53,10 @@ static se3d_status eval(const se3di_assembly *assembly, uint32_t k, int wanted,
                         se3di_user_values *values)
 {
     se3di_model *model = assembly->model;
+    if (se3di_is_broken(&model->constraints[k], model->rows)) { /* it prescribes nothing */
+        memset(values, 0, sizeof *values);
+        return SE3D_OK;
+    }
     if (model->user_failure.status == SE3D_ERR_CALLBACK) { /* it is not called again */
         memset(values, 0, sizeof *values);
         return SE3D_ERR_CALLBACK;

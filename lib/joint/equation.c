@@ -266,8 +266,9 @@ se3d_status se3di_violation_measure(const se3di_model *model, double violation[3
         take_largest(gap, violation);
     }
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        if (se3di_is_user(&model->constraints[k])) {
-            SE3DI_TRY(measure_user(model, &model->constraints[k], violation));
+        const se3di_constraint *constraint = &model->constraints[k];
+        if (se3di_is_user(constraint) && !se3di_is_broken(constraint, model->rows)) {
+            SE3DI_TRY(measure_user(model, constraint, violation));
         }
     }
     return SE3D_OK;

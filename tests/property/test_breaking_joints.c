@@ -342,6 +342,50 @@ static void what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost(void)
     }
 }
 
+/* A driver that follows a body prescribes nothing, and is met, once its joint is broken. */
+static void a_driver_of_signals_ends_with_its_joint(void)
+{
+    static const char *const names[] = {"t", "x"};
+    static const int32_t ways[] = {SE3D_FORMULATION_ROMEGA, SE3D_FORMULATION_RP,
+                                   SE3D_FORMULATION_JOINT};
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+        const double origin[3] = {0.0, 0.0, 0.0}, from[2] = {0.0, 0.0}, aside[2] = {0.0, 3.0};
+        world w = world_create();
+        se3d_constraint pin, motor;
+        se3d_driver_def drive = se3d_driver_def_default();
+        se3d_function_def law = se3d_function_def_default();
+        double violation[3];
+        int32_t broken;
+        double spin[3];
+        const se3d_body bar = add_bar(&w, NULL, from, 0.0, 1.0, MASS);
+        const se3d_signal signal = {.kind = SE3D_SIGNAL_POINT_POSITION,
+                                    .body = add_bar(&w, NULL, aside, 0.0, 1.0, 500.0)};
+        pin = hang(&w, se3d_joint_create_revolute, "pin", w.ground, bar, origin, 30.0, 0.0);
+        law.expression = "t^2*(2 + 0.1*x)";
+        law.variables = names;
+        law.variable_count = 2;
+        law.signals = &signal;
+        law.signal_count = 1;
+        drive.joint = pin;
+        MUST(&w, se3d_function_create(w.system, &law, &drive.function));
+        MUST(&w, se3d_driver_create(w.system, &drive, &motor));
+        use(&w, SE3D_METHOD_DOP853, ways[k], 0.0);
+        MUST(&w, se3d_solver_run(w.solver, 2.0));
+        CHECK(se3d_solver_count_event_records(w.solver) == 1);
+        MUST(&w, se3d_joint_get_broken(w.system, motor, &broken));
+        CHECK(broken == 1);
+        MUST(&w, se3d_system_get_violation(w.system, violation));
+        CHECK(violation[0] == 0.0 && violation[1] == 0.0 && violation[2] == 0.0);
+        MUST(&w, se3d_body_get_angular_velocity(w.system, bar, spin));
+        const double before = spin[2];
+        MUST(&w, se3d_solver_run(w.solver, 3.0));
+        MUST(&w, se3d_body_get_angular_velocity(w.system, bar, spin));
+        CHECK(before > 0.1);
+        CHECK_NEAR(spin[2], before, 1e-9);
+        world_destroy(&w);
+    }
+}
+
 static void a_joint_is_broken_and_mended_by_hand(void)
 {
     se3d_constraint pin;
@@ -421,6 +465,7 @@ int main(void)
     RUN(the_first_link_of_a_chain_that_is_pulled_breaks);
     RUN(rods_of_a_bridge_break_in_a_cascade);
     RUN(what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost);
+    RUN(a_driver_of_signals_ends_with_its_joint);
     RUN(a_joint_is_broken_and_mended_by_hand);
     RUN(a_limit_that_is_passed_already_breaks_at_once);
     RUN(kinematics_and_joints_with_armatures_are_refused);
