@@ -49,11 +49,13 @@ se3d_status se3di_breaks_check(const se3di_run *run)
                                    "dynamics",
                                    name_of(joint), joint->type);
         }
-        if (may_break(model, joint) && carries_armature(model, k)) {
+        const int is_broken = se3di_is_broken(joint, model->rows);
+        if ((may_break(model, joint) || is_broken) && carries_armature(model, k)) {
             return se3di_error_set(run->error, SE3D_ERR_UNSUPPORTED,
-                                   "joint '%.64s' (%s) may break and carries an armature: a joint "
-                                   "that breaks cannot have one",
-                                   name_of(joint), joint->type);
+                                   "joint '%.64s' (%s) %s and carries an armature: a joint that "
+                                   "breaks cannot have one",
+                                   name_of(joint), joint->type,
+                                   is_broken ? "is broken" : "may break");
         }
     }
     return SE3D_OK;

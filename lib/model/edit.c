@@ -162,9 +162,24 @@ void se3di_model_touch_poses(se3di_model *model)
     se3di_model_touch_state(model);
 }
 
+/* Elements came or went: of those that are there, what acts on a broken joint does not. */
+static void follow_edit(se3di_model *model)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *constraint = &model->constraints[k];
+        if (acts_on_broken(model, constraint)) {
+            leave_out(model, constraint, 1);
+        }
+    }
+    se3di_model_follow_breaks(model);
+}
+
 void se3di_model_touch(se3di_model *model)
 {
     ++model->topology_version;
+    if (model->broken_count > 0) {
+        follow_edit(model);
+    }
     se3di_model_touch_poses(model);
 }
 

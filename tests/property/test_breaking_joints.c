@@ -386,6 +386,161 @@ static void a_driver_of_signals_ends_with_its_joint(void)
     }
 }
 
+/* All that can be made on the angle of a hinge, and a gear with another one. */
+static void load_hinge(world *w, se3d_constraint pin, se3d_constraint other,
+                       se3d_constraint made[2])
+{
+    se3d_driver_def drive = se3d_driver_def_default();
+    se3d_coupler_def gear = se3d_coupler_def_default();
+    se3d_rsda_def spring = se3d_rsda_def_default();
+    se3d_friction_def friction = se3d_friction_def_default();
+    se3d_stop_def stop = se3d_stop_def_default();
+    se3d_effort_def effort = se3d_effort_def_default();
+    se3d_force force;
+    drive.joint = pin;
+    MUST(w, se3d_function_create_expression(w->system, "sin(t)", &drive.function));
+    MUST(w, se3d_driver_create(w->system, &drive, &made[0]));
+    gear.joint[0] = pin;
+    gear.joint[1] = other;
+    gear.ratio[0] = 1.0;
+    gear.ratio[1] = -2.0;
+    gear.count = 2;
+    MUST(w, se3d_joint_create_coupler(w->system, &gear, &made[1]));
+    spring.joint = friction.joint = stop.joint = effort.joint = pin;
+    spring.k = 3.0;
+    MUST(w, se3d_force_create_rsda(w->system, &spring, &force));
+    friction.limit = 1.0;
+    MUST(w, se3d_force_create_friction(w->system, &friction, &force));
+    stop.upper = 0.01;
+    stop.k = 1e4;
+    MUST(w, se3d_force_create_stop(w->system, &stop, &force));
+    effort.value = 4.0;
+    MUST(w, se3d_force_create_effort(w->system, &effort, &force));
+}
+
+/* A bar on a hinge that broke, and a pendulum. */
+static world fall_aside(se3d_constraint hinges[2], se3d_body *bar)
+{
+    const double origin[3] = {0.0, 0.0, 0.0}, aside[3] = {0.0, 4.0, 0.0};
+    world w = world_create();
+    *bar = add_bar(&w, NULL, origin, 0.0, 1.0, MASS);
+    hinges[0] = hang(&w, se3d_joint_create_revolute, "pin", w.ground, *bar, origin, 1e9, 0.0);
+    hinges[1] = hang(&w, se3d_joint_create_revolute, "other", w.ground,
+                     add_bar(&w, NULL, aside, 0.0, 1.0, MASS), aside, 0.0, 0.0);
+    MUST(&w, se3d_joint_set_broken(w.system, hinges[0], 1));
+    return w;
+}
+
+static void what_is_made_on_a_broken_joint_does_nothing(void)
+{
+    const struct {
+        int32_t method, formulation;
+        double step;
+    } ways[] = {{SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0},
+                {SE3D_METHOD_DOP853, SE3D_FORMULATION_RP, 0.0},
+                {SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.0},
+                {SE3D_METHOD_RADAU, SE3D_FORMULATION_ROMEGA, 0.0},
+                {SE3D_METHOD_HHT, SE3D_FORMULATION_RP, 1e-3},
+                {SE3D_METHOD_VERLET, SE3D_FORMULATION_ROMEGA, 1e-3}};
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+        se3d_constraint hinges[2], made[2];
+        se3d_body bar;
+        double r[3], spin[3], violation[3];
+        int32_t broken;
+        world w = fall_aside(hinges, &bar);
+        load_hinge(&w, hinges[0], hinges[1], made);
+        for (int c = 0; c < 2; ++c) {
+            MUST(&w, se3d_joint_get_broken(w.system, made[c], &broken));
+            CHECK(broken == 1);
+        }
+        use(&w, ways[k].method, ways[k].formulation, ways[k].step);
+        const se3d_status status = se3d_solver_run(w.solver, 0.5);
+        check_that(status == SE3D_OK, se3d_method_get_name(ways[k].method), __FILE__, __LINE__);
+        MUST(&w, se3d_body_get_position(w.system, bar, r));
+        MUST(&w, se3d_body_get_angular_velocity(w.system, bar, spin));
+        CHECK_NEAR(r[0], 0.5, 1e-12);
+        CHECK_NEAR(r[1], -0.125 * G, 1e-9);
+        CHECK_NEAR(spin[2], 0.0, 1e-12);
+        MUST(&w, se3d_system_get_violation(w.system, violation));
+        CHECK_NEAR(violation[0] + violation[1], 0.0, 1e-7); /* the pendulum's */
+        world_destroy(&w);
+    }
+}
+
+static void an_armature_on_a_broken_joint_is_refused(void)
+{
+    se3d_constraint hinges[2];
+    se3d_body bar;
+    se3d_armature_def armature = se3d_armature_def_default();
+    se3d_force force;
+    world w = fall_aside(hinges, &bar);
+    armature.joint = hinges[0];
+    armature.inertia = 0.1;
+    MUST(&w, se3d_force_create_armature(w.system, &armature, &force));
+    use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+    CHECK(se3d_solver_run(w.solver, 0.5) == SE3D_ERR_UNSUPPORTED);
+    CHECK_CONTAINS(se3d_system_get_error(w.system), "'pin' (revolute) is broken and carries");
+    MUST(&w, se3d_joint_set_broken(w.system, hinges[0], 0));
+    MUST(&w, se3d_joint_set_break(w.system, hinges[0], 0.0, 0.0));
+    CHECK(se3d_solver_run(w.solver, 0.5) == SE3D_OK);
+    world_destroy(&w);
+}
+
+static se3d_check_summary summarize(world *w)
+{
+    se3d_check *check = NULL;
+    se3d_check_summary summary = {.struct_size = sizeof summary};
+    CHECK(se3d_check_create(w->system, &check) >= 0);
+    CHECK(se3d_check_get_summary(check, &summary) == SE3D_OK);
+    se3d_check_destroy(check);
+    return summary;
+}
+
+/* The state of a system in that of another one. */
+static void carry(world *from, world *to)
+{
+    static unsigned char state[1 << 16];
+    se3d_snapshot *snapshot = NULL, *read = NULL;
+    size_t size = 0;
+    MUST(from, se3d_snapshot_create(from->system, &snapshot));
+    MUST(from, se3d_snapshot_write(snapshot, state, sizeof state, &size));
+    MUST(to, se3d_snapshot_read(to->system, state, size, &read));
+    MUST(to, se3d_snapshot_restore(read, to->system));
+    se3d_snapshot_destroy(snapshot);
+    se3d_snapshot_destroy(read);
+}
+
+/* Four of five equations of `other` twice, so that redundant ones are seen. */
+static void double_hinge(world *w)
+{
+    const double aside[3] = {0.0, 4.0, 0.0};
+    se3d_body pendulum;
+    se3d_constraint other, again;
+    MUST(w, se3d_constraint_find(w->system, "other", &other));
+    MUST(w, se3d_constraint_get_body(w->system, other, 1, &pendulum));
+    again = hang(w, se3d_joint_create_revolute, "again", w->ground, pendulum, aside, 0.0, 0.0);
+    CHECK(again.index1 != 0);
+}
+
+static void a_broken_joint_that_is_removed_leaves_no_trace(void)
+{
+    se3d_constraint hinges[2], other[2];
+    se3d_body bar;
+    world w = fall_aside(hinges, &bar), v = fall_aside(other, &bar);
+    double_hinge(&w);
+    double_hinge(&v);
+    CHECK(summarize(&w).equations == 10 && summarize(&w).redundant == 5);
+    MUST(&w, se3d_constraint_destroy(w.system, hinges[0]));
+    MUST(&v, se3d_constraint_destroy(v.system, other[0]));
+    CHECK(summarize(&w).equations == 10 && summarize(&w).redundant == 5);
+    use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+    CHECK(se3d_solver_run(w.solver, 0.3) == SE3D_INFO_REDUNDANT);
+    carry(&w, &v);
+    CHECK(se3d_system_hash(w.system) == se3d_system_hash(v.system));
+    world_destroy(&w);
+    world_destroy(&v);
+}
+
 static void a_joint_is_broken_and_mended_by_hand(void)
 {
     se3d_constraint pin;
@@ -466,6 +621,9 @@ int main(void)
     RUN(rods_of_a_bridge_break_in_a_cascade);
     RUN(what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost);
     RUN(a_driver_of_signals_ends_with_its_joint);
+    RUN(what_is_made_on_a_broken_joint_does_nothing);
+    RUN(an_armature_on_a_broken_joint_is_refused);
+    RUN(a_broken_joint_that_is_removed_leaves_no_trace);
     RUN(a_joint_is_broken_and_mended_by_hand);
     RUN(a_limit_that_is_passed_already_breaks_at_once);
     RUN(kinematics_and_joints_with_armatures_are_refused);
