@@ -61,31 +61,55 @@ se3d_status se3di_breaks_check(const se3di_run *run)
     return SE3D_OK;
 }
 
-se3d_status se3di_breaks_list(se3di_events *events)
+/* Crossings of joints that were listed otherwise are not known by their places any more. */
+static void forget_hits(se3di_events *events)
 {
-    const se3di_model *model = events->run->model;
-    const size_t first = events->slots.count;
+    size_t kept = 0;
+    for (size_t k = 0; k < events->hit_count; ++k) {
+        if (events->hits[k].event < events->slots.count) {
+            events->hits[kept++] = events->hits[k];
+        }
+    }
+    events->hit_count = kept;
+}
+
+/* How many joints may break in the run. */
+static size_t count_breaks(const se3di_run *run)
+{
+    const se3di_model *model = run->model;
     size_t count = 0;
-    events->break_count = 0;
     for (uint32_t k = 0; k < model->constraint_slots.count; ++k) {
         count += (size_t)may_break(model, &model->constraints[k]);
     }
-    if (count == 0 || events->run->analysis != SE3D_ANALYSIS_DYNAMICS) {
-        return SE3D_OK;
-    }
+    return run->analysis == SE3D_ANALYSIS_DYNAMICS ? count : 0;
+}
+
+se3d_status se3di_breaks_list(se3di_events *events)
+{
+    const se3di_model *model = events->run->model;
+    const size_t first = events->slots.count, before = events->break_count;
+    const size_t count = count_breaks(events->run);
+    int same = count == before;
     void *list = events->list;
-    const se3d_status status = se3di_array_reserve(&model->allocator, &list, &events->capacity,
-                                                   first + count, sizeof *events->list);
+    events->break_count = 0;
+    const se3d_status status =
+        count == 0 ? SE3D_OK
+                   : se3di_array_reserve(&model->allocator, &list, &events->capacity, first + count,
+                                         sizeof *events->list);
     events->list = list;
     SE3DI_TRY(status);
-    for (uint32_t k = 0; k < model->constraint_slots.count; ++k) {
+    for (uint32_t k = 0; events->break_count < count; ++k) {
         if (may_break(model, &model->constraints[k])) {
-            events->list[first + events->break_count++] =
-                (se3di_event){.name = model->constraints[k].name,
-                              .level = 1.0,
-                              .direction = SE3D_EVENT_RISING,
-                              .joint = k + 1};
+            const size_t at = first + events->break_count++;
+            same = same && events->list[at].joint == k + 1;
+            events->list[at] = (se3di_event){.name = model->constraints[k].name,
+                                             .level = 1.0,
+                                             .direction = SE3D_EVENT_RISING,
+                                             .joint = k + 1};
         }
+    }
+    if (!same) {
+        forget_hits(events);
     }
     return SE3D_OK;
 }
@@ -112,8 +136,7 @@ int se3di_breaks_end_steps(const se3di_events *events)
            (run->model->sets || run->integration.method->tag == SE3D_METHOD_CONVEX);
 }
 
-/* The name of a record as long as it lasts. */
-static se3d_status keep_name(se3di_events *events, const char *name, const char **kept)
+se3d_status se3di_breaks_keep_name(se3di_events *events, const char *name, const char **kept)
 {
     const se3d_allocator *allocator = &events->run->model->allocator;
     void *names = events->names;
@@ -151,7 +174,7 @@ se3d_status se3di_breaks_name_record(se3di_events *events, uint32_t joint,
     const se3di_handle handle = se3di_slots_handle(&model->constraint_slots, joint);
     record->joint = (se3d_constraint){handle.index1, handle.generation};
     record->name = "";
-    return keep_name(events, name_of(&model->constraints[joint]), &record->name);
+    return se3di_breaks_keep_name(events, name_of(&model->constraints[joint]), &record->name);
 }
 
 /* What springs on the joint hold is lost. */

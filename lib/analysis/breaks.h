@@ -17,6 +17,8 @@ double se3di_break_measure(const se3di_model *model, uint32_t joint);
 /* The method's forces are means over steps, or its steps cannot be made in parts: what breaks does
  * so at their ends. */
 int se3di_breaks_end_steps(const se3di_events *events);
+/* The name of a record as long as it lasts. @return OK, NO_MEMORY */
+se3d_status se3di_breaks_keep_name(se3di_events *events, const char *name, const char **kept);
 /* A record is of this joint, under its name. @return OK, NO_MEMORY */
 se3d_status se3di_breaks_name_record(se3di_events *events, uint32_t joint,
                                      se3d_event_record *record);

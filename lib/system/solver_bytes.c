@@ -6,10 +6,11 @@
 #include "base/hash.h"
 #include "system/solver.h"
 
-#include <math.h>
+#include <limits.h>
+#include <string.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(6)
+#define VERSION UINT64_C(7)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
@@ -73,17 +74,45 @@ static void code_start(se3di_coder *c, se3di_run *run)
     code_body(c, &run->model->body_slots, &start->deflected);
 }
 
-/* Of a joint that broke, which may be gone since. */
+/* The name of a joint that is gone, a word for each character. */
+static void code_name(se3di_coder *c, se3di_events *events, const char **name)
+{
+    const se3d_allocator *allocator = &events->run->model->allocator;
+    size_t length = c->in ? 0 : strlen(*name);
+    se3di_code_count(c, &length, 1.0);
+    char *text = c->in ? se3di_alloc(allocator, length + 1, 1) : NULL;
+    c->failed |= c->in && !text;
+    for (size_t k = 0; k < length; ++k) {
+        uint32_t character = c->in ? 0 : (unsigned char)(*name)[k];
+        se3di_code_uint32(c, &character);
+        c->failed |= character == 0 || character > UCHAR_MAX;
+        if (text) {
+            text[k] = (char)(unsigned char)(character & UCHAR_MAX);
+        }
+    }
+    if (text) {
+        c->failed |= c->failed || se3di_breaks_keep_name(events, text, name) < 0;
+        se3di_free(allocator, text, length + 1, 1);
+    }
+}
+
+/* Of a joint that broke by its place, or as many as there are and its name if it is gone. */
 static void code_broken(se3di_coder *c, se3di_events *events, se3d_event_record *record)
 {
     const se3di_slots *slots = &events->run->model->constraint_slots;
-    uint32_t joint = se3di_slots_find(slots, record->joint.index1, record->joint.generation);
+    const uint32_t found = se3di_slots_find(slots, record->joint.index1, record->joint.generation);
+    uint32_t joint = found == SE3DI_NO_INDEX ? (uint32_t)slots->count : found;
     se3di_code_uint32(c, &joint);
     if (c->in) {
         record->event = (se3d_event){0, 0};
         record->joint = (se3d_constraint){0, 0};
         record->name = "";
-        c->failed |= joint < slots->count && se3di_breaks_name_record(events, joint, record) < 0;
+        c->failed |= joint > slots->count;
+    }
+    if (joint == slots->count) {
+        code_name(c, events, &record->name);
+    } else if (c->in && !c->failed) {
+        c->failed |= se3di_breaks_name_record(events, joint, record) < 0;
     }
 }
 
@@ -104,7 +133,7 @@ static void code_event(se3di_coder *c, const se3di_events *events, se3d_event_re
 
 static void code_record(se3di_coder *c, se3di_events *events, se3d_event_record *record)
 {
-    int32_t broke = !c->in && record->joint.index1 != 0;
+    int32_t broke = !c->in && record->event.index1 == 0;
     se3di_code_flag(c, &broke);
     if (broke) {
         code_broken(c, events, record);
@@ -117,7 +146,51 @@ static void code_record(se3di_coder *c, se3di_events *events, se3d_event_record 
     se3di_code_int32(c, &record->action);
 }
 
-/* The step that was looked at last. */
+/* Which event a crossing is of: the user's by its place, a joint that may break by the joint's. In
+ * the bytes these follow one another; @return whether there is such an event. */
+static int code_crossed(se3di_coder *c, const se3di_events *events, uint32_t *event)
+{
+    const size_t own = events->slots.count, joints = events->run->model->constraint_slots.count;
+    uint32_t place = *event;
+    if (!c->in && *event >= own) {
+        place = (uint32_t)own + events->list[*event].joint - 1;
+    }
+    se3di_code_uint32(c, &place);
+    c->failed |= place >= own + joints;
+    if (!c->in || place < own) {
+        *event = place;
+        return !c->failed;
+    }
+    *event = (uint32_t)own;
+    while (*event < se3di_events_count(events) &&
+           events->list[*event].joint != place - (uint32_t)own + 1) {
+        ++*event;
+    }
+    return *event < se3di_events_count(events);
+}
+
+/* The crossings of the step that was looked at last; those of a joint that may not break any more
+ * are not taken. */
+static void code_hits(se3di_coder *c, se3di_events *events, size_t count)
+{
+    const size_t room = SE3DI_CROSSINGS_MAX * (size_t)se3di_events_count(events);
+    size_t kept = 0;
+    for (size_t k = 0; k < count && !(c->in && c->failed); ++k) {
+        se3di_event_hit hit = c->in ? (se3di_event_hit){0} : events->hits[k];
+        se3di_code_numbers(c, &hit.time, 1);
+        const int is_there = code_crossed(c, events, &hit.event);
+        se3di_code_int32(c, &hit.direction);
+        if (c->in && is_there) {
+            c->failed |= kept >= room;
+            if (!c->failed) {
+                events->hits[kept++] = hit;
+            }
+        }
+    }
+    events->hit_count = c->in ? kept : events->hit_count;
+}
+
+/* The step that was looked at last. Loads of joints are not asked for again. */
 static void code_look(se3di_coder *c, se3di_events *events)
 {
     int32_t follows = events->looked_stamp == events->run->model->history_stamp;
@@ -128,60 +201,53 @@ static void code_look(se3di_coder *c, se3di_events *events)
     se3di_code_numbers(c, &events->reached, 1);
     se3di_code_numbers(c, &events->looked_time, 1);
     se3di_code_numbers(c, events->t, SE3DI_CROSSING_NODES);
-    if (events->node_count != 0) { /* of a solver that has run */
-        se3di_code_numbers(c, events->g, (size_t)SE3DI_CROSSING_NODES * se3di_events_count(events));
+    if (events->node_count != 0 && events->slots.count > 0) { /* of a solver that has run */
+        se3di_code_numbers(c, events->g, SE3DI_CROSSING_NODES * events->slots.count);
     }
     if (c->in) {
         events->looked_stamp =
             follows ? events->run->model->history_stamp : events->run->model->history_stamp - 1;
         c->failed |= events->node_count < 0 || events->node_count > SE3DI_CROSSING_NODES;
     }
-    for (size_t k = 0; k < events->hit_count; ++k) {
-        se3di_event_hit *hit = &events->hits[k];
-        se3di_code_numbers(c, &hit->time, 1);
-        se3di_code_uint32(c, &hit->event);
-        se3di_code_int32(c, &hit->direction);
-        c->failed |= hit->event >= se3di_events_count(events);
-    }
 }
 
-/* Lengths: of the events there are, of those seen in the step, of the records. */
-static se3d_status code_lengths(se3di_coder *c, se3di_events *events)
+/* Lengths: of the events there are, of crossings seen in the step, of the records. Crossings of a
+ * step that is not the last one any more are of no use, and their events may be gone. */
+static se3d_status code_lengths(se3di_coder *c, se3di_events *events, size_t *hits)
 {
-    size_t count = events->slots.count, hits = events->hit_count, records = events->record_count;
-    size_t breaks = events->break_count;
+    const int follows = events->looked_stamp == events->run->model->history_stamp;
+    size_t count = events->slots.count, records = events->record_count;
+    *hits = follows && events->looked ? events->hit_count : 0;
     se3di_code_count(c, &count, 1.0);
-    se3di_code_count(c, &breaks, 0.0);
-    se3di_code_count(c, &hits, 3.0);
+    se3di_code_count(c, hits, 3.0);
     se3di_code_count(c, &records, 5.0);
     if (!c->in) {
         return SE3D_OK;
     }
-    if (c->failed || count != events->slots.count || breaks != events->break_count ||
-        hits > SE3DI_CROSSINGS_MAX * (count + breaks)) {
+    if (c->failed || count != events->slots.count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     se3di_events_clear(events);
+    events->hit_count = 0;
     void *memory = events->records;
     const se3d_status status =
         se3di_array_reserve(&events->run->model->allocator, &memory, &events->record_capacity,
                             records, sizeof *events->records);
     events->records = memory;
     SE3DI_TRY(status);
-    events->hit_count = hits;
     events->record_count = records;
     return SE3D_OK;
 }
 
 static se3d_status code_events(se3di_coder *c, se3di_events *events)
 {
-    SE3DI_TRY(code_lengths(c, events));
+    size_t hits;
+    SE3DI_TRY(code_lengths(c, events, &hits));
     for (size_t k = 0; k < events->slots.count; ++k) {
         se3di_code_int32(c, &events->list[k].side);
     }
-    if (se3di_events_count(events) > 0) {
-        code_look(c, events);
-    }
+    code_look(c, events);
+    code_hits(c, events, hits);
     for (size_t k = 0; k < events->record_count; ++k) {
         code_record(c, events, &events->records[k]);
     }

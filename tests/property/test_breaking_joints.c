@@ -3,6 +3,7 @@
  * keeps it. */
 #include <stdlib.h>
 
+#include "base/hash.h"
 #include "check.h"
 #include "support/mechanisms.h"
 #include "support/methods.h"
@@ -541,6 +542,106 @@ static void a_broken_joint_that_is_removed_leaves_no_trace(void)
     world_destroy(&v);
 }
 
+/* Bytes of w's solver are read by v's; what was written twice is the same. */
+static void hand_over(world *w, world *v)
+{
+    static unsigned char bytes[2][1 << 16];
+    size_t size[2] = {0, 0};
+    MUST(w, se3d_solver_write(w->solver, bytes[0], sizeof bytes[0], &size[0]));
+    MUST(v, se3d_solver_read(v->solver, bytes[0], size[0]));
+    MUST(v, se3d_solver_write(v->solver, bytes[1], sizeof bytes[1], &size[1]));
+    CHECK(size[0] == size[1] && memcmp(bytes[0], bytes[1], size[0]) == 0);
+}
+
+static void a_record_outlives_its_joint_and_solvers_that_are_read(void)
+{
+    const double force = 2.2 * MASS * G;
+    world worlds[3];
+    se3d_event_record record;
+    for (int k = 0; k < 3; ++k) {
+        se3d_constraint pin;
+        se3d_body bob;
+        worlds[k] = swing_up(force, &pin, &bob);
+        use(&worlds[k], SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+        if (k == 0) {
+            MUST(&worlds[k], se3d_solver_run(worlds[k].solver, 0.9));
+        }
+        MUST(&worlds[k], se3d_constraint_destroy(worlds[k].system, pin));
+    }
+    MUST(&worlds[0], se3d_solver_run(worlds[0].solver, 1.0));
+    carry(&worlds[0], &worlds[1]);
+    carry(&worlds[0], &worlds[2]);
+    hand_over(&worlds[0], &worlds[1]);
+    hand_over(&worlds[1], &worlds[2]);
+    CHECK(se3d_solver_count_event_records(worlds[2].solver) == 1);
+    MUST(&worlds[2], se3d_solver_get_event_record(worlds[2].solver, 0, &record));
+    CHECK(strcmp(record.name, "pin") == 0 && record.joint.index1 == 0);
+    uint64_t first = 0;
+    for (int k = 0; k < 3; ++k) {
+        MUST(&worlds[k], se3d_solver_run(worlds[k].solver, 1.2));
+        first = k == 0 ? se3d_system_hash(worlds[k].system) : first;
+        CHECK(se3d_system_hash(worlds[k].system) == first);
+        world_destroy(&worlds[k]);
+    }
+}
+
+/* Whatever a word says, what is taken can be written and read again. */
+static void made_up_places_of_joints_do_no_harm(void)
+{
+    static unsigned char bytes[1 << 14], made[1 << 14];
+    size_t size = 0, again = 0, taken = 0;
+    se3d_constraint pin;
+    se3d_body bob;
+    world w = swing_up(2.2 * MASS * G, &pin, &bob);
+    use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+    MUST(&w, se3d_solver_run(w.solver, 0.9));
+    MUST(&w, se3d_solver_write(w.solver, bytes, sizeof bytes, &size));
+    for (size_t at = 16; at + 16 <= size; at += 8) {
+        for (int value = 0; value < 3; ++value) { /* joints there are: one */
+            memcpy(made, bytes, size);
+            memset(made + at, value == 2 ? 0xFF : 0, 4);
+            made[at] = (unsigned char)(value == 2 ? 0xFF : value);
+            const uint64_t sum = se3di_hash_bytes(SE3DI_HASH_START, made, size - 8);
+            for (int k = 0; k < 8; ++k) {
+                made[size - 8 + (size_t)k] = (unsigned char)(sum >> (8 * k));
+            }
+            if (se3d_solver_read(w.solver, made, size) < 0) {
+                continue;
+            }
+            ++taken;
+            MUST(&w, se3d_solver_write(w.solver, made, sizeof made, &again));
+            MUST(&w, se3d_solver_read(w.solver, made, again));
+        }
+    }
+    CHECK(taken > 50);
+    world_destroy(&w);
+}
+
+/* Which joints may break is the model's matter: it may be another one than in the last run. */
+static void limits_that_change_after_a_run_do_not_spoil_its_bytes(void)
+{
+    for (int part = 0; part < 3; ++part) {
+        const double force = part == 1 ? 0.0 : 1e6;
+        se3d_constraint pin[2];
+        se3d_body bob;
+        world w = swing_up(force, &pin[0], &bob), v = swing_up(force, &pin[1], &bob);
+        use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+        use(&v, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0);
+        MUST(&w, se3d_solver_run(w.solver, 0.3));
+        const double changed = part == 1 ? 2.2 * MASS * G : part == 2 ? 0.0 : 3.0 * MASS * G;
+        MUST(&w, se3d_joint_set_break(w.system, pin[0], changed, 0.0));
+        MUST(&v, se3d_joint_set_break(v.system, pin[1], changed, 0.0));
+        carry(&w, &v);
+        hand_over(&w, &v);
+        MUST(&w, se3d_solver_run(w.solver, 1.2));
+        MUST(&v, se3d_solver_run(v.solver, 1.2));
+        CHECK(se3d_system_hash(w.system) == se3d_system_hash(v.system));
+        CHECK(se3d_solver_count_event_records(v.solver) == (part == 1 ? 1u : 0u));
+        world_destroy(&w);
+        world_destroy(&v);
+    }
+}
+
 static void a_joint_is_broken_and_mended_by_hand(void)
 {
     se3d_constraint pin;
@@ -624,6 +725,9 @@ int main(void)
     RUN(what_is_made_on_a_broken_joint_does_nothing);
     RUN(an_armature_on_a_broken_joint_is_refused);
     RUN(a_broken_joint_that_is_removed_leaves_no_trace);
+    RUN(a_record_outlives_its_joint_and_solvers_that_are_read);
+    RUN(made_up_places_of_joints_do_no_harm);
+    RUN(limits_that_change_after_a_run_do_not_spoil_its_bytes);
     RUN(a_joint_is_broken_and_mended_by_hand);
     RUN(a_limit_that_is_passed_already_breaks_at_once);
     RUN(kinematics_and_joints_with_armatures_are_refused);
