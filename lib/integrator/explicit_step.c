@@ -19,6 +19,7 @@
 
 #define FORCED_MAX  3
 #define LEAST_STEP  3e-14 /* of the time */
+#define BALANCE     8e-15 /* rounding of an acceleration, relative to those of forces that balance */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
 #define LARGEST     1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART    0.25  /* of what rows may violate, at the quarters of a step */
@@ -123,11 +124,62 @@ static const double *get_rates(const se3di_explicit *m)
     return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
 }
 
+/* Squares of the accelerations that a force and a torque (their squares) on a body would make. */
+static void grow_sums(const se3di_body *body, double force, double torque, double sums[2])
+{
+    const double J = fmax(body->J[0], fmax(body->J[1], body->J[2]));
+    if (!body->fixed && body->state == 0) {
+        sums[0] = fmax(sums[0], force / (body->mass * body->mass));
+        sums[1] = fmax(sums[1], torque / (J * J));
+    }
+}
+
+/* A contact's force is its stiffness times a difference of positions. */
+static void grow_by_contact(const se3di_model *model, const se3di_body_contact *contact,
+                            double sums[2])
+{
+    const uint32_t shapes[2] = {contact->shape_i, contact->shape_j};
+    const double overlap = contact->overlap;
+    const double stiffness =
+        overlap > 0.0 ? se3di_dot(contact->force, contact->force) / (overlap * overlap) : 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t body = model->shapes[shapes[k]].body;
+        double arm[3];
+        se3di_sub(contact->point, model->frames[body].r, arm);
+        const double size = se3di_dot(arm, arm);
+        const double force = 2.0 * stiffness * (se3di_dot(contact->point, contact->point) + size);
+        grow_sums(&model->bodies[body], force, force * size, sums);
+    }
+}
+
+/* What is at rest as its forces balance is moved by the rounding of their sums: the accelerations
+ * that these are parts of. */
+static void grow_balance(se3di_explicit *m)
+{
+    const se3di_model *model = m->assembly->model;
+    const double length = m->past->scale.length;
+    double sums[2] = {se3di_dot(model->gravity, model->gravity), 0.0};
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        const size_t body = m->assembly->free_body[k];
+        const double *wrench = m->assembly->wrench + 6 * body;
+        const double force = se3di_dot(wrench, wrench);
+        grow_sums(&model->bodies[body], force,
+                  se3di_dot(wrench + 3, wrench + 3) + force * length * length, sums);
+    }
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        grow_by_contact(model, &model->contacts.list[k], sums);
+    }
+    for (int c = 0; c < 2; ++c) {
+        m->past->balance[c] = fmax(0.95 * m->past->balance[c], sqrt(sums[c]));
+    }
+}
+
 static void grow_scale(se3di_explicit *m)
 {
     se3di_state_scale *scale = &m->past->scale;
     se3di_state_scale_grow(m->assembly, get_rates(m), scale);
     scale->energy = fmax(scale->energy, m->past->energy_least);
+    grow_balance(m);
 }
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
@@ -183,16 +235,27 @@ se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y
     return m->motion->evaluate_at(m->equations, t, y, derivative);
 }
 
+/* What the velocities of the step that is tried are measured by: not below what rounding makes of
+ * forces that balance. */
+static se3di_state_scale measure_by(const se3di_explicit *m)
+{
+    const double part = BALANCE / m->tolerance * m->h;
+    se3di_state_scale scale = m->past->scale;
+    scale.speed = fmax(scale.speed, part * m->past->balance[0]);
+    scale.spin = fmax(scale.spin, part * m->past->balance[1]);
+    return scale;
+}
+
 double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
                               const double work[SE3DI_STATE_WORK])
 {
-    const se3di_state_scale *scale = &m->past->scale;
+    const se3di_state_scale scale = measure_by(m);
     const double least = ROUNDING / m->tolerance;
-    const double speed = fmax(scale->speed, least * scale->spin * scale->length);
-    const double spin = fmax(scale->spin, least * scale->speed / scale->length);
-    const double r = sqrt(parts[0]) / scale->length + 2.0 * sqrt(parts[1]);
+    const double speed = fmax(scale.speed, least * scale.spin * scale.length);
+    const double spin = fmax(scale.spin, least * scale.speed / scale.length);
+    const double r = sqrt(parts[0]) / scale.length + 2.0 * sqrt(parts[1]);
     const double v = sqrt(parts[2]) / speed + sqrt(parts[3]) / spin;
-    const double e = se3di_norm(work) / scale->energy;
+    const double e = se3di_norm(work) / scale.energy;
     return r + v + WORK_WEIGHT * e;
 }
 
@@ -254,6 +317,7 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
     const double t = m->past->at.time + h;
     double of_stages = 0.0;
     *error = HUGE_VAL;
+    m->h = h;
     m->step.fraction = 0.0;
     SE3DI_TRY(m->methods->make_stages(m, h, &of_stages));
     *error = of_stages;
@@ -322,12 +386,13 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
         return SE3D_OK;
     }
     se3di_memory_end end;
+    const se3di_state_scale scale = measure_by(m);
     const se3di_memory_step step = {.t = t,
                                     .h = h,
                                     .tolerance = m->tolerance,
                                     .begin = m->bodies[1],
                                     .lambda = model->lambda,
-                                    .scale = &m->past->scale,
+                                    .scale = &scale,
                                     .memory = m->memory,
                                     .work = m->bodies[0]};
     show_begin(m, m->bodies[1]);
@@ -360,9 +425,10 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
         m->sum3[k] = 0.5 * (m->y1[k] + m->y[k]) + 0.125 * h * (f0[k] - f[k]);
     }
     m->motion->set(m->equations, m->sum3);
+    const se3di_state_scale scale = measure_by(m);
     const se3d_status status =
         se3di_memory_review_contacts(m->equations, m->past->at.time + 0.5 * h, m->past->at.time + h,
-                                     h, m->tolerance, &m->past->scale, &of_contacts);
+                                     h, m->tolerance, &scale, &of_contacts);
     m->motion->stand(m->equations, end);
     *error = se3di_larger(*error, of_contacts);
     m->step.fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;

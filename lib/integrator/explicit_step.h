@@ -21,6 +21,7 @@
 typedef struct se3di_explicit_past {
     se3di_adaptive_history at;
     se3di_state_scale scale;
+    double balance[2];   /* of forces that balance: [m/s^2, rad/s^2], whose rounding moves */
     double energy_least; /* what the potential at the start says of the size of energies */
     double dense;        /* 1: the interpolation is ready */
     double forced;       /* steps that only a jump of the accelerations explained */
@@ -35,7 +36,7 @@ typedef struct se3di_explicit_past {
     double unscaled;     /* 1: steps without error control have not grown the scale */
     double gap;          /* what the interpolation violates constraints by, < 0: not measured */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 23 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 25 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;
@@ -86,6 +87,7 @@ struct se3di_explicit {
     double *bodies[2];  /* a change of the state as the bodies see it */
     double *next;       /* derivative that the next step begins with */
     double tolerance;
+    double h;           /* of the step that is tried; 0: none yet */
     double contraction; /* gauss: of the iterations of this step; 0: unknown */
     double remembered;  /* the least error that the choice of the next step counts with */
     int stages;         /* gauss: of this step */
