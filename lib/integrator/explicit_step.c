@@ -19,7 +19,7 @@
 
 #define FORCED_MAX  3
 #define LEAST_STEP  3e-14 /* of the time */
-#define BALANCE     8e-15 /* rounding of an acceleration, relative to those of forces that balance */
+#define BALANCE     8e-15 /* rounding of accelerations, relative to those of forces that balance */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
 #define LARGEST     1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART    0.25  /* of what rows may violate, at the quarters of a step */
