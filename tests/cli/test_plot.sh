@@ -79,6 +79,10 @@ awk -F, 'NR == 1 { head = $0 } NR > 1 { f = $1; g = -30 * log(1 + (0.2 * 3.14159
     END { exit head != "frequency,output1/input1.gain,output1/input1.phase" || bad != "" || NR != 201 }' "$dir/modes_transfer.bode.csv" || fail 'gains and phases'
 expect 'as it is' 0 "$program" plot "$dir/modes_transfer.csv" -y output1/input1.real -o "$dir/real.svg"
 ! grep -q 'gain' "$dir/real.svg" || fail 'a column that was named is another one'
+expect 'spectra of transfer functions' 0 "$program" plot "$dir/modes_transfer.csv" --fft -o "$dir/both.svg"
+has "$dir/both.fft.csv" 'frequency,output1/input1.real'
+[ ! -e "$dir/both.bode.csv" ] || fail 'gains and phases beside spectra'
+! grep -q 'gain \[dB\]' "$dir/both.svg" || fail 'gains of spectra'
 
 # Rounding is left out, with a word, but for what was named in full; short names, and one frame as wide as another.
 awk 'BEGIN { print "time,a.position.x,a.position.y,a.position.z,b.position.x"; for (k = 0; k < 50; ++k) print k ",1e-22," k "," 2 * k ",3" }' >"$dir/near.csv"
