@@ -210,10 +210,11 @@ static bool set_bevel(const half h[2], double q, double pin, wheel w[2])
         return false;
     }
     for (int k = 0; k < 2; ++k) {
+        /* Beyond a right angle the narrow end is the upper one; a flat crown has some height. */
         const double high = length * io_cos(away[k]);
         w[k].radius = length * io_sin(away[k]);
         w[k].taper = 0.75;
-        w[k].width = (1.0 - w[k].taper) * high;
+        w[k].width = copysign(fmax((1.0 - w[k].taper) * fabs(high), 0.06 * length), high);
         for (int i = 0; i < 3; ++i) {
             w[k].center[i] = tip[i] + (high - 0.5 * w[k].width) * u[k][i];
             w[k].x[i] = u[1 - k][i] - c * u[k][i];
@@ -317,7 +318,8 @@ static const se3di_mesh *make_disc(se3di_lister *l, const wheel *w)
     if (mesh) {
         put_walls(mesh, n, true);
     }
-    for (size_t k = 0; mesh && w->is_ring && k < mesh->triangle_count; ++k) { /* faces outwards */
+    const bool is_inside_out = w->is_ring != (w->width < 0.0);
+    for (size_t k = 0; is_inside_out && mesh && k < mesh->triangle_count; ++k) {
         uint32_t *t = mesh->triangles + 3 * k;
         const uint32_t held = t[1];
         t[1] = t[2];
@@ -326,18 +328,21 @@ static const se3di_mesh *make_disc(se3di_lister *l, const wheel *w)
     return mesh;
 }
 
-/* A bar along x with teeth towards -y, its pitch line y = 0. */
+/* A bar along x with teeth towards -y, its pitch line y = 0. A very long one has every second, third
+ * ... tooth. */
 static const se3di_mesh *make_rack(se3di_lister *l, const wheel *w, const double range[2])
 {
-    const double step = pi * w->module;
+    const double pitch = pi * w->module;
+    const double step = pitch * fmax(1.0, ceil((range[1] - range[0]) / (pitch * (TEETH_MOST - 1))));
     const double first = floor(range[0] / step), last = ceil(range[1] / step);
-    const size_t n = (size_t)fmin(TEETH_MOST, last - first) * CORNERS;
+    const size_t n = (size_t)(last - first) * CORNERS;
     se3di_mesh *mesh = make_mesh(l, 4 * n, 8 * n);
     for (size_t k = 0; mesh && k < 4 * n; ++k) {
         const size_t place = k % n;
         const double teeth = (is_tip(place) ? -1.0 : 1.2) * w->module;
         put_point(mesh,
-                  step * (first + (double)(place / CORNERS) + corner_at[place % CORNERS] + 0.5),
+                  step * (first + (double)(place / CORNERS)) +
+                      pitch * (corner_at[place % CORNERS] + 0.5),
                   k / n % 2 == 0 ? teeth : 3.0 * w->module, (k >= 2 * n ? -0.5 : 0.5) * w->width);
     }
     if (mesh) {
@@ -397,8 +402,9 @@ static void find_travel(const se3di_lister *l, const wheel *pinion, const wheel 
         range[0] = fmin(range[0], dot(in_rack, along) - still);
         range[1] = fmax(range[1], dot(in_rack, along) - still);
     }
-    range[0] -= 2.0 * pinion->radius;
-    range[1] += 2.0 * pinion->radius;
+    const double beside = poses->count > 1 ? 2.0 : 8.0; /* how far it goes is not known */
+    range[0] -= beside * pinion->radius;
+    range[1] += beside * pinion->radius;
 }
 
 static void add_rack(se3di_lister *l, size_t element, const half h[2])
