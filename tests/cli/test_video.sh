@@ -21,6 +21,8 @@ for caption in 'words' '1,0,backwards' '0,1,' 'nan,1,a' '0,inf,a'; do
 done
 expect 'hidden is something else' 2 "$program" video "$dir" --hide title,clock
 says 'must be of title, time, plots'
+expect 'hidden at length' 2 "$program" video "$dir" --hide "$(printf 'time,%.0s' $(seq 60))plots"
+says 'must be of title, time, plots'
 mkdir "$dir/bin"
 printf '#!/bin/sh\nexit 3\n' >"$dir/bin/chromium"
 chmod +x "$dir/bin/chromium"
@@ -88,7 +90,7 @@ print(sum(d[1280 * (y + j) + x + i] < 110 for j in range(h) for i in range(w)))'
 film() {
     expect "a film with $*" 0 "$program" video "$dir/run" -q --speed 40 --view 90,10 -o "$dir/words.mp4" "$@"
 }
-film --hide title,time,plots
+film --hide time,time,time,time,time,time,time,time,time,time,time,time,title,plots
 for place in 10,10,400,28 10,690,200,28 890,10,380,160; do
     holds "letters at $place" [ "$(letters "$dir/words.mp4" $place)" -lt 20 ]
 done

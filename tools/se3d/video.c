@@ -118,7 +118,7 @@ static int check_words(const options *o)
         word += *word == ',';
         const size_t length = strcspn(word, ",");
         snprintf(one, sizeof one, ",%.*s,", length < 30 ? (int)length : 30, word);
-        if (one[1] == ',' || !strstr(known, one)) {
+        if (one[1] == ',' || !strstr(known, one) || strlen(o->hide) > TEXT_MOST) {
             fprintf(stderr, "se3d video: hidden is `%s`, must be of title, time, plots\n", o->hide);
             return 0;
         }
@@ -140,7 +140,7 @@ static int put_words(film *f)
         }
     }
     if (o && o->hide) {
-        snprintf(expression, sizeof expression, "se3d.words({hide: '%.60s'})", o->hide);
+        snprintf(expression, sizeof expression, "se3d.words({hide: '%s'})", o->hide);
         if (!devtools_evaluate(&f->browser, expression)) {
             return fail("Chromium does not answer", "");
         }

@@ -13,6 +13,10 @@ stamp="three 0.187 uplot 1.6.32 $(cksum <"$here/three_entry.js")"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 if [ -n "${SE3D_THREE:-}" ]; then # one that this script made elsewhere
+    grep -q '^window.se3dReady = ' "$SE3D_THREE" || {
+        echo "SE3D_THREE: $SE3D_THREE was not made by tools/viewer/build.sh" >&2
+        exit 1
+    }
     cp -- "$SE3D_THREE" "$work/three.js"
 elif command -v npm >/dev/null 2>&1; then
     echo "making the viewer's three.js once (npm: three 0.187, uplot 1.6.32, esbuild)" >&2
