@@ -337,6 +337,33 @@ def check_rates():
         check(max(abs(a - b) for a, b in zip(state["values"], [4, 5])) < 1e-6 and state["trouble"] == "", f"{state['values']}")
 
 
+POST = """\
+se3d: 1
+parameters: {stiffness: 1e4 N/m}
+bodies: [{name: wheel, mass: 10, inertia: [1, 1, 1], position: [0, 0, 0.3]}]
+joints: [{name: held, type: fixed, body_i: ground, body_j: wheel, at: [0, 0, 0.3]}]
+roads: [{name: wave, type: height, height: 0.01*sin(x + t)}, {name: post, type: height, height: 0.02*sin(3*t)}]
+forces:
+  - {name: t1, type: tyre, body: wheel, road: post, radius: 0.31, k: stiffness, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+  - {name: t2, type: tyre, body: wheel, road: wave, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+analysis: {type: dynamics, duration: 10}
+"""
+
+
+def check_roads():
+    """A road that rises as a whole does so in the picture; one that changes its form stands still."""
+    save("post.yaml", POST)
+    with Other("post.yaml") as live:
+        for _ in range(30):
+            live.say("step")
+        state = live.next(lambda s: abs(s["t"] - 0.5) < 1e-9)
+        wave, post = state["places"][-2:]
+        check(wave == 0 and abs(post - 0.02 * math.sin(1.5)) < 1e-7, f"roads have risen by {wave}, {post}")
+        version = state["version"]
+        state = live.set("stiffness", 2e4)
+        check(state["version"] == version and abs(state["places"][-1] - 0.02 * math.sin(3 * state["t"])) < 1e-7, "another number leaves the picture")
+
+
 SLOW = "{type: dynamics, method: rk4, step: 1e-6, duration: 100}"  # minutes
 
 
@@ -500,6 +527,7 @@ def main():
         check_random(live)
         check_turns()
         check_rates()
+        check_roads()
         check_endings()
         check_others()
         check_folders()

@@ -31,6 +31,11 @@ bodies:
   - {name: planet, mass: 1, inertia: [1, 1, 1], position: [0.2, 0, 0.3]}
   - {name: bevel, mass: 1, inertia: [1, 1, 1], position: [0.3, 0.15, -0.1]}
   - {name: bar, mass: 1, inertia: [1, 1, 1], position: [0, 0, -0.4]}
+  - {name: crown, mass: 1, inertia: [1, 1, 1], position: [2, 0, 0.3]}
+  - {name: flat, mass: 1, inertia: [1, 1, 1], position: [2, 0, 0.3]}
+  - {name: cone, mass: 1, inertia: [1, 1, 1], position: [2.2598076, 0, -0.15]}
+  - {name: small, mass: 1, inertia: [1, 1, 1], position: [0, -1, 0]}
+  - {name: long, mass: 1, inertia: [1, 1, 1], position: [0, -1, 0]}
 joints:
   - {name: ja, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 1, 0]}
   - {name: jb, type: revolute, body_i: b, body_j: ground, at: [0.3, 0, 0], axis: [0, 1, 0]}
@@ -38,13 +43,21 @@ joints:
   - {name: jp, type: revolute, body_i: ground, body_j: planet, at: [0.2, 0.01, 0.4], axis: [0, -1, 0]}
   - {name: jv, type: revolute, body_i: ground, body_j: bevel, at: [0.3, 0.15, -0.15], axis: [0, 0, 1]}
   - {name: jc, type: prismatic, body_i: ground, body_j: bar, at: [0, 0, -0.4], axis: [1, 0, 0]}
+  - {name: jk, type: revolute, body_i: ground, body_j: crown, at: [2, 0, 0.3], axis: [0, 0, 1]}
+  - {name: jf, type: revolute, body_i: ground, body_j: flat, at: [2, 0, 0.3], axis: [0, 0, 1]}
+  - {name: jw, type: revolute, body_i: ground, body_j: cone, at: [2.25980762113533, 0, -0.15], axis: [0.866025403784439, 0, -0.5]}
+  - {name: js, type: revolute, body_i: ground, body_j: small, at: [0, -1, 0], axis: [0, 1, 0]}
+  - {name: jl, type: prismatic, body_i: ground, body_j: long, at: [0, -1, 0], axis: [1, 0, 0]}
+  - {name: obtuse, type: gear, joint_1: jw, joint_2: jk, ratio: 2.5}
+  - {name: right_flat, type: gear, joint_1: jw, joint_2: jf, ratio: 2}
+  - {name: far_rack, type: rack_pinion, pinion: js, rack: jl, radius: 0.02}
   - {name: outside, type: gear, joint_1: ja, joint_2: jb, ratio: -2}
   - {name: inside, type: gear, joint_1: jp, joint_2: jr, ratio: 0.5}
   - {name: right, type: gear, joint_1: jb, joint_2: jv, ratio: 1.5}
   - {name: rack, type: rack_pinion, pinion: ja, rack: jc, radius: 0.12}
   - {name: link, type: coupler, terms: [{joint: ja}, {joint: jp, ratio: -1}]}
-drivers: [{joint: ja, value: sin(t)}]
-analysis: {type: kinematics, duration: 1, step: 0.1}
+drivers: [{joint: ja, value: sin(t)}, {joint: jw, value: t}, {joint: jl, value: 2*t}]
+analysis: {type: kinematics, duration: 1, step: 0.02}
 END_OF_MODEL
 "$program" run -q "$dir/gears.yaml" -o "$dir/gears"
 cat >"$dir/far.yaml" <<'END_OF_MODEL'
@@ -60,21 +73,25 @@ END_OF_MODEL
 cat >"$dir/roads.yaml" <<'END_OF_MODEL'
 se3d: 1
 bodies: [{name: wheel, mass: 10, inertia: [1, 1, 1], position: [0, 0, 0.3]}, {name: still, mass: 10, inertia: [1, 1, 1], position: [0, 3, 0.3]},
-  {name: flat, mass: 10, inertia: [1, 1, 1], position: [0, -3, 0.3]}]
+  {name: flat, mass: 10, inertia: [1, 1, 1], position: [0, -3, 0.3]}, {name: ending, mass: 10, inertia: [1, 1, 1], position: [0, 6, 0.3]}]
 joints:
   - {name: way, type: prismatic, body_i: ground, body_j: wheel, at: [0, 0, 0.3], axis: [1, 0, 0]}
   - {name: held, type: fixed, body_i: ground, body_j: still, at: [0, 3, 0.3]}
   - {name: other, type: fixed, body_i: ground, body_j: flat, at: [0, -3, 0.3]}
+  - {name: third, type: fixed, body_i: ground, body_j: ending, at: [0, 6, 0.3]}
 drivers: [{joint: way, value: 4*t}]
 roads:
   - {name: kerb, type: height, height: "0.05*step(x, 1, 0, 1.01, 1)*step(x, 2, 1, 2.01, 0)", at: [0, 0, 0.01]}
   - {name: post, type: height, height: 0.02*sin(3*t)}
+  - {name: ends, type: height, height: 0*sqrt(x + 0.2)}
 forces:
   - {name: t1, type: tyre, body: wheel, road: kerb, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
   - {name: t2, type: tyre, body: still, road: post, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
+  - {name: t5, type: tyre, body: ending, road: ends, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
   - {name: t3, type: tyre, body: flat, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
   - {name: t4, type: tyre, body: flat, radius: 0.31, k: 1e4, mu: 1, slip_stiffness: 1e4, cornering_stiffness: 1e4}
 analysis: {type: kinematics, duration: 1, step: 0.1}
+output: [{vtk: motion.pvd, every: 0.5}]
 END_OF_MODEL
 "$program" run -q "$dir/roads.yaml" -o "$dir/roads"
 for pair in 'color: [0.5, 0, 0, 1.5]|color: has 1.5, must be red, green, blue and' 'color: [0.5, 0]|has 2' 'style: brass|style: '; do
@@ -249,6 +266,20 @@ b, v = corners("b", "right"), corners("bevel", "right")
 assert b and v and "gear" in {n["name"] for n in nodes} and not any(n["name"] == "link" and "extras" in n for n in nodes)
 rack = corners("bar", "rack")
 assert max(p[0] for p in rack) - min(p[0] for p in rack) > .12 * .84 + .4 and abs(min(abs(p[2]) for p in rack) - (.12 - .12 / 9)) < 1e-3, "the rack"
+# One that is longer than it has teeth; bevel gears whose cones are flat or hollow, with their faces outwards.
+far = corners("long", "far_rack")
+assert max(p[0] for p in far) > .01 and min(p[0] for p in far) < -2 and len(far) < 30000, (min(p[0] for p in far), len(far))
+def volume(body, name):
+    parent = next(n for n in nodes if n["name"] == body)
+    made = next(n for n in (nodes[k] for k in parent["children"]) if n.get("extras", {}).get("element") == list(kinds).index(name))
+    p = doc["meshes"][made["mesh"]]["primitives"][0]
+    at = values(doc, binary, p["attributes"]["POSITION"])
+    at = [at[k] for k, in values(doc, binary, p["indices"])]
+    return sum(a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+               for a, b, c in zip(at[::3], at[1::3], at[2::3])) / 6
+for body, name in (("crown", "obtuse"), ("flat", "right_flat"), ("cone", "obtuse"), ("bevel", "right"), ("a", "outside"), ("ring", "inside")):
+    assert volume(body, name) > 1e-6, (body, name, volume(body, name))
+    checks += 1
 # The joints of a vehicle are not larger because it goes far.
 doc, _ = load(sys.argv[1] + "/far/scene.glb")
 pin = next(n for n in doc["nodes"] if n["name"] == "hitch")
@@ -257,9 +288,9 @@ assert .01 < pin["scale"][0] < .1, pin
 doc, binary = load(sys.argv[1] + "/roads/scene.glb")
 nodes = doc["nodes"]
 roads = [n for n in nodes if n["name"] == "road"]
-assert len(roads) == 3, [n["name"] for n in nodes]
+assert len(roads) == 4, [n["name"] for n in nodes]
 surface = lambda n: values(doc, binary, doc["meshes"][n["mesh"]]["primitives"][0]["attributes"]["POSITION"])
-kerb, post, plane = roads
+kerb, post, ends, plane = roads
 height = lambda x: .05 * (x > 1.005) * (x < 2.005)
 points = surface(kerb)
 assert all(abs(p[2] - height(p[0])) < 1e-6 or abs(p[0] - 1.005) < .011 or abs(p[0] - 2.005) < .011 for p in points), points
@@ -272,6 +303,23 @@ import math
 for (time,), place in zip(values(doc, binary, sampler["input"]), values(doc, binary, sampler["output"])):
     assert abs(place[2] - .02 * math.sin(3 * time)) < 1e-6, (time, place)
     checks += 1
+# A road that ends within the rectangle of its wheels is drawn as far as it goes.
+p = doc["meshes"][ends["mesh"]]["primitives"][0]
+at = surface(ends)
+drawn_to = min(at[k][0] for k, in values(doc, binary, p["indices"]))
+assert -.2 <= drawn_to < -.19 and max(q[0] for q in at) > .5, drawn_to
+# In VTK files the post goes up and down, too.
+import re
+def vtk_points(path):
+    data = open(path, "rb").read()
+    tag = re.search(rb'<DataArray[^>]*Name="points"[^>]*>', data).group(0)
+    start = data.index(b"_", data.index(b"<AppendedData")) + 1 + int(re.search(rb'offset="(\d+)"', tag).group(1))
+    width = 8 if b'header_type="UInt64"' in data else 4
+    flat = struct.unpack_from("<%df" % (int.from_bytes(data[start:start + width], "little") // 4), data, start + width)
+    return [flat[k:k + 3] for k in range(0, len(flat), 3)]
+before, after = (vtk_points(sys.argv[1] + "/roads/motion/bodies_0000%d.vtp" % k) for k in (0, 1))
+up = [q[2] - p[2] for p, q in zip(before, after) if p[:2] == q[:2] and p[2] != q[2]]
+assert len(up) == 4 and all(abs(z - .02 * math.sin(1.5)) < 1e-6 for z in up), up
 # Colours are light, as glTF wants it; opacity and style.
 doc, binary = load(sys.argv[1] + "/looks/scene.glb")
 made = [doc["materials"][k] for k in range(len(doc["materials"]))]

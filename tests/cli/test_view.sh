@@ -13,6 +13,11 @@ mkdir -m 777 "$dir/open" && mkdir "$dir/shown"
 expect 'a cache that others can change' 1 env SE3D_CACHE="$dir/open" "$program" view "$dir/shown"
 has "$dir/err" 'set SE3D_CACHE to a folder of your own'
 holds 'something was made in it' [ -z "$(ls -A "$dir/open")" ]
+printf 'throw new Error("another file");\n' >"$dir/other.js"
+mkdir "$dir/given"
+expect 'a three.js that is something else' 1 env SE3D_CACHE="$dir/given" SE3D_THREE="$dir/other.js" "$program" view "$dir/shown"
+has "$dir/err" 'other.js was not made by tools/viewer/build.sh'
+holds 'it was taken' [ ! -e "$dir/given/three.js" ]
 if ! command -v npm >/dev/null 2>&1; then
     echo 'SKIPPED: no npm: no page was tested' >&2
     finish
@@ -99,7 +104,8 @@ for pair in suspension:joints hopper:beads; do
     opens "$model" "$dir/$model/scene.html" "${pair#*:}" none
 done
 # Khronos' own validator has nothing against the scenes.
-"$program" run -q "$source/examples/fsae/kerb.yaml" -o "$dir/kerb" --duration 0.1
+expect 'a kerb' 0 "$program" run -q "$source/examples/fsae/kerb.yaml" -o "$dir/kerb" --duration 0.1
+holds 'no scene of the kerb' [ -s "$dir/kerb/scene.glb" ]
 if command -v node >/dev/null 2>&1 && npm install --prefix "$dir/khronos" --fetch-retries=1 --silent --no-audit --no-fund \
     --no-save gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1; then
     cat >"$dir/khronos/check.js" <<'END_OF_SCRIPT'

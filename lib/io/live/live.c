@@ -226,14 +226,15 @@ bool se3di_live_put_scene(se3di_live *live, FILE *file)
     if (se3d_scene_create(s->model, &scene) < 0) {
         return false;
     }
-    const bool good = se3di_scene_put_at(scene, s->start.values, file);
+    const bool good = se3di_scene_put_at(scene, &s->start, file);
     se3d_scene_destroy(scene);
     return good;
 }
 
 size_t se3di_live_count_places(const se3di_live *live)
 {
-    return SE3DI_POSE * live->now->model->body_count + 10 * live->now->between_count;
+    const se3di_session *s = live->now;
+    return SE3DI_POSE * s->model->body_count + 10 * s->between_count + s->rise_count;
 }
 
 void se3di_live_get_places(se3di_live *live, double *places)
@@ -251,6 +252,9 @@ void se3di_live_get_places(se3di_live *live, double *places)
             memcpy(places + 7, part.scale, sizeof part.scale);
             places += 10;
         }
+    }
+    for (size_t k = 0; k < s->rise_count; ++k) {
+        places[k] = se3di_rise_get(model, &s->rises[k], se3di_live_get_time(live));
     }
 }
 

@@ -76,7 +76,7 @@ bool se3di_live_release(se3di_live *live);
 bool se3di_live_put_scene(se3di_live *live, FILE *file);
 /* The places of all: of each body position and Euler parameters (7 numbers), then of each part of
  * an element between two bodies, in the order of the scene, position, Euler parameters and scale
- * (10). */
+ * (10), then how far each road whose heights are functions has risen (1). */
 size_t se3di_live_count_places(const se3di_live *live);
 void se3di_live_get_places(se3di_live *live, double *places);
 /* Numbers of the channels of the first results file that has some; NaN: not known now. */

@@ -186,13 +186,22 @@ static bool measure(const se3di_session *like, se3di_session *s)
     if (!s->start.values || !s->poses) {
         return false;
     }
+    s->start.times = &s->start_time;
+    s->rise_count = se3di_drawing_count_rises(model);
+    s->rises = se3di_iopool_array(&s->pool, s->rise_count + 1, sizeof *s->rises);
+    if (!s->rises) {
+        return false;
+    }
+    (void)se3d_system_get_time(model->system, &s->start_time);
     if (like) {
+        s->start_time = like->start_time;
         memcpy(s->start.values, like->start.values,
                model->body_count * SE3DI_POSE * sizeof(double));
     } else if (se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
         return false;
     }
     se3di_drawing_measure(model, &s->start, &s->sizes);
+    se3di_drawing_list_rises(model, &s->sizes, &s->start, s->rises);
     for (size_t e = 0; e < model->element_count; ++e) {
         s->between_count += se3di_drawing_count_between(&model->elements[e]);
     }

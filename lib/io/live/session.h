@@ -26,11 +26,14 @@ typedef struct se3di_session {
     const se3di_output_entry *output; /* whose channels are shown; NULL: none */
     const char **columns;
     size_t column_count;
-    bool is_prepared; /* the sample and the variables are there */
-    bool shows_all;   /* some channel needs accelerations or multipliers */
-    se3di_poses start;
+    bool is_prepared;  /* the sample and the variables are there */
+    bool shows_all;    /* some channel needs accelerations or multipliers */
+    se3di_poses start; /* one sample */
+    double start_time; /* of it */
     se3di_sizes sizes;
     size_t between_count;
+    se3di_rise *rises; /* of roads */
+    size_t rise_count;
     double *poses; /* of the present state */
 } se3di_session;
 

@@ -7,6 +7,15 @@
 #include "io/model/model.h"
 #include "io/write/unit_mesh.h"
 
+/* How a road goes up and down as a whole: from its heights at three places. */
+typedef struct se3di_rise {
+    se3d_function height; /* over (t, x, y) */
+    double places[3][2];
+    double first[3]; /* heights; NaN: it has none there */
+    double tolerance;
+    size_t index; /* of the roads with such heights, in the order of the model */
+} se3di_rise;
+
 /* A mesh, stretched, turned and moved. */
 typedef struct se3di_part {
     const char *name;
@@ -20,7 +29,8 @@ typedef struct se3di_part {
     int32_t reserved;
     size_t element1; /* the element that it shows, from 1 in the order of the model; 0: none */
     double along[3];
-    const double *lift; /* [samples] how far it has moved along this at each [m]; NULL: not */
+    const double *lift;     /* [samples] how far it has moved along this at each [m]; NULL: not */
+    const se3di_rise *rise; /* how far at any time; NULL: never */
 } se3di_part;
 
 typedef struct se3di_parts {
@@ -57,6 +67,14 @@ size_t se3di_drawing_count_between(const se3di_element_entry *entry);
 /* One of them at the given poses of all bodies, in the ground frame. */
 se3di_part se3di_drawing_get_between(const se3d_model *model, size_t element, size_t which,
                                      const se3di_sizes *sizes, const double *poses);
+/* Roads whose heights are functions. */
+size_t se3di_drawing_count_rises(const se3d_model *model);
+/* What they rise by from the first of `poses` on, one after the other, to rises[count]; those that
+ * are not drawn stand still. */
+void se3di_drawing_list_rises(const se3d_model *model, const se3di_sizes *sizes,
+                              const se3di_poses *poses, se3di_rise *rises);
+/* How far such a road has risen [m]; 0 if it changes its form. */
+double se3di_rise_get(const se3d_model *model, const se3di_rise *rise, double time);
 /* A point of a body in the ground frame. */
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3],
                              double ground[3]);

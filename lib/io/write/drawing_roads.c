@@ -27,7 +27,6 @@ typedef struct strip {
     double axes[9]; /* rows: forward, left, up, in the frame of the body */
     double low[2], high[2];
     double time; /* at which its heights are taken */
-    bool failed;
 } strip;
 
 static bool is_tyre(const se3di_element_entry *entry)
@@ -137,24 +136,32 @@ static bool find_extent(strip *s)
     return found;
 }
 
-/* z at a time; of functions only it may be another time than now. */
-static double get_height(strip *s, double time, double x, double y)
+/* A height that is a function; NaN: there is none. */
+static double eval_height(const se3d_model *model, se3d_function f, double time, const double at[2])
 {
-    const se3d_system *system = s->l->model->system;
-    const double txy[3] = {time, x, y};
+    const double txy[3] = {time, at[0], at[1]};
     double height[4] = {0.0, 0.0, 0.0, 0.0};
+    return se3d_function_eval(model->system, f, txy, height) < 0 ? (double)NAN : height[0];
+}
+
+/* z at the time of the strip; NaN: there is no road. */
+static double get_height(const strip *s, const double at[2])
+{
+    double height = 0.0;
     if (s->owner->road.index1 == 0) {
         return 0.0;
     }
-    const se3d_status status = s->owner->height.index1 > 0
-                                   ? se3d_function_eval(system, s->owner->height, txy, height)
-                                   : se3d_road_get_height(system, s->owner->road, x, y, height);
-    s->failed = s->failed || status < 0;
-    return status < 0 ? 0.0 : height[0];
+    if (s->owner->height.index1 > 0) {
+        return eval_height(s->l->model, s->owner->height, s->time, at);
+    }
+    return se3d_road_get_height(s->l->model->system, s->owner->road, at[0], at[1], &height) < 0
+               ? (double)NAN
+               : height;
 }
 
-/* Heights along axis `a` at `fine` places, each at COARSE places across; and how they differ. */
-static double *take_heights(strip *s, int a, size_t fine, double *spread)
+/* Heights along axis `a` at `fine` places, each at COARSE places across; and how they differ:
+ * negative if there are none. */
+static double *take_heights(const strip *s, int a, size_t fine, double *spread)
 {
     double *z = se3di_iopool_array(s->l->pool, fine * COARSE, sizeof *z);
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -165,22 +172,28 @@ static double *take_heights(strip *s, int a, size_t fine, double *spread)
         for (int i = 0; i < 2; ++i) {
             at[i] = s->low[i] + part[i == a ? 0 : 1] * (s->high[i] - s->low[i]);
         }
-        z[k] = get_height(s, s->time, at[0], at[1]);
+        z[k] = get_height(s, at);
         low = fmin(low, z[k]);
         high = fmax(high, z[k]);
     }
-    *spread = fmax(*spread, high - low);
+    *spread = high >= low ? fmax(*spread, high - low) : *spread;
     return z;
 }
 
-/* The place between two lines that is farthest from a straight one. */
-static size_t find_farthest(const double *z, size_t from, size_t to, double *distance)
+/* The place between two lines that is farthest from a straight one; an end of the road is as far as
+ * `most`. */
+static size_t find_farthest(const double *z, size_t from, size_t to, double most, double *distance)
 {
     size_t best = from;
     *distance = 0.0;
     for (size_t k = from + 1; k < to; ++k) {
         const double part = (double)(k - from) / (double)(to - from);
         for (size_t c = 0; c < COARSE; ++c) {
+            const bool is_end = isnan(z[k * COARSE + c]) != isnan(z[(k - 1) * COARSE + c]);
+            if (is_end && most > *distance) { /* just before it and just behind it */
+                *distance = most;
+                best = k - 1 > from ? k - 1 : k;
+            }
             const double first = z[from * COARSE + c];
             const double off =
                 fabs(z[k * COARSE + c] - first - part * (z[to * COARSE + c] - first));
@@ -194,7 +207,8 @@ static size_t find_farthest(const double *z, size_t from, size_t to, double *dis
 }
 
 /* Mark the lines that are needed for a tolerance. @return their number. */
-static size_t choose_lines(const double *z, size_t fine, double tolerance, unsigned char *chosen)
+static size_t choose_lines(const double *z, size_t fine, double tolerance, double most,
+                           unsigned char *chosen)
 {
     size_t count = 2;
     size_t from = 0;
@@ -206,7 +220,7 @@ static size_t choose_lines(const double *z, size_t fine, double tolerance, unsig
         while (!chosen[to]) {
             ++to;
         }
-        const size_t best = find_farthest(z, from, to, &distance);
+        const size_t best = find_farthest(z, from, to, most, &distance);
         if (distance > tolerance && best > from) {
             chosen[best] = 1;
             ++count;
@@ -222,9 +236,10 @@ typedef struct lines {
     size_t fine[2], count[2];
 } lines;
 
-static bool find_lines(strip *s, lines *w)
+/* @return false: it has no heights at all, or out of memory. */
+static bool find_lines(const strip *s, lines *w)
 {
-    double spread = 0.0;
+    double spread = -1.0;
     double *z[2];
     w->fine[0] = FINE_X;
     w->fine[1] = FINE_Y;
@@ -235,14 +250,18 @@ static bool find_lines(strip *s, lines *w)
             return false;
         }
     }
+    if (spread < 0.0) {
+        return false;
+    }
     double tolerance = fmax(0.003 * spread, 1e-9 * s->l->sizes->extent);
+    const double most = 300.0 * tolerance;
     do {
         for (int a = 0; a < 2; ++a) {
-            w->count[a] = choose_lines(z[a], w->fine[a], tolerance, w->chosen[a]);
+            w->count[a] = choose_lines(z[a], w->fine[a], tolerance, most, w->chosen[a]);
         }
         tolerance *= 1.5;
     } while (w->count[0] * w->count[1] > CELLS_MOST);
-    return !s->failed;
+    return true;
 }
 
 static void list_lines(const strip *s, const lines *w, int a, double *at)
@@ -256,16 +275,29 @@ static void list_lines(const strip *s, const lines *w, int a, double *at)
     }
 }
 
+/* Between points that all have heights; the others become some that have. */
 static void put_triangles(se3di_mesh *mesh, size_t columns, size_t rows)
 {
-    uint32_t *t = mesh->triangles;
+    double height = 0.0;
     for (size_t i = 0; i + 1 < rows; ++i) {
-        for (size_t j = 0; j + 1 < columns; ++j, t += 6) {
+        for (size_t j = 0; j + 1 < columns; ++j) {
             const uint32_t a = (uint32_t)(i * columns + j);
             const uint32_t b = a + (uint32_t)columns;
             const uint32_t corners[6] = {a, a + 1, b + 1, a, b + 1, b};
-            memcpy(t, corners, sizeof corners);
+            bool is_whole = true;
+            for (int k = 0; k < 6; ++k) {
+                is_whole = is_whole && !isnan(mesh->points[3 * corners[k] + 2]);
+            }
+            if (is_whole) {
+                memcpy(mesh->triangles + 3 * mesh->triangle_count, corners, sizeof corners);
+                mesh->triangle_count += 2;
+                height = mesh->points[3 * a + 2];
+            }
         }
+    }
+    for (size_t k = 0; k < columns * rows; ++k) {
+        double *z = &mesh->points[3 * k + 2];
+        *z = isnan(*z) ? height : *z;
     }
 }
 
@@ -288,9 +320,9 @@ static const se3di_mesh *make_surface(strip *s)
     list_lines(s, w, 0, x);
     list_lines(s, w, 1, y);
     mesh->point_count = columns * rows;
-    mesh->triangle_count = 2 * (columns - 1) * (rows - 1);
     mesh->points = se3di_iopool_array(pool, mesh->point_count, 3 * sizeof *mesh->points);
-    mesh->triangles = se3di_iopool_array(pool, mesh->triangle_count, 3 * sizeof *mesh->triangles);
+    mesh->triangles =
+        se3di_iopool_array(pool, 2 * (columns - 1) * (rows - 1), 3 * sizeof *mesh->triangles);
     if (!mesh->points || !mesh->triangles) {
         s->l->failed = true;
         return NULL;
@@ -299,20 +331,65 @@ static const se3di_mesh *make_surface(strip *s)
         double *p = mesh->points + 3 * k;
         p[0] = x[k % columns];
         p[1] = y[k / columns];
-        p[2] = get_height(s, s->time, p[0], p[1]);
+        p[2] = get_height(s, p);
     }
     put_triangles(mesh, columns, rows);
-    return mesh;
+    return mesh->triangle_count > 0 ? mesh : NULL;
+}
+
+static bool has_heights(const se3di_element_entry *entry)
+{
+    return entry->kind == SE3DI_ELEMENT_ROAD && entry->height.index1 > 0;
+}
+
+static void set_rise(const strip *s, size_t index, se3di_rise *rise)
+{
+    rise->height = s->owner->height;
+    rise->tolerance = s->l->sizes->extent;
+    rise->index = index;
+    for (int k = 0; k < 3; ++k) {
+        rise->places[k][0] = s->low[0] + 0.37 * k * (s->high[0] - s->low[0]);
+        rise->places[k][1] = s->low[1] + 0.41 * k * (s->high[1] - s->low[1]);
+        rise->first[k] = get_height(s, rise->places[k]);
+    }
+}
+
+/* @return whether it has changed as a whole, by `up`. */
+static bool measure_rise(const se3d_model *model, const se3di_rise *rise, double time, double *up)
+{
+    bool found = false;
+    *up = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const double now = eval_height(model, rise->height, time, rise->places[k]) - rise->first[k];
+        if (isnan(now)) {
+            continue;
+        }
+        if (found && fabs(now - *up) > 1e-6 * (fabs(now) + rise->tolerance)) {
+            *up = 0.0;
+            return false;
+        }
+        *up = now;
+        found = true;
+    }
+    return true;
+}
+
+double se3di_rise_get(const se3d_model *model, const se3di_rise *rise, double time)
+{
+    double up = 0.0;
+    if (rise->height.index1 > 0) {
+        (void)measure_rise(model, rise, time, &up);
+    }
+    return up;
 }
 
 /* How far the road has risen at every sample since the first; NULL: it stands still, or changes its
  * form. */
-static double *find_lift(strip *s)
+static double *find_lift(const strip *s, const se3di_rise *rise)
 {
     const se3di_poses *poses = s->l->poses;
-    const se3di_element_entry *road = s->owner;
     bool rises = false;
-    if (road->height.index1 == 0 || !poses->times || poses->count < 2) {
+    if (!rise || !poses->times || poses->count < 2) {
         return NULL;
     }
     double *lift = se3di_iopool_array(s->l->pool, poses->count, sizeof *lift);
@@ -321,35 +398,44 @@ static double *find_lift(strip *s)
         return NULL;
     }
     for (size_t k = 0; k < poses->count; ++k) {
-        for (int place = 0; place < 3; ++place) {
-            const double x = s->low[0] + 0.37 * place * (s->high[0] - s->low[0]);
-            const double y = s->low[1] + 0.41 * place * (s->high[1] - s->low[1]);
-            const double up = get_height(s, poses->times[k], x, y) - get_height(s, s->time, x, y);
-            lift[k] = place == 0 ? up : lift[k];
-            rises = rises || fabs(up) > 0.0;
-            if (s->failed || fabs(up - lift[k]) > 1e-6 * (fabs(up) + s->l->sizes->extent)) {
-                return NULL;
-            }
+        if (!measure_rise(s->l->model, rise, poses->times[k], &lift[k])) {
+            return NULL;
         }
+        rises = rises || fabs(lift[k]) > 0.0;
     }
     return rises ? lift : NULL;
 }
 
-static void add_surface(strip *s)
+/* Place and time of a strip. @return false: no wheel is on it. */
+static bool begin_strip(strip *s)
 {
-    double A[9];
-    se3di_part part = se3di_part_make("road", SE3DI_UNIT_BOX, asphalt);
     find_axes(s);
     s->time = s->l->poses->times ? s->l->poses->times[0] : 0.0;
     if (!s->l->poses->times) {
         (void)se3d_system_get_time(s->l->model->system, &s->time);
     }
-    if (!find_extent(s)) {
+    return find_extent(s);
+}
+
+static void add_surface(strip *s, size_t index)
+{
+    double A[9];
+    se3di_part part = se3di_part_make("road", SE3DI_UNIT_BOX, asphalt);
+    if (!begin_strip(s)) {
         return;
     }
     part.mesh = s->owner->surface ? s->owner->surface : make_surface(s);
     if (!part.mesh) {
         return;
+    }
+    if (has_heights(s->owner)) {
+        se3di_rise *rise = se3di_iopool_alloc(s->l->pool, sizeof *rise);
+        if (!rise) {
+            s->l->failed = true;
+            return;
+        }
+        set_rise(s, index, rise);
+        part.rise = rise;
     }
     for (int i = 0; i < 9; ++i) {
         A[i] = s->axes[3 * (i % 3) + i / 3];
@@ -358,8 +444,37 @@ static void add_surface(strip *s)
     memcpy(part.position, s->owner->point_i, sizeof part.position);
     memcpy(part.along, s->axes + 6, sizeof part.along);
     part.style = SE3DI_STYLE_SAND;
-    part.lift = find_lift(s);
+    part.lift = find_lift(s, part.rise);
     se3di_lister_add(s->l, &part);
+}
+
+size_t se3di_drawing_count_rises(const se3d_model *model)
+{
+    size_t count = 0;
+    for (size_t e = 0; e < model->element_count; ++e) {
+        count += has_heights(&model->elements[e]);
+    }
+    return count;
+}
+
+void se3di_drawing_list_rises(const se3d_model *model, const se3di_sizes *sizes,
+                              const se3di_poses *poses, se3di_rise *rises)
+{
+    static const se3di_rise still;
+    size_t count = 0;
+    for (size_t e = 0; e < model->element_count; ++e) {
+        const se3di_element_entry *entry = &model->elements[e];
+        if (!has_heights(entry)) {
+            continue;
+        }
+        se3di_lister l = {.model = model, .sizes = sizes, .poses = poses};
+        strip s = {.l = &l, .owner = entry, .body = se3di_drawing_find_body(model, entry->body_i)};
+        rises[count] = still;
+        if (begin_strip(&s)) {
+            set_rise(&s, count, &rises[count]);
+        }
+        ++count;
+    }
 }
 
 /* Whether an element before it has the same plane. */
@@ -376,6 +491,7 @@ static bool is_drawn_before(const se3d_model *model, size_t e)
 void se3di_lister_add_roads(se3di_lister *l)
 {
     const se3d_model *model = l->model;
+    size_t rises = 0;
     for (size_t e = 0; e < model->element_count && !l->failed; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
         const bool is_road = entry->kind == SE3DI_ELEMENT_ROAD;
@@ -383,7 +499,8 @@ void se3di_lister_add_roads(se3di_lister *l)
         if ((is_road || (is_plane && !is_drawn_before(model, e))) &&
             se3di_drawing_is_body(model, l->body, entry->body_i)) {
             strip s = {.l = l, .owner = entry, .body = l->body};
-            add_surface(&s);
+            add_surface(&s, rises);
         }
+        rises += has_heights(entry);
     }
 }

@@ -168,6 +168,8 @@ static size_t add_part(drawing *d, const se3di_part *part)
     se3di_glb_put(&d->glb, &d->nodes, ",\"mesh\":%zu", se3di_glb_add_mesh(&d->glb, part));
     if (part->element1 > 0) {
         se3di_glb_put(&d->glb, &d->nodes, ",\"extras\":{\"element\":%zu}", part->element1 - 1);
+    } else if (part->rise) {
+        se3di_glb_put(&d->glb, &d->nodes, ",\"extras\":{\"rise\":%zu}", part->rise->index);
     }
     se3di_glb_put(&d->glb, &d->nodes, "}");
     return node;
@@ -478,11 +480,12 @@ bool se3di_scene_put(se3d_scene *scene, FILE *file)
     return good;
 }
 
-bool se3di_scene_put_at(se3d_scene *scene, const double *poses, FILE *file)
+bool se3di_scene_put_at(se3d_scene *scene, const se3di_poses *poses, FILE *file)
 {
-    memcpy(scene->poses.values, poses, SE3DI_POSE * scene->poses.bodies * sizeof *poses);
+    memcpy(scene->poses.values, poses->values,
+           SE3DI_POSE * scene->poses.bodies * sizeof *poses->values);
     scene->poses.count = 1;
-    (void)se3d_system_get_time(scene->model->system, &scene->times[0]);
+    scene->times[0] = poses->times[0];
     return se3di_scene_put(scene, file);
 }
 

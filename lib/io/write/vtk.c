@@ -205,20 +205,25 @@ static void carry(const motion *m, const double s[3], double r[3], double v[3])
 static void move_points(se3di_vtk *vtk)
 {
     const se3d_model *model = vtk->model;
+    double time = 0.0;
     size_t point = 0;
+    (void)se3d_system_get_time(model->system, &time);
     for (size_t k = 0; k < vtk->piece_count; ++k) {
         const piece *p = &vtk->pieces[k];
         const surface s = surface_of(vtk, &p->part);
         motion m = {{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-        const se3di_part part =
-            p->between1 > 0 ? se3di_drawing_get_between(model, p->part.element1 - 1,
-                                                        p->between1 - 1, &vtk->sizes, vtk->poses)
-                            : p->part;
+        se3di_part part = p->between1 > 0
+                              ? se3di_drawing_get_between(model, p->part.element1 - 1,
+                                                          p->between1 - 1, &vtk->sizes, vtk->poses)
+                              : p->part;
         if (p->between1 == 0) {
             const se3d_body body = model->bodies[p->body].body;
             memcpy(m.pose, vtk->poses + SE3DI_POSE * p->body, sizeof m.pose);
             se3d_body_get_velocity(model->system, body, m.v);
             se3d_body_get_angular_velocity(model->system, body, m.w);
+        }
+        for (int i = 0; part.rise && i < 3; ++i) {
+            part.position[i] += se3di_rise_get(model, part.rise, time) * part.along[i];
         }
         for (size_t i = 0; i < s.points_count; ++i, ++point) {
             double local[3];
