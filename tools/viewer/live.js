@@ -65,8 +65,9 @@
   const open = async () => {
     await window.se3dReady;
     const scene = await (await ask("scene")).json();
-    if (viewer) { viewer.share(); viewer.close(); }
-    viewer = se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
+    if (viewer) viewer.share();
+    const bury = viewer ? viewer.close() : () => {};
+    viewer = await se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;
@@ -74,6 +75,7 @@
       const gl = $("view").getContext("webgl2");
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for it
       window.se3dLive.drawn = Date.now();
+      bury();
     });
   };
   const follow = async () => {

@@ -9,9 +9,10 @@ document.head.prepend(sheet); // what the page says of its own comes after it
 
 export { uPlot };
 export { OrbitControls } from "three/addons/controls/OrbitControls.js";
+export { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 export {
-  AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, EdgesGeometry, Group,
-  HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, Line, LineBasicMaterial, LineSegments, Mesh,
+  AnimationMixer, AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry,
+  HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, InterpolateSmooth, Line, LineBasicMaterial, LineSegments, Mesh,
   MeshBasicMaterial, MeshStandardMaterial, MOUSE, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion,
   Raycaster, Scene, ShaderMaterial, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
 } from "three";

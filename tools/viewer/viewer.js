@@ -7,48 +7,13 @@ let se3dRenderer = null; // one for all that is shown in this page
 // Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
 // file {names, rows} or null. With `live`
 // ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
-const se3dView = ({ glb, results, packed, modes, live }) => {
+const se3dView = async ({ glb, results, packed, modes, live }) => {
   const $ = (id) => document.getElementById(id);
   const decode = se3dDecode;
   const closing = new AbortController();
   for (const id of ["follow", "colour", "channel", "mode", "labels"]) $(id).replaceChildren();
   $("follow").add(new Option("nothing", "-1"));
-  const head = new DataView(glb);
-  const jsonLength = head.getUint32(12, true);
-  const gltf = JSON.parse(new TextDecoder().decode(new Uint8Array(glb, 20, jsonLength)));
-  const binary = 28 + jsonLength;
-
-  const accessor = (k) => {
-    const a = gltf.accessors[k];
-    const width = { SCALAR: 1, VEC3: 3, VEC4: 4 }[a.type];
-    const type = { 5126: Float32Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array }[a.componentType];
-    const raw = new type(glb.slice(binary + gltf.bufferViews[a.bufferView].byteOffset).slice(0, a.count * width * type.BYTES_PER_ELEMENT));
-    return { width, values: a.normalized ? Float32Array.from(raw, (v) => v / 32767) : raw };
-  };
-  const geometries = new Map();
-  const geometry = (primitive) => {
-    const key = primitive.attributes.POSITION;
-    if (!geometries.has(key)) {
-      const made = new THREE.BufferGeometry();
-      made.setAttribute("position", new THREE.BufferAttribute(accessor(key).values, 3));
-      if (primitive.attributes.NORMAL !== undefined) {
-        made.setAttribute("normal", new THREE.BufferAttribute(accessor(primitive.attributes.NORMAL).values, 3));
-        if (primitive.indices !== undefined) made.setIndex(new THREE.BufferAttribute(accessor(primitive.indices).values, 1));
-      }
-      geometries.set(key, made);
-    }
-    return geometries.get(key);
-  };
-  const drawn = (mesh) => {
-    const p = mesh.primitives[0], { pbrMetallicRoughness: m, extras } = gltf.materials[p.material];
-    const c = m.baseColorFactor;
-    const look = { color: new THREE.Color(c[0], c[1], c[2]), transparent: c[3] < 1, opacity: c[3], depthWrite: c[3] === 1 };
-    if (p.mode === 1) return new THREE.LineSegments(geometry(p), new THREE.LineBasicMaterial(look));
-    if (p.mode === 3) return new THREE.Line(geometry(p), new THREE.LineBasicMaterial(look));
-    const made = new THREE.Mesh(geometry(p), new THREE.MeshStandardMaterial({ ...look, metalness: m.metallicFactor, roughness: m.roughnessFactor, side: 2 }));
-    made.userData.wire = !!extras && extras.style === "wire";
-    return made;
-  };
+  const gltf = await new THREE.GLTFLoader().parseAsync(glb, ""), { json } = gltf.parser;
   // Dark lines where a surface bends: given shapes stand out, also those that are seen through.
   const edges = new Map(), lineworks = [];
   const outline = (o) => {
@@ -58,47 +23,40 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     o.add(lines);
     lineworks.push(lines);
   };
-  const nodes = gltf.nodes.map((n) => {
-    const o = n.mesh === undefined ? new THREE.Group() : drawn(gltf.meshes[n.mesh]);
-    o.name = n.name;
-    if (n.extras) Object.assign(o.userData, n.extras);
-    if (o.isMesh && (o.name === "shape" || o.name === "road") && o.geometry.attributes.position.count < 60000) outline(o);
-    if (o.isMesh && o.material.opacity === 1 && !o.userData.wire) { o.receiveShadow = true; o.castShadow = o.name !== "road"; }
-    if (n.translation) o.position.fromArray(n.translation);
-    if (n.rotation) o.quaternion.fromArray(n.rotation);
-    if (n.scale) o.scale.fromArray(n.scale);
-    return o;
+  // The loader makes names of its own; each part gets a material of its own, as they change one by one.
+  const nodes = await gltf.parser.getDependencies("node"), isDrawn = (o) => o.isMesh || o.isLine;
+  nodes.forEach((o, k) => {
+    o.name = json.nodes[k].name;
+    if (!isDrawn(o)) return;
+    o.material = o.material.clone();
+    o.userData.wire = o.material.userData.style === "wire";
+    if (!o.isMesh) return;
+    o.material.side = THREE.DoubleSide;
+    if ((o.name === "shape" || o.name === "road") && o.geometry.attributes.position.count < 60000) outline(o);
+    if (o.material.opacity === 1 && !o.userData.wire) { o.receiveShadow = true; o.castShadow = o.name !== "road"; }
   });
-  gltf.nodes.forEach((n, k) => (n.children || []).forEach((c) => nodes[k].add(nodes[c])));
-  document.title = $("title").textContent = gltf.scenes[0].name || "se3d";
-  const root = nodes[gltf.scenes[0].nodes[0]];
+  document.title = $("title").textContent = json.scenes[0].name || "se3d";
+  const extras = json.scenes[0].extras || {};
+  const root = nodes[json.scenes[0].nodes[0]];
   root.quaternion.set(0, 0, 0, 1); // our z is this camera's up
-  const bodies = gltf.nodes.map((n, k) => (n.extras && n.extras.body !== undefined ? nodes[k] : null)).filter(Boolean);
+  const bodies = nodes.filter((o) => o.userData.body !== undefined);
   const grid = root.children.find((o) => o.name === "grid");
 
-  // Motion: samples at the times of accessor 0, linear in between.
-  const motion = (gltf.animations || [{ channels: [], samplers: [] }])[0];
-  const times = motion.samplers.length ? accessor(motion.samplers[0].input).values : new Float32Array([0]);
-  const tracks = motion.channels.map((c) => ({
-    node: nodes[c.target.node], path: c.target.path, values: accessor(motion.samplers[c.sampler].output).values,
-  }));
+  // Motion: a clip of three.js. A long one was thinned out to more than half of the most samples: then a curve
+  // through its points.
+  const mixer = new THREE.AnimationMixer(root), [clip] = gltf.animations, times = clip ? clip.tracks[0].times : new Float32Array([0]);
+  let action = null;
+  if (clip) {
+    clip.tracks.forEach((track, k) => {
+      const { node, path } = json.animations[0].channels[k].target;
+      track.name = nodes[node].uuid + track.name.slice(track.name.lastIndexOf(".")); // names may be there twice
+      if (path === "translation" && times.length > 625) track.setInterpolation(THREE.InterpolateSmooth);
+    });
+    action = mixer.clipAction(clip).play();
+  }
   const grainTimes = packed ? packed.times : [];
   let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
-  const qa = new THREE.Quaternion(), qb = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
-  // A long motion was thinned out to more than half of the most samples: then a curve through its points.
-  const curved = times.length > 625;
-  const tangent = (values, k, i) => {
-    const a = Math.max(0, k - 1), b = Math.min(times.length - 1, k + 1);
-    return (values[3 * b + i] - values[3 * a + i]) / (times[b] - times[a]);
-  };
-  const curve = (values, a, b, part, out) => {
-    const h = times[b] - times[a], p = part * part * (3 - 2 * part);
-    for (let i = 0; i < 3; ++i) {
-      const from = values[3 * a + i], to = values[3 * b + i];
-      out[i] = from + p * (to - from) + h * part * (1 - part) * ((1 - part) * tangent(values, a, i) - part * tangent(values, b, i));
-    }
-    return out;
-  };
+  const qa = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
   const locate = (list, count, t) => {
     let low = 0, high = count - 1;
     while (high - low > 1) { const mid = (low + high) >> 1; if (list(mid) <= t) low = mid; else high = mid; }
@@ -108,11 +66,14 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   // Live: bodies (position, Euler parameters), then what is between them, with scales, as they came last.
   let places = null;
   const between = root.children.filter((o) => o.userData.element !== undefined);
+  const risen = nodes.filter((o) => o.userData.rise !== undefined).map((o) => ({ o, at: o.position.clone(),
+    along: new THREE.Vector3(0, 0, 1).applyQuaternion(o.quaternion), rise: o.userData.rise }));
   const put = () => {
     const turn = (o, k) => o.quaternion.set(places[k + 1], places[k + 2], places[k + 3], places[k]);
     let k = 0;
     bodies.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); k += 7; });
     between.forEach((o) => { o.position.fromArray(places, k); turn(o, k + 3); o.scale.fromArray(places, k + 7); k += 10; });
+    risen.forEach(({ o, at, along, rise }) => o.position.copy(at).addScaledVector(along, places[k + rise]));
   };
   // Modes: beside the last pose, bodies move by the real part of their shape times exp(i phase); what has no frequency
   // decays. What lies between two bodies goes along with the points of them where its ends were.
@@ -130,7 +91,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     const local = (k, v) => v.clone().sub(rest.bodies[k].r).applyQuaternion(rest.bodies[k].q.clone().conjugate());
     const ends = (o) => [-0.5, 0.5].map((s) => new THREE.Vector3(0, 0, s * o.scale.z).applyQuaternion(o.quaternion).add(o.position));
     rest.lines = [];
-    (((gltf.scenes[0].extras || {}).elements) || []).forEach((e, k) => {
+    (extras.elements || []).forEach((e, k) => {
       const parts = between.filter((o) => o.userData.element === k);
       if (!parts.length || !e.bodies) return;
       const from = ends(parts[0])[0], to = ends(parts[parts.length - 1])[1], length = Math.max(1e-12, to.distanceTo(from));
@@ -166,16 +127,9 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     follow(t);
   };
   const follow = (t) => {
-    const [a, b, part] = locate((k) => times[k], times.length, t);
-    for (const { node, path, values } of tracks) {
-      if (path === "rotation") {
-        node.quaternion.copy(qa.fromArray(values, 4 * a).normalize()).slerp(qb.fromArray(values, 4 * b).normalize(), part);
-      } else {
-        const target = node[path === "scale" ? "scale" : "position"];
-        if (curved && a < b) target.fromArray(curve(values, a, b, part, []));
-        else target.copy(va.fromArray(values, 3 * a)).lerp(vb.fromArray(values, 3 * b), part);
-      }
-    }
+    if (!action) return;
+    action.time = t;
+    mixer.update(0);
   };
 
   // Results beside the motion.
@@ -188,7 +142,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   };
 
   // Joints, springs and rods: their names and types, and what they are drawn with. `place`: the part at their point of body j.
-  const elements = ((gltf.scenes[0].extras || {}).elements || []).map((e) => ({ ...e, parts: [], place: null }));
+  const elements = (extras.elements || []).map((e) => ({ ...e, parts: [], place: null }));
   nodes.forEach((o) => {
     const e = elements[o.userData.element];
     if (e && o.isMesh) { e.parts.push(o); if (!e.place && o.name === e.name) e.place = o; }
@@ -443,7 +397,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   });
   let largest = Math.max(1e-12, ...arrows.map((a) => a.largest));
   // Traces of bodies' origins and of markers.
-  const traced = bodies.slice(1).flatMap((b) => [b, ...b.children.filter((o) => o.isGroup)]);
+  const traced = bodies.slice(1).flatMap((b) => [b, ...b.children.filter((o) => !isDrawn(o))]);
   const traces = [];
   const makeTraces = () => {
     const count = Math.min(600, times.length), points = traced.map(() => new Float32Array(3 * count));
@@ -780,7 +734,7 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
   requestAnimationFrame(frame);
   // Live: what came last; the plot keeps the last rows.
   const feed = ({ t, running, speed, places: now, values }) => {
-    if (now.length !== 7 * bodies.length + 10 * between.length) return;
+    if (now.length < 7 * bodies.length + 10 * between.length) return;
     places = now;
     fresh = true;
     if (rows > 0 && t < at(rows - 1, 0)) { rows = 0; results.values = []; }
@@ -794,11 +748,12 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
     start = at(0, 0); end = Math.max(t, start);
     set({ time: t, playing: running, speed });
   };
+  // What is returned frees the rest: after the next picture, so that it finds its programs made.
   const close = () => {
     closing.abort();
     controls.dispose();
     plots.close();
-    scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
+    return () => scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
   };
   // For tests and films.
   const written = { title: null, hide: [], captions: [] };
@@ -906,6 +861,6 @@ const se3dView = ({ glb, results, packed, modes, live }) => {
 if (document.getElementById("glb")) {
   Promise.resolve(window.se3dReady).then(() => {
     const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
-    se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
+    return se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
   }).catch((e) => { window.se3dProblem = String(e.message); throw e; });
 }
