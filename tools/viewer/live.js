@@ -64,6 +64,7 @@
 
   const open = async () => {
     await window.se3dReady;
+    if (viewer) viewer.hold(true);
     const scene = await (await ask("scene")).json();
     if (viewer) viewer.share();
     const bury = viewer ? viewer.close() : () => {};
@@ -71,12 +72,11 @@
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;
-    requestAnimationFrame(() => { // after the first picture
-      const gl = $("view").getContext("webgl2");
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits for it
+    live.painted = () => { // the first picture
+      live.painted = null;
       window.se3dLive.drawn = Date.now();
       bury();
-    });
+    };
   };
   const follow = async () => {
     let sequence = 0;
@@ -94,6 +94,7 @@
           Object.assign(window.se3dLive, { state, version });
         }
       } catch (e) {
+        if (viewer) viewer.hold(false);
         show(`${viewer ? "the program has ended, or does not answer" : "no answer from the program"} (${e.message})`);
         sequence = 0;
         await pause(1000);

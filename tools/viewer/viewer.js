@@ -3,7 +3,7 @@
 "use strict";
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-let se3dRenderer = null; // one for all that is shown in this page
+let se3dRenderer = null, se3dSlow = 0; // one for all that is shown in this page; how slow pictures are
 // Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
 // file {names, rows} or null. With `live`
 // ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
@@ -373,7 +373,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   const see = () => {
     if (state.solid) return;
     for (let round = 0; round < 4; ++round) {
-      const some = hidden(orbit.azimuth, orbit.height, 4).flat().filter((o) => o.name === "shape" && !clear.has(o));
+      const some = hidden(orbit.azimuth, orbit.height, live ? 1 : 4).flat().filter((o) => o.name === "shape" && !clear.has(o));
       if (!some.length) return;
       some.forEach((o) => clear.add(o));
       glaze();
@@ -701,7 +701,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   // From the side from which most joints are seen; what still hides one is seen through.
   fit();
   if (shown.length && !new URLSearchParams(location.hash.slice(1)).has("view")) { // unless it is given
-    const around = [-0.9, 0.9, 2.2, -2.2].map((azimuth) => [hidden(azimuth, 0.35, 2).length, azimuth]);
+    const around = [-0.9, 0.9, 2.2, -2.2].map((azimuth) => [hidden(azimuth, 0.35, live ? 1 : 2).length, azimuth]);
     orbit.azimuth = around.reduce((a, b) => (b[0] < a[0] ? b : a))[1];
     fit();
   }
@@ -716,9 +716,33 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     last = what; fresh = false;
     return other;
   };
+  // At most one picture waits to be painted, so that what comes meanwhile is shown by the next one. Live, pictures that
+  // take long (no GPU) are made with fewer points while all moves.
+  const gl = renderer.getContext(), fine = Math.min(2, devicePixelRatio || 1);
+  let fence = null, began = 0, idle = 0, held = false;
+  const isPainted = () => {
+    if (!fence) return true;
+    if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(fence);
+    fence = null;
+    const took = performance.now() - began;
+    idle = live && took > 70 ? performance.now() + 0.7 * took : 0; // for what else the page has to do
+    se3dSlow = took > 70 ? Math.min(6, se3dSlow + 1) : Math.max(0, se3dSlow - 0.2);
+    if (live && live.painted) live.painted();
+    return true;
+  };
+  const paint = () => {
+    const ratio = live && se3dSlow >= 3 && (state.playing || pull) ? 0.5 * fine : fine;
+    if (live && renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
+    began = performance.now();
+    draw();
+    fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+  };
   let before = performance.now();
   const frame = (now) => {
     if (closing.signal.aborted) return;
+    if (!isPainted() || held || performance.now() < idle) { requestAnimationFrame(frame); return; }
     const passed = Math.min(0.25, Math.max(0, (now - before) / 1000));
     before = now;
     if (shape && state.playing && !live) {
@@ -728,7 +752,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       if (state.time > end) state.time = start + (state.time - end) % (end - start);
     }
     if (!film) controls.update();
-    if (!film && isOther()) draw();
+    if (!film && isOther()) paint();
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);
@@ -856,7 +880,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
-  return { feed, close, share };
+  return { feed, close, share, hold: (what) => { held = what; } };
 };
 if (document.getElementById("glb")) {
   Promise.resolve(window.se3dReady).then(() => {
