@@ -11,6 +11,7 @@ import os
 import random
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import time
@@ -364,6 +365,39 @@ def check_roads():
         check(state["version"] == version and abs(state["places"][-1] - 0.02 * math.sin(3 * state["t"])) < 1e-7, "another number leaves the picture")
 
 
+GRAINS = """\
+se3d: 1
+parameters: {push: 1 m/s}
+materials: [{name: glass, density: 2500, friction: 0.4, restitution: 0.6, stiffness: 2e4}]
+contact: {law: hooke}
+particles: [{material: glass, radius: 0.01, packing: lattice, seed: 1, lower: [0, 0, 1], upper: [0.1, 0.1, 1.1]}]
+bodies: [{name: blade, mass: 1, inertia: [1, 1, 1], position: [2, 0, 0]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: blade, at: [2, 0, 0], axis: [1, 0, 0]}]
+drivers: [{name: way, joint: rail, value: "push*t"}]
+analysis: {type: KIND, duration: 1}
+"""
+
+
+def check_grains():
+    """Particles fall beside bodies, with and without dynamics, and go on where they are."""
+    for kind in ("kinematics", "dynamics"):
+        save("grains.yaml", GRAINS.replace("KIND", kind))
+        with Other("grains.yaml") as live:
+            box = live.scene()["box"]
+            check(0.99 < box[2] < box[5] < 1.11, f"the box of the particles: {box}")
+            places = lambda: struct.unpack("<%df" % (len(base64.b64decode(live.state["grains"])) // 4), base64.b64decode(live.state["grains"]))
+            first = places()
+            check(len(first) % 4 == 0 and len(first) > 100 and all(abs(r - 0.01) < 1e-6 for r in first[3::4]), "centres and radii")
+            for _ in range(12):
+                live.say("step")
+            live.next(lambda s: abs(s["t"] - 0.2) < 1e-9)
+            fallen = [a - b for a, b in zip(first[2::4], places()[2::4])]
+            check(all(abs(d - 9.80665 * 0.02) < 5e-4 for d in fallen), f"{kind}: they have fallen by {fallen[:3]}")
+            before = places()
+            state = live.set("push", 2)
+            check(abs(state["t"] - 0.2) < 1e-9 and max(abs(a - b) for a, b in zip(before, places())) < 1e-6, f"{kind}: they are where they were: {state['t']}, {state['trouble']}")
+
+
 SLOW = "{type: dynamics, method: rk4, step: 1e-6, duration: 100}"  # minutes
 
 
@@ -528,6 +562,7 @@ def main():
         check_turns()
         check_rates()
         check_roads()
+        check_grains()
         check_endings()
         check_others()
         check_folders()

@@ -26,8 +26,6 @@ says 'none.yaml'
 printf 'se3d: 1\nbodies: [{name: b, mas: 1}]\n' >"$dir/wrong.yaml"
 expect 'a wrong model' 2 "$program" live "$dir/wrong.yaml"
 says 'wrong.yaml:2:'
-expect 'a model with particles' 2 "$program" live "$models/pushed_grains.yaml"
-says 'the model has particles'
 expect 'standard output is closed' 1 sh -c "\"$program\" live \"$models/pendulum.yaml\" >&-"
 says 'the address cannot be written'
 if [ -w /dev/full ]; then

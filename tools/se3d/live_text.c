@@ -31,6 +31,19 @@ char *live_text_take(FILE *file, char **data)
     return NULL;
 }
 
+/* Centres and radii of all particles, as 32-bit numbers. */
+static void put_particles(FILE *file, const se3di_live *model)
+{
+    const size_t count = se3di_live_count_particles(model);
+    float *places = calloc(4 * count + 1, sizeof *places);
+    if (places && se3di_live_get_particles(model, places)) {
+        fputs(",\"grains\":\"", file);
+        base64_put(file, places, 4 * count * sizeof *places);
+        fputs("\"", file);
+    }
+    free(places);
+}
+
 static void put_state(FILE *file, se3di_live *model, const live_status *s, double *numbers)
 {
     char trouble[2 * SE3DI_LIVE_MESSAGE_SIZE + 2];
@@ -53,6 +66,7 @@ static void put_state(FILE *file, se3di_live *model, const live_status *s, doubl
         numbers[k] = se3di_live_get_slider(model, k)->value;
     }
     put_numbers(file, "numbers", numbers, sliders);
+    put_particles(file, model);
     fputs("}", file);
 }
 
@@ -91,6 +105,7 @@ static void put_results(FILE *file, const se3di_live *model, char *json)
 {
     const table units = {.scene = json};
     char unit[60];
+    double box[6];
     fputs(",\"results\":{\"names\":[\"time\"", file);
     for (size_t k = 0; k < se3di_live_count_columns(model); ++k) {
         fputs(",", file);
@@ -111,7 +126,11 @@ static void put_results(FILE *file, const se3di_live *model, char *json)
         text_put_json(file, slider->unit);
         fprintf(file, ",\"start\":%.12g}", slider->start);
     }
-    fputs("]}", file);
+    fputs("]", file);
+    if (se3di_live_get_particle_box(model, box, box + 3)) {
+        put_numbers(file, "box", box, 6);
+    }
+    fputs("}", file);
 }
 
 char *live_text_of_sliders(const se3di_live *model)

@@ -68,7 +68,7 @@
     const scene = await (await ask("scene")).json();
     if (viewer) viewer.share();
     const bury = viewer ? viewer.close() : () => {};
-    viewer = await se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: null, modes: null, live });
+    viewer = await se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: scene.box ? { box: scene.box } : null, modes: null, live });
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;

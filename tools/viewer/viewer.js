@@ -54,7 +54,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     });
     action = mixer.clipAction(clip).play();
   }
-  const grainTimes = packed ? packed.times : [];
+  const grainTimes = packed && packed.times || [];
   let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
   const qa = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
   const locate = (list, count, t) => {
@@ -165,21 +165,24 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   let grains = null;
   const self = { cut: null };
   if (packed) {
-    const { count, low, high } = packed;
-    const place = new Float32Array(4 * count), shade = new Float32Array(count), radii = new Float32Array(decode(packed.radii));
-    const frames = packed.frames.map((text) => new Uint16Array(decode(text)));
-    const shape = new THREE.InstancedBufferGeometry();
-    shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
-    shape.setIndex([0, 1, 2, 0, 2, 3]);
-    for (let k = 0; k < count; ++k) shade[k] = 0.8 + 0.2 * ((k * 0.618034) % 1);
-    const places = new THREE.InstancedBufferAttribute(place, 4);
-    shape.setAttribute("place", places);
-    shape.setAttribute("shade", new THREE.InstancedBufferAttribute(shade, 1));
-    const paints = new Float32Array(3 * count).map((v, k) => [0.93, 0.72, 0.42][k % 3]), paint = new THREE.InstancedBufferAttribute(paints, 3);
-    shape.setAttribute("paint", paint);
+    let count = packed.count || 0, place, paints, places, paint;
+    const { low = [0, 0, 0], high = [0, 0, 0] } = packed, radii = new Float32Array(decode(packed.radii || ""));
+    const frames = (packed.frames || []).map((text) => new Uint16Array(decode(text)));
+    // With room for so many.
+    const make = (most) => {
+      const shape = new THREE.InstancedBufferGeometry();
+      place = new Float32Array(4 * most); paints = new Float32Array(3 * most).map((v, k) => [0.93, 0.72, 0.42][k % 3]);
+      places = new THREE.InstancedBufferAttribute(place, 4); paint = new THREE.InstancedBufferAttribute(paints, 3);
+      shape.setAttribute("position", new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
+      shape.setIndex([0, 1, 2, 0, 2, 3]);
+      shape.setAttribute("place", places);
+      shape.setAttribute("shade", new THREE.InstancedBufferAttribute(new Float32Array(most).map((v, k) => 0.8 + 0.2 * ((k * 0.618034) % 1)), 1));
+      shape.setAttribute("paint", paint);
+      shape.instanceCount = count;
+      return shape;
+    };
     const flat = { value: 0 }; // 1: the colours as they are, to count what is seen
-    shape.instanceCount = count;
-    const cloud = new THREE.Mesh(shape, new THREE.ShaderMaterial({
+    const cloud = new THREE.Mesh(make(live ? 1000 : count), new THREE.ShaderMaterial({
       uniforms: { flat_: flat },
       vertexShader: `attribute vec4 place; attribute float shade; attribute vec3 paint; varying vec2 corner; varying float tone; varying vec3 tint;
         void main() {
@@ -215,7 +218,17 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       : Math.hypot(...[0, 1, 2].map((i) => scale[i] * (frames[b][3 * k + i] - frames[a][3 * k + i]))) / (grainTimes[b] - grainTimes[a]));
     let shownAt = [0, 0];
     const sizes = () => [radii.reduce((a, b) => Math.min(a, b)), radii.reduce((a, b) => Math.max(a, b))];
-    self.move = (t) => { const [a, b] = locate((k) => grainTimes[k], grainTimes.length, t); shownAt = [a, b]; move(t); };
+    // Live: centres and radii as they come.
+    self.feed = (data) => {
+      count = data.length / 4;
+      if (data.length > place.length) { cloud.geometry.dispose(); cloud.geometry = make(2 * count); }
+      place.set(data);
+      if (self.cut) for (let k = 0; k < count; ++k) if (self.cut.distanceToPoint(va.fromArray(place, 4 * k)) < 0) place[4 * k + 3] = 0;
+      cloud.geometry.instanceCount = count;
+      places.needsUpdate = true;
+    };
+    self.move = live ? () => {} : (t) => { const [a, b] = locate((k) => grainTimes[k], grainTimes.length, t); shownAt = [a, b]; move(t); };
+    self.list = () => ({ place, count });
     self.fastest = () => { let most = 0; for (let k = 0; k < count; ++k) most = Math.max(most, speed(k, ...shownAt)); return most; };
     self.paint = (what, span) => {
       for (let k = 0; k < count; ++k) {
@@ -244,7 +257,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       for (let k = 0; k < count; ++k) there += place[4 * k + 3] > 0;
       return { there, seen: [...found.values()].filter((points) => points > 1).length }; // a single point may be the edge of two
     };
-    grains = Object.assign(self, { place, count, sizes });
+    grains = Object.assign(self, { sizes });
   }
 
   // What the camera looks at: the box around the bodies at a few times.
@@ -272,7 +285,8 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     root.traverse((o) => { if (o.name === "road" && o.isMesh) { o.geometry.computeBoundingBox(); least = Math.min(least, o.geometry.boundingBox.clone().applyMatrix4(o.matrixWorld).min.z); } });
     if (least < Infinity) grid.position.z = least - 0.004 * high.distanceTo(low);
   }
-  if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
+  if (packed && packed.box) { if (packed.box[0] !== null) { low.min(va.fromArray(packed.box)); high.max(va.fromArray(packed.box, 3)); } }
+  else if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
   if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
   const center = low.clone().add(high).multiplyScalar(0.5);
   const size = Math.max(1e-6, high.distanceTo(low));
@@ -355,8 +369,9 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       });
       if (grains) {
         grains.move(t);
-        for (let g = 0; g < grains.count; g += Math.ceil(grains.count / 150)) {
-          if (grains.place[4 * g + 3] > 0) { const list = blockers(eye, at.fromArray(grains.place, 4 * g), []); if (list.length) found.push(list); }
+        const { place: spots, count: all } = grains.list();
+        for (let g = 0; g < all; g += Math.ceil(all / 150)) {
+          if (spots[4 * g + 3] > 0) { const list = blockers(eye, at.fromArray(spots, 4 * g), []); if (list.length) found.push(list); }
         }
       }
     }
@@ -603,7 +618,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     phase = state.phase;
     $("help").style.display = state.help ? "block" : "none";
   };
-  for (const [key, text] of [["", "material"], ["speed", "speed"], ...(packed ? [["size", "size"]] : [])]) $("colour").add(new Option(text, key));
+  for (const [key, text] of [["", "material"], ["speed", "speed"], ...(packed && !live ? [["size", "size"]] : [])]) $("colour").add(new Option(text, key));
   $("colour").onchange = () => { set({ colour: $("colour").value }); draw(); };
   $("mode").add(new Option("none", "0"));
   shapes.forEach((s, k) => $("mode").add(new Option(`${k + 1}: ` + (s.imag > 0 ? `${s.frequency.toPrecision(4)} Hz, damping ${s.damping.toPrecision(3)}` : `s = ${s.real.toPrecision(3)} 1/s`), String(k + 1))));
@@ -757,9 +772,12 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   };
   requestAnimationFrame(frame);
   // Live: what came last; the plot keeps the last rows.
-  const feed = ({ t, running, speed, places: now, values }) => {
+  let fed = false;
+  const feed = ({ t, running, speed, places: now, values, grains: dots }) => {
     if (now.length < 7 * bodies.length + 10 * between.length) return;
     places = now;
+    if (grains) grains.feed(new Float32Array(decode(dots || "")));
+    if (grains && dots && !fed) { fed = true; pose(t); see(); } // what hides the first of them
     fresh = true;
     if (rows > 0 && t < at(rows - 1, 0)) { rows = 0; results.values = []; }
     if (rows === 0 || t > at(rows - 1, 0)) {
@@ -829,7 +847,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       return sheet.toDataURL("image/jpeg", 0.93);
     },
     // Where grain k (from 0 in the order of ids) is, and its radius.
-    grain: (k) => Array.from(grains.place.subarray(4 * k, 4 * k + 4)),
+    grain: (k) => Array.from(grains.list().place.subarray(4 * k, 4 * k + 4)),
     plots, share, pick: (x, y) => { set({ picked: pick(x, y) }); draw(); return $("info").textContent; },
     elements: () => shown.map((e) => e.name),
     // How many points of the picture show each joint or spring: those that change when it has another colour.

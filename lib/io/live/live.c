@@ -6,6 +6,8 @@
 
 #include "io/live/pull.h"
 #include "io/live/session.h"
+#include "io/model/tagged.h"
+#include "io/run/run_particles.h"
 #include "io/write/scene.h"
 
 struct se3di_live {
@@ -147,6 +149,33 @@ double se3di_live_get_time(const se3di_live *live)
 
 /* ---- running --------------------------------------------------------------------------------*/
 
+/* To a time, or an interrupt. Particles of analyses without dynamics go in short pieces after the
+ * bodies, which an interrupt may have left on the way. */
+static se3d_status run_all(const se3di_live *live, double time)
+{
+    const se3di_session *s = live->now;
+    const se3di_tagged *particles = s->model->particles;
+    const se3d_solver_def *def = &s->model->analyses[s->analysis].solver;
+    se3d_status status = SE3D_OK;
+    double now = 0.0;
+    double step = 0.0;
+    if (!particles || def->analysis == SE3D_ANALYSIS_DYNAMICS) {
+        return se3d_solver_run(s->solver, time);
+    }
+    (void)se3d_particles_get_time(particles->set, &now);
+    (void)se3d_particles_get_step(particles->set, &step);
+    const double piece = step > 0.0 ? 20.0 * step : time - now;
+    while (status == SE3D_OK && now < time && !is_ended(live)) {
+        now = fmin(time, now + piece);
+        status = se3di_tagged_advance(s->model, def, s->solver, now);
+        (void)se3d_system_get_time(s->model->system, &now);
+        if (status == SE3D_ERR_INTERRUPTED) {
+            (void)se3d_particles_run(particles->set, now);
+        }
+    }
+    return status;
+}
+
 bool se3di_live_run(se3di_live *live, double time, char message[SE3DI_LIVE_MESSAGE_SIZE])
 {
     se3di_session *s = live->now;
@@ -157,7 +186,7 @@ bool se3di_live_run(se3di_live *live, double time, char message[SE3DI_LIVE_MESSA
     }
     se3d_status status =
         se3d_solver_set_shown(s->solver, s->shows_all ? SE3D_SHOWN_ALL : SE3D_SHOWN_MOTION);
-    status = status < 0 ? status : se3d_solver_run(s->solver, time);
+    status = status < 0 ? status : run_all(live, time);
     se3di_session_renew(s);
     if (status >= 0 && status != SE3D_INFO_EVENT) {
         return true;
@@ -256,6 +285,37 @@ void se3di_live_get_places(se3di_live *live, double *places)
     for (size_t k = 0; k < s->rise_count; ++k) {
         places[k] = se3di_rise_get(model, &s->rises[k], se3di_live_get_time(live));
     }
+}
+
+size_t se3di_live_count_particles(const se3di_live *live)
+{
+    const se3di_tagged *particles = live->now->model->particles;
+    return particles ? se3d_particles_count(particles->set) : 0;
+}
+
+bool se3di_live_get_particles(const se3di_live *live, float *places)
+{
+    const size_t n = se3di_live_count_particles(live);
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, NULL);
+    double *numbers = se3di_iopool_array(&pool, 10 * n + 1, sizeof *numbers);
+    const bool good = n > 0 && numbers && se3di_session_get_particles(live->now, numbers);
+    for (size_t k = 0; good && k < n; ++k) {
+        for (size_t i = 0; i < 3; ++i) {
+            places[4 * k + i] = (float)numbers[n + 3 * k + i];
+        }
+        places[4 * k + 3] = (float)numbers[k];
+    }
+    se3di_iopool_destroy(&pool);
+    return good;
+}
+
+bool se3di_live_get_particle_box(const se3di_live *live, double low[3], double high[3])
+{
+    const se3di_session *s = live->now;
+    memcpy(low, s->particle_box[0], 3 * sizeof *low);
+    memcpy(high, s->particle_box[1], 3 * sizeof *high);
+    return s->model->particles != NULL;
 }
 
 size_t se3di_live_count_columns(const se3di_live *live)

@@ -79,6 +79,13 @@ bool se3di_live_put_scene(se3di_live *live, FILE *file);
  * (10), then how far each road whose heights are functions has risen (1). */
 size_t se3di_live_count_places(const se3di_live *live);
 void se3di_live_get_places(se3di_live *live, double *places);
+/* Particles: as many as there are now. */
+size_t se3di_live_count_particles(const se3di_live *live);
+/* Centres and radii, [count][4]. @return false: out of memory. */
+bool se3di_live_get_particles(const se3di_live *live, float *places);
+/* The box around them at the start; infinite, low > high: there were none. @return false: the model
+ * has no particles. */
+bool se3di_live_get_particle_box(const se3di_live *live, double low[3], double high[3]);
 /* Numbers of the channels of the first results file that has some; NaN: not known now. */
 size_t se3di_live_count_columns(const se3di_live *live);
 const char *se3di_live_get_column(const se3di_live *live, size_t k);

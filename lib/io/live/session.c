@@ -6,6 +6,7 @@
 
 #include "io/channel/event.h"
 #include "io/fmi/before.h"
+#include "io/model/tagged.h"
 
 enum { COLUMNS_MAX = 1000 };
 
@@ -174,6 +175,35 @@ static bool list_columns(se3di_session *s)
     return true;
 }
 
+bool se3di_session_get_particles(const se3di_session *s, double *numbers)
+{
+    const se3d_particles *set = s->model->particles->set;
+    const size_t n = se3d_particles_count(set);
+    return se3d_particles_get_radii(set, n, numbers) >= 0 &&
+           se3d_particles_get_all(set, n, numbers + n, numbers + 4 * n, numbers + 7 * n) >= 0;
+}
+
+/* The box around the particles. */
+static bool measure_particles(se3di_session *s)
+{
+    const size_t n = s->model->particles ? se3d_particles_count(s->model->particles->set) : 0;
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, NULL);
+    double *numbers = se3di_iopool_array(&pool, 10 * n + 1, sizeof *numbers);
+    const bool good = numbers && (n == 0 || se3di_session_get_particles(s, numbers));
+    for (size_t i = 0; i < 3; ++i) {
+        s->particle_box[0][i] = HUGE_VAL;
+        s->particle_box[1][i] = -HUGE_VAL;
+        for (size_t k = 0; good && k < n; ++k) {
+            const double at = numbers[n + 3 * k + i];
+            s->particle_box[0][i] = fmin(s->particle_box[0][i], at - numbers[k]);
+            s->particle_box[1][i] = fmax(s->particle_box[1][i], at + numbers[k]);
+        }
+    }
+    se3di_iopool_destroy(&pool);
+    return good;
+}
+
 /* Poses and sizes as the scene has them, which is drawn where the bodies are now, or were in `like`
  * (NULL: none). */
 static bool measure(const se3di_session *like, se3di_session *s)
@@ -194,10 +224,12 @@ static bool measure(const se3di_session *like, se3di_session *s)
     }
     (void)se3d_system_get_time(model->system, &s->start_time);
     if (like) {
+        memcpy(s->particle_box, like->particle_box, sizeof s->particle_box);
         s->start_time = like->start_time;
         memcpy(s->start.values, like->start.values,
                model->body_count * SE3DI_POSE * sizeof(double));
-    } else if (se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
+    } else if (!measure_particles(s) ||
+               se3di_drawing_get_poses(model, s->start.values) != SE3D_OK) {
         return false;
     }
     se3di_drawing_measure(model, &s->start, &s->sizes);
@@ -441,10 +473,6 @@ static bool prepare(const se3di_session *before, se3di_session *s, char *message
     se3d_status status = se3di_fmi_variables_list(s->model, &s->variables, problem, sizeof problem);
     se3di_sample_init(&s->sample, s->model->system, &s->model->pool.allocator);
     s->is_prepared = true;
-    if (s->model->particles) {
-        return say(message, "the model has particles, which are not shown live: `se3d run` and "
-                            "`se3d view` show them");
-    }
     if (status == SE3D_ERR_NO_MEMORY || !list_sliders(s) || !list_columns(s)) {
         return say_memory(message);
     }
@@ -463,6 +491,7 @@ static bool start(const se3di_session_source *from, const se3di_session *before,
     }
     const bool moves = se3di_fmi_find_analysis(s->model, &index);
     const size_t count = moves ? index : s->model->analysis_count;
+    s->analysis = index;
     goes_on = goes_on && moves && before->solver;
     const bool is_copied = goes_on && copy_state(before, s);
     if ((!is_copied && !run_before(from, s, count, message)) ||

@@ -34,7 +34,9 @@ typedef struct se3di_session {
     size_t between_count;
     se3di_rise *rises; /* of roads */
     size_t rise_count;
-    double *poses; /* of the present state */
+    size_t analysis;           /* that runs */
+    double particle_box[2][3]; /* around the particles at the start; empty: low > high */
+    double *poses;             /* of the present state */
 } se3di_session;
 
 /* What sessions are made of. */
@@ -49,6 +51,9 @@ typedef struct se3di_session_source {
  * NULL: `message` says why there is none. */
 se3di_session *se3di_session_make(const se3di_session_source *from, se3di_session *now,
                                   se3di_live_beginning beginning, char *message);
+/* Radii, [n], centres, [n][3], and velocities, [2 n][3], of all particles. @return false: out of
+ * memory */
+bool se3di_session_get_particles(const se3di_session *s, double *numbers);
 void se3di_session_destroy(se3di_session *s);
 /* The state of the system has changed: channels are asked anew. */
 void se3di_session_renew(se3di_session *s);

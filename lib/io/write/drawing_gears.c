@@ -328,8 +328,8 @@ static const se3di_mesh *make_disc(se3di_lister *l, const wheel *w)
     return mesh;
 }
 
-/* A bar along x with teeth towards -y, its pitch line y = 0. A very long one has every second, third
- * ... tooth. */
+/* A bar along x with teeth towards -y, its pitch line y = 0. A very long one has every second,
+ * third ... tooth. */
 static const se3di_mesh *make_rack(se3di_lister *l, const wheel *w, const double range[2])
 {
     const double pitch = pi * w->module;
