@@ -17,6 +17,7 @@ se3d: 1
 bodies:
   - {name: block, mass: 1, inertia: [1, 1, 1], shapes: [{type: box, size: [1, 1, 1], color: [0.5, 0, 0, 0.25]},
      {type: sphere, radius: 1, style: steel}, {type: sphere, radius: 2, style: wire}]}
+  - {name: tube, from: [0, 0, 0], to: [0, 1, 0], radius: 0.02, wall: 0.002, density: 7850}
 analysis: {type: dynamics, duration: 0.1}
 END_OF_MODEL
 "$program" run -q "$dir/looks.yaml" -o "$dir/looks"
@@ -325,6 +326,9 @@ doc, binary = load(sys.argv[1] + "/looks/scene.glb")
 made = [doc["materials"][k] for k in range(len(doc["materials"]))]
 red = next(m for m in made if m["pbrMetallicRoughness"]["baseColorFactor"][3] == .25)
 assert abs(red["pbrMetallicRoughness"]["baseColorFactor"][0] - .214041) < 1e-5 and red["alphaMode"] == "BLEND", red
+tube = next(n for n in doc["nodes"] if n["name"] == "tube")
+for k in tube["children"]:
+    assert made[doc["meshes"][doc["nodes"][k]["mesh"]]["primitives"][0]["material"]]["pbrMetallicRoughness"]["baseColorFactor"][3] == 1, "a tube is not seen"
 assert [m for m in made if m["pbrMetallicRoughness"]["metallicFactor"] > .7] and [m for m in made if m.get("extras") == {"style": "wire"}]
 checks += 20
 print(checks, "checks, 0 failed")

@@ -384,11 +384,15 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     o.castShadow = state.solid;
     o.material.needsUpdate = true;
   });
-  // Only given shapes are seen through, never a bar or another joint.
+  // Only given shapes are seen through, never a bar or another joint; nor tubes, of which little would be left.
+  const isSlim = (o) => {
+    const box = o.geometry.boundingBox, wide = va.copy(box.max).sub(box.min).multiply(o.scale).toArray().map(Math.abs).sort((a, b) => a - b);
+    return wide[1] < 6 * pin && wide[2] > 3 * wide[1];
+  };
   const see = () => {
     if (state.solid) return;
     for (let round = 0; round < 4; ++round) {
-      const some = hidden(orbit.azimuth, orbit.height, live ? 1 : 4).flat().filter((o) => o.name === "shape" && !clear.has(o));
+      const some = hidden(orbit.azimuth, orbit.height, live ? 1 : 4).flat().filter((o) => o.name === "shape" && !clear.has(o) && !isSlim(o));
       if (!some.length) return;
       some.forEach((o) => clear.add(o));
       glaze();

@@ -438,7 +438,7 @@ static bool add_leg(se3di_reader *reader, const se3di_node *node, const se3di_ba
                     const double centre[3], size_t entry)
 {
     const bool round = bar->radius > 0.0;
-    se3di_shape_entry made = {.shape = plain_shape};
+    se3di_shape_entry made = {.shape = plain_shape, .opacity = 1.0};
     se3d_model_shape *shape = &made.shape;
     double A[9];
     const double length = leg_axes(bar, leg, A);
@@ -486,7 +486,7 @@ static bool add_plate(se3di_reader *reader, const se3di_node *node, const se3di_
 {
     const size_t n = bar->corner_count;
     const se3di_placement *place = &reader->part->place;
-    se3di_shape_entry made = {.shape = plain_shape, .convex = 1};
+    se3di_shape_entry made = {.shape = plain_shape, .opacity = 1.0, .convex = 1};
     se3di_mesh *mesh = se3di_iopool_alloc(reader->pool, sizeof *mesh);
     double A[9];
     if (mesh) {
