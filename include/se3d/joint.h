@@ -161,7 +161,8 @@ SE3D_API se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constrai
 /* Set the limits at which a joint breaks: where the force or the moment of its reaction
  * (se3d_constraint_get_reaction) passes its limit in a run of dynamics, its equations are left out
  * from there on, and so are those of drivers and couplers of its coordinates; force elements on
- * them do nothing any more. The state goes on as it is, the bodies stay unable to touch each other.
+ * them do nothing any more. The state goes on as it is; the bodies may touch each other once they
+ * have been apart.
  * The event is found in time as those of se3d/event.h, at the end of a step by convex and in
  * systems with particle sets, is on the record of the solver and told to the log
  * (SE3D_LOG_BROKEN). Several joints break one after the other if the first one's load is too much

@@ -389,7 +389,7 @@ static se3d_status report_redundant(inspection *in, const se3di_rank *rank, int3
     char name[NAME_SIZE];
     char list[TEXT_SIZE - 512];
     uint32_t row = in->row[rank->redundant[k]];
-    if (in->model->rows[row].left_out == SE3DI_ROW_BROKEN) {
+    if (in->model->rows[row].left_out & SE3DI_ROW_BROKEN) {
         return SE3D_OK;
     }
     const char *unit = se3di_row_get_unit(in->model, row);

@@ -125,7 +125,7 @@ static void sort_rows(se3di_assembly *assembly)
     se3di_assembly_take_values(assembly);
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
         const se3di_row *row = &assembly->model->rows[k];
-        if (row->function >= 0 && row->left_out != SE3DI_ROW_BROKEN) {
+        if (row->function >= 0 && !(row->left_out & SE3DI_ROW_BROKEN)) {
             assembly->timed_rows[assembly->timed_count++] = k;
         }
     }

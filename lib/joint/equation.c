@@ -260,7 +260,7 @@ se3d_status se3di_violation_measure(const se3di_model *model, double violation[3
     violation[0] = violation[1] = violation[2] = 0.0;
     for (size_t k = 0; k < model->row_count; ++k) {
         double gap[3] = {0.0, 0.0, 0.0};
-        if (model->rows[k].left_out != SE3DI_ROW_BROKEN) {
+        if (!(model->rows[k].left_out & SE3DI_ROW_BROKEN)) {
             SE3DI_TRY(measure_row(model, &model->rows[k], gap));
         }
         take_largest(gap, violation);

@@ -90,20 +90,21 @@ void se3di_model_follow_breaks(se3di_model *model)
     model->left_out_count = model->broken_count = 0;
     for (size_t k = 0; k < model->row_count; ++k) {
         model->left_out_count += model->rows[k].left_out != 0;
-        model->broken_count += model->rows[k].left_out == SE3DI_ROW_BROKEN;
+        model->broken_count += (model->rows[k].left_out & SE3DI_ROW_BROKEN) != 0;
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const int32_t joint = model->forces[k].joint;
         model->forces[k].released =
             joint >= 0 && se3di_is_broken(&model->constraints[joint], model->rows);
     }
+    model->contacts.version = 0; /* others may touch */
     ++model->break_version;
 }
 
 void se3di_model_take_all_rows(se3di_model *model)
 {
     for (size_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
-        model->rows[k].left_out &= SE3DI_ROW_BROKEN;
+        model->rows[k].left_out &= SE3DI_ROW_BREAKS;
     }
     model->left_out_count = model->broken_count;
     model->left_out_row = 0;

@@ -85,7 +85,9 @@ typedef struct se3di_row {
 } se3di_row;
 
 /* Why a row is left out: it depends on others (nonlinear/ranks.h), or its joint broke. */
-enum { SE3DI_ROW_DEPENDENT = 1, SE3DI_ROW_BROKEN = 2 };
+/* PARTED, of a broken one: its bodies have been apart since, and may touch. */
+enum { SE3DI_ROW_DEPENDENT = 1, SE3DI_ROW_BROKEN = 2, SE3DI_ROW_PARTED = 4 };
+#define SE3DI_ROW_BREAKS (SE3DI_ROW_BROKEN | SE3DI_ROW_PARTED)
 
 typedef struct se3di_joint_frames {
     double point_i[3], point_j[3];          /* body frames */
@@ -137,7 +139,8 @@ typedef struct se3di_user_failure {
 /* The constraint is a joint that broke, or acts on one. */
 static inline int se3di_is_broken(const se3di_constraint *constraint, const se3di_row *rows)
 {
-    return constraint->row_count > 0 && rows[constraint->row_begin].left_out == SE3DI_ROW_BROKEN;
+    return constraint->row_count > 0 &&
+           (rows[constraint->row_begin].left_out & SE3DI_ROW_BROKEN) != 0;
 }
 
 /* The turn counter of a joint angle. */

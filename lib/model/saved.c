@@ -59,11 +59,11 @@ static void restore_ranks(const se3di_saved *saved, se3di_model *model)
     const uint8_t *left_out = saved->left_out.data;
     int other = 0; /* joints were whole or broken */
     for (size_t k = 0; model->left_out_count > 0 && k < model->row_count; ++k) {
-        other |= saved->left_out.count == 0 && model->rows[k].left_out == SE3DI_ROW_BROKEN;
-        model->rows[k].left_out &= saved->left_out.count > 0 ? SE3DI_ROW_BROKEN : 0;
+        other |= saved->left_out.count == 0 && (model->rows[k].left_out & SE3DI_ROW_BREAKS) != 0;
+        model->rows[k].left_out &= saved->left_out.count > 0 ? SE3DI_ROW_BREAKS : 0;
     }
     for (size_t k = 0; k < saved->left_out.count; ++k) {
-        other |= (model->rows[k].left_out ^ left_out[k]) & SE3DI_ROW_BROKEN;
+        other |= (model->rows[k].left_out ^ left_out[k]) & SE3DI_ROW_BREAKS;
         model->rows[k].left_out = left_out[k];
     }
     if (other) {

@@ -61,7 +61,7 @@ static int is_driving(const se3di_model *model, const se3di_constraint *constrai
 
 static void leave_out(se3di_model *model, uint32_t row, int32_t left_out)
 {
-    if (model->rows[row].left_out != SE3DI_ROW_BROKEN) {
+    if (!(model->rows[row].left_out & SE3DI_ROW_BROKEN)) {
         model->left_out_count += (uint32_t)(left_out - model->rows[row].left_out);
         model->rows[row].left_out = left_out;
     }

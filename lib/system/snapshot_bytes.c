@@ -107,7 +107,7 @@ static void code_array(se3di_coder *c, const saved_array *a, size_t numbers)
         } else if (a->size == sizeof *bytes) {
             uint32_t flag = bytes[k];
             se3di_code_uint32(c, &flag);
-            c->failed |= flag > SE3DI_ROW_BROKEN;
+            c->failed |= flag > SE3DI_ROW_BREAKS;
             if (c->in) {
                 bytes[k] = (uint8_t)(flag & UINT8_MAX);
             }
@@ -278,7 +278,7 @@ static int break_whole(const se3di_saved *state, const se3di_model *model)
         const se3di_constraint *c = &model->constraints[k];
         uint32_t broken = 0;
         for (uint32_t r = 0; r < c->row_count; ++r) {
-            broken += flags[c->row_begin + r] == SE3DI_ROW_BROKEN;
+            broken += (flags[c->row_begin + r] & SE3DI_ROW_BROKEN) != 0;
         }
         if (broken > 0 && broken < c->row_count) {
             return 0;

@@ -126,11 +126,49 @@ static void a_lift_lands_on_the_floor(void)
     }
 }
 
+/* A ball hung over a block, or in its edge, is let go; in the edge it is not thrown. */
+static void what_a_broken_joint_held_touches_once_it_has_been_apart(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_CONVEX, SE3D_METHOD_VERLET, SE3D_METHOD_DOP853,
+                                      SE3D_METHOD_RADAU};
+    const double size[3] = {0.4, 0.4, 0.2}, at_block[3] = {0.0, 0.0, 0.1}, radius = 0.05;
+    for (int overlaps = 0; overlaps < 2; ++overlaps) {
+        for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+            const double at[3] = {overlaps ? 0.21 : 0.0, 0.0, overlaps ? 0.235 : 0.4};
+            const double end = overlaps ? 0.05 : 0.8;
+            scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
+            se3d_joint_def hold = se3d_joint_def_default();
+            se3d_constraint joint;
+            double r[3], v[3];
+            const se3d_body block = scene_box(&s, size, 20.0, at_block, scene_zero);
+            const se3d_body ball = scene_ball(&s, radius, 0.5, at, scene_zero);
+            scene_floor(&s, 0.0);
+            hold.body_i = block;
+            hold.body_j = ball;
+            for (int k = 0; k < 3; ++k) {
+                hold.point_i[k] = at[k] - at_block[k];
+            }
+            CHECK(se3d_joint_create_spherical(s.system, &hold, &joint) == SE3D_OK);
+            CHECK(se3d_joint_set_broken(s.system, joint, 1) == SE3D_OK);
+            scene_solve(&s, methods[m], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+            if (scene_run(&s, end)) {
+                CHECK(se3d_body_get_position(s.system, ball, r) == SE3D_OK);
+                CHECK(se3d_body_get_velocity(s.system, ball, v) == SE3D_OK);
+                CHECK_NEAR(r[2], overlaps ? 0.235 - 0.5 * G * end * end : 0.25,
+                           overlaps ? 2e-3 : 1e-2);
+                CHECK_NEAR(v[0], 0.0, 1e-3);
+            }
+            scene_end(&s);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(an_arm_falls_on_the_floor);
     RUN(a_pin_does_not_touch_its_post);
     RUN(what_is_welded_to_the_ground_does_not_touch_it);
     RUN(a_lift_lands_on_the_floor);
+    RUN(what_a_broken_joint_held_touches_once_it_has_been_apart);
     return check_finish();
 }

@@ -3,6 +3,7 @@
 #include "contact/bodies/body_contacts.h"
 
 #include "contact/bodies/broad.h"
+#include "contact/bodies/parted.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -353,6 +354,7 @@ void se3di_contacts_accept(se3di_model *model)
     c->changed = c->kept < c->count || c->kept < c->next_count;
     swap_lists(model);
     c->next_count = 0;
+    se3di_joints_part(model);
 }
 
 static se3d_status renew_force(void *ctx, const se3di_encounter *e)

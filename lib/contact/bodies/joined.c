@@ -60,6 +60,9 @@ static int keeps_apart(const se3di_model *model, const se3di_constraint *c, cons
                        const se3di_shape *b)
 {
     int has_a = 0, has_b = 0;
+    if (c->row_count > 0 && model->rows[c->row_begin].left_out & SE3DI_ROW_PARTED) {
+        return 0; /* it broke */
+    }
     for (uint32_t n = 0; n < c->body_count; ++n) {
         has_a |= c->bodies[n] == a->body;
         has_b |= c->bodies[n] == b->body;
