@@ -140,7 +140,7 @@ static inline se3d_status se3d_system_get_contacts(const se3d_system *system, si
 }
 
 /* Count the pairs of meshes that pass through each other: materials, groups and joints would let
- * them touch, but neither is convex or made up of convex pieces (se3d_shape_create_mesh).
+ * them touch, but neither is closed (se3d_shape_create_mesh).
  * @param[out] i  a shape of the first pair, null if there is none; NULL: not wanted
  * @param[out] j  the other one; NULL: not wanted
  * @return the number; 0 for NULL.

@@ -95,7 +95,7 @@ SE3D_API se3d_status se3d_shape_create_hull(se3d_system *system, const se3d_shap
                                             se3d_shape *shape);
 
 /* Create a surface of triangles. Everything touches it, but two meshes touch each other only if
- * one of them is convex or made up of convex pieces (se3d_system_count_passing_meshes). A closed
+ * one of them is closed (se3d_system_count_passing_meshes). A closed
  * surface has an outside, any other has two sides. A mesh is convex if it is closed, the hull of
  * its vertices, and has at most 1000 triangles; a closed one of at most 400 triangles is taken
  * apart into at most 32 convex pieces if that is possible. @return as se3d_shape_create_sphere.

@@ -45,7 +45,9 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
 /* On a plane: the corners of a shape that has some; a capsule; a cylinder; of any other convex
  * shape the lowest point; a mesh. */
-/* Two meshes, of which at least one has convex pieces. */
+/* Two surfaces, of which at least one is closed, by their triangles. */
+void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
+/* The same with or without. */
 void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, double normal[3]);
 void se3di_plane_corners(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);

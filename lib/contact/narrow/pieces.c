@@ -111,6 +111,11 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
 {
     const int turned = is_second(i, j);
     const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
+    if (cut->shape->piece_count == 0 ||
+        (whole->shape->piece_count == 0 && whole->shape->closed != 0)) {
+        se3di_narrow_surfaces(i, j, manifold);
+        return;
+    }
     for (size_t k = 0; k < cut->shape->piece_count; ++k) {
         add_piece(cut, k, whole, manifold);
     }
@@ -127,7 +132,13 @@ double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, doubl
 {
     const int turned = is_second(i, j);
     const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
-    double gap = HUGE_VAL;
+    double gap = cut->shape->piece_count > 0 ? HUGE_VAL : 0.0;
+    if (!(gap > 0.0)) { /* of the ball about it */
+        double local[3], point[3];
+        se3di_mesh_to_local(whole, cut->at->x, local);
+        (void)se3di_mesh_nearest(whole->shape, local, point, &gap);
+        gap -= cut->shape->bound;
+    }
     for (size_t k = 0; k < cut->shape->piece_count; ++k) {
         se3di_shape_pose at;
         double local[3], point[3], distance;

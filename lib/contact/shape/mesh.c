@@ -31,6 +31,7 @@ typedef se3di_mesh_node mesh_node;
 typedef struct facet {
     double a[3], normal[3];  /* of unit length */
     double to_b[3], to_c[3]; /* dot products with x - a: parts of b - a and c - a in its foot */
+    uint8_t edges[8];        /* bits: at this edge the next triangle leads 1 below, 2 above it */
 } facet;
 
 typedef struct builder {
@@ -156,7 +157,29 @@ static void fill_facets(se3di_shape *s)
         se3di_cross(normal, ab, f->to_c);
         se3di_scale(1.0 / square, f->to_b, f->to_b);
         se3di_scale(1.0 / square, f->to_c, f->to_c);
+        memset(f->edges, 3, sizeof f->edges); /* not known */
     }
+}
+
+int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t side)
+{
+    const int outside = shape->closed > 0 ? 1 : shape->closed < 0 ? 2 : 3;
+    return shape->rows > 0 || (facets_of(shape)[triangle].edges[side] & outside) != 0;
+}
+
+/* Which way the triangle beyond an edge leads. */
+static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t beyond)
+{
+    facet *f = facets_of(s) + triangle;
+    double least = 0.0, most = 0.0, size = 0.0;
+    for (size_t k = 0; k < 3; ++k) {
+        double d[3];
+        se3di_sub(s->vertices + 3 * (size_t)s->triangles[3 * (size_t)beyond + k], f->a, d);
+        least = fmin(least, se3di_dot(d, f->normal));
+        most = fmax(most, se3di_dot(d, f->normal));
+        size = fmax(size, se3di_norm(d));
+    }
+    f->edges[side] = (uint8_t)((least < -FLAT * size ? 1 : 0) | (most > FLAT * size ? 2 : 0));
 }
 
 static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s);
@@ -329,6 +352,17 @@ int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double 
     return 1;
 }
 
+/* Not one of a heightfield: its plane alone is farther than a squared distance. */
+static int is_plane_farther(const se3di_shape *s, uint32_t triangle, const double p[3],
+                            double square)
+{
+    const facet *f = facets_of(s) + triangle;
+    double d[3];
+    se3di_sub(p, f->a, d);
+    const double height = se3di_dot(d, f->normal);
+    return height * height > (1.0 + 1e-9) * square;
+}
+
 size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], double point[3],
                           double *distance)
 {
@@ -351,6 +385,9 @@ size_t se3di_mesh_nearest(const se3di_shape *shape, const double local[3], doubl
         }
         for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
             double here[3];
+            if (shape->rows == 0 && is_plane_farther(shape, k, local, least)) {
+                continue;
+            }
             double square = triangle_distance(shape, k, local, here);
             if (square < least) {
                 least = square;
@@ -454,9 +491,9 @@ static int meets_box(const mesh_node *node, const double from[3], const double t
     return low <= high;
 }
 
-/* Also on its sides, so that nothing slips through between two. */
+/* Also on its sides, so that nothing slips through between two; after which share of the way. */
 static int crosses_triangle(const se3di_shape *s, uint32_t triangle, const double from[3],
-                            const double to[3], double slack)
+                            const double to[3], double slack, double *share)
 {
     const double *a = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle];
     const double *b = s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + 1];
@@ -474,16 +511,19 @@ static int crosses_triangle(const se3di_shape *s, uint32_t triangle, const doubl
     }
     se3di_sub(to, from, d);
     se3di_copy(from, x);
-    se3di_add_scaled(before / (before - after), d, x);
+    *share = before / (before - after);
+    se3di_add_scaled(*share, d, x);
     return triangle_distance(s, triangle, x, at) <= slack * slack;
 }
 
-int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3])
+size_t se3di_mesh_find_cuts(const se3di_shape *shape, const double from[3], const double to[3],
+                            size_t capacity, se3di_mesh_cut *cuts)
 {
     const mesh_node *nodes = shape->tree;
     uint32_t stack[STACK_SIZE] = {0};
     int depth = 1;
     double way[3];
+    size_t count = 0;
     se3di_sub(to, from, way);
     const double slack = ON_TRIANGLE * se3di_norm(way);
     while (depth > 0) {
@@ -497,9 +537,47 @@ int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const dou
             stack[depth++] = at + 1;
         }
         for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
-            if (crosses_triangle(shape, k, from, to, slack)) {
-                return 1;
+            double share;
+            if (!crosses_triangle(shape, k, from, to, slack, &share)) {
+                continue;
             }
+            if (count == capacity) {
+                return count;
+            }
+            size_t place = count++;
+            for (; place > 0 && cuts[place - 1].share > share; --place) {
+                cuts[place] = cuts[place - 1];
+            }
+            cuts[place] = (se3di_mesh_cut){share, k, 0};
+        }
+    }
+    return count;
+}
+
+int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3])
+{
+    se3di_mesh_cut cut;
+    return se3di_mesh_find_cuts(shape, from, to, 1, &cut) > 0;
+}
+
+int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3])
+{
+    const mesh_node *nodes = shape->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    while (depth > 0) {
+        const uint32_t at = stack[--depth];
+        const mesh_node *node = &nodes[at];
+        int meets = 1;
+        for (int a = 0; a < 3; ++a) {
+            meets = meets && node->low[a] <= high[a] && node->high[a] >= low[a];
+        }
+        if (meets && node->count > 0) {
+            return 1;
+        }
+        if (meets) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
         }
     }
     return 0;
@@ -509,7 +587,7 @@ typedef struct edge_search {
     const se3di_shape *shape;
     const double *from, *to;
     uint32_t *piece; /* of each triangle another one of its piece, or itself */
-    uint32_t triangle, reserved;
+    uint32_t triangle, beyond;
     int same, opposite;
 } edge_search;
 
@@ -538,6 +616,7 @@ static void count_edge(void *ctx, uint32_t triangle)
         e->same += is_at(a, e->from) && is_at(b, e->to);
         e->opposite += opposite;
         if (opposite) {
+            e->beyond = triangle;
             e->piece[piece_of(e->piece, triangle)] = piece_of(e->piece, e->triangle);
         }
     }
@@ -573,6 +652,9 @@ static void judge_edges(se3di_shape *s, uint32_t *piece)
             return;
         }
         closed = closed && e.opposite == 1;
+        if (e.opposite == 1) {
+            note_bend(s, k / 3, k % 3, e.beyond);
+        }
         se3di_cross(e.from, e.to, n);
         volume += k % 3 == 0 ? se3di_dot(n, s->vertices + 3 * (size_t)t[2]) : 0.0;
     }

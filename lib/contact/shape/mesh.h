@@ -50,4 +50,20 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
 /* Whether the segment between two points meets the surface. */
 int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3]);
 
+/* A place at which a segment passes through the surface. */
+typedef struct se3di_mesh_cut {
+    double share; /* of the way */
+    uint32_t triangle, reserved;
+} se3di_mesh_cut;
+/* All such places in their order, at most `capacity`: those on a side are on both triangles.
+ * Returns their number. */
+size_t se3di_mesh_find_cuts(const se3di_shape *shape, const double from[3], const double to[3],
+                            size_t capacity, se3di_mesh_cut *cuts);
+
+/* Whether the surface bulges at an edge of a triangle; of open ones also if it bends inward. */
+int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t side);
+
+/* Whether triangles may be within a box along the axes. */
+int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3]);
+
 #endif
