@@ -155,6 +155,7 @@ static se3d_status finish(verlet *m, se3d_status status)
 {
     close_kick(m);
     m->bodies.assembly->push = NULL;
+    se3di_sets_end(m->model);
     return status;
 }
 
@@ -200,6 +201,7 @@ static se3d_status accelerate(se3di_integration *integration)
     (void)begin(integration);
     se3d_status status = se3di_acceleration_solve(equations, model->time);
     equations->assembly.push = NULL;
+    se3di_sets_end(model);
     return status;
 }
 

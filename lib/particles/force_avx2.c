@@ -118,6 +118,19 @@ V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], 
     }
 }
 
+/* As add_loads for i and for j, lane by lane. */
+V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *j, const V on_i[6],
+                          const V on_j[6])
+{
+    V f[4], t[4], back[4], turn[4];
+    turn_loads(on_i, on_i + 3, f, t);
+    turn_loads(on_j, on_j + 3, back, turn);
+    for (int k = 0; k < 4; ++k) {
+        add_load(&loads[i[k]], f[k], t[k]);
+        add_load(&loads[j[k]], back[k], turn[k]);
+    }
+}
+
 V_INLINE void hold_loads(se3di_load *held, const V force[3], const V torque[3])
 {
     V f[4], t[4];

@@ -127,6 +127,23 @@ V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], 
     }
 }
 
+/* As add_loads for i and for j, lane by lane. */
+V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *j, const V on_i[6],
+                          const V on_j[6])
+{
+    V zero = _mm512_setzero_pd();
+    V rows[8] = {on_i[0], on_i[1], on_i[2], zero, on_i[3], on_i[4], on_i[5], zero};
+    V others[8] = {on_j[0], on_j[1], on_j[2], zero, on_j[3], on_j[4], on_j[5], zero};
+    V out[8], back[8];
+    transpose(rows, out);
+    transpose(others, back);
+    for (int k = 0; k < 8; ++k) {
+        se3di_load *load = &loads[i[k]], *other = &loads[j[k]];
+        _mm512_store_pd(load, _mm512_add_pd(_mm512_load_pd(load), out[k]));
+        _mm512_store_pd(other, _mm512_add_pd(_mm512_load_pd(other), back[k]));
+    }
+}
+
 #include "particles/force.inc"
 
 static const se3di_kernels core_table = {"avx512", pairs, walls};

@@ -16,6 +16,7 @@
 #include "particles/list.h"
 #include "particles/memory.h"
 #include "particles/reach.h"
+#include "particles/share.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -74,6 +75,10 @@ static size_t leave(se3di_particles *set)
         se3di_particles_come_home(set, set->clumps[k].x);
     }
     for (size_t k = 0; k < set->count; ++k) {
+        if (se3di_share_is_ghost(set, k)) {
+            set->order[k] = 0;
+            continue;
+        }
         if (se3di_domain_strains(set)) {
             se3di_domain_come_home(set, set->particles[k].x, set->particles[k].v);
         } else {
@@ -98,7 +103,10 @@ static size_t leave(se3di_particles *set)
 static void remove_gone(se3di_particles *set)
 {
     size_t gone = leave(set);
-    if (gone > 0) {
+    if (se3di_share_is_spread(set)) {
+        set->share->migrate(set);
+        set->lost += gone;
+    } else if (gone > 0) {
         unsigned char *keep = (unsigned char *)set->key; /* scratch */
         for (size_t k = 0; k < set->count; ++k) {
             keep[k] = (unsigned char)set->order[k];
@@ -108,28 +116,68 @@ static void remove_gone(se3di_particles *set)
     }
 }
 
+/* The box of all centres and the largest radius; of a set that is spread, over all processes. */
+static double measure_box(se3di_particles *set)
+{
+    double most[7] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, 0.0};
+    for (size_t k = 0; k < set->count; ++k) {
+        const se3di_particle *particle = &set->particles[k];
+        most[6] = fmax(most[6], particle->radius);
+        for (int a = 0; a < 3; ++a) {
+            most[a] = fmax(most[a], -particle->x[a]);
+            most[3 + a] = fmax(most[3 + a], particle->x[a]);
+        }
+    }
+    se3di_share_largest(set, 7, most);
+    for (int a = 0; a < 3 && most[6] > 0.0; ++a) {
+        set->low[a] = -most[a];
+        set->high[a] = most[3 + a];
+    }
+    return most[6];
+}
+
+/* The mean radius over all processes, rounded so that it depends on no order. */
+static double mean_of_all(se3di_particles *set, double largest)
+{
+    double parts[2] = {0.0, (double)set->count};
+    for (size_t k = 0; k < set->count; ++k) {
+        parts[0] += floor(set->particles[k].radius / largest * 0x1p20 + 0.5);
+    }
+    set->share->add(set, 2, parts);
+    return parts[1] > 0.0 ? parts[0] / parts[1] * 0x1p-20 * largest : 0.0;
+}
+
+/* The skin for radii whose largest is known. */
+static double choose_skin(se3di_particles *set, double largest)
+{
+    double sum = 0.0;
+    if (se3di_share_is_spread(set)) {
+        return set->skin_ratio * 2.0 * mean_of_all(set, largest);
+    }
+    for (size_t k = 0; k < set->count; ++k) {
+        sum += set->particles[k].radius;
+    }
+    return set->count > 0 ? set->skin_ratio * 2.0 * sum / (double)set->count : 0.0;
+}
+
 /* Box of all centres, largest and mean radius, uniformity, classes in use. */
 static double measure(se3di_particles *set, grid *g)
 {
-    double largest = 0.0;
-    double sum = 0.0;
-    set->uniform = set->stuff_count == 1 && set->clump_count == 0;
+    const double largest = measure_box(set);
+    double most[SE3DI_PARTICLE_CLASSES + 1] = {0.0};
+    double *differs = &most[SE3DI_PARTICLE_CLASSES];
     for (size_t k = 0; k < set->count; ++k) {
-        const se3di_particle *particle = &set->particles[k];
-        largest = fmax(largest, particle->radius);
-        sum += particle->radius;
-        set->uniform = set->uniform && particle->radius == set->particles[0].radius;
-        for (int a = 0; a < 3; ++a) {
-            set->low[a] = k == 0 ? particle->x[a] : fmin(set->low[a], particle->x[a]);
-            set->high[a] = k == 0 ? particle->x[a] : fmax(set->high[a], particle->x[a]);
-        }
+        const double radius = set->particles[k].radius;
+        double *of_class = &most[class_of(radius, largest)];
+        *of_class = fmax(*of_class, radius);
+        *differs = radius == largest ? *differs : 1.0;
     }
-    set->skin = set->count > 0 ? set->skin_ratio * 2.0 * sum / (double)set->count : 0.0;
-    for (size_t k = 0; k < set->count; ++k) {
-        double radius = set->particles[k].radius;
-        grid_class *c = &g->classes[class_of(radius, largest)];
-        c->radius = fmax(c->radius, radius);
+    se3di_share_largest(set, SE3DI_PARTICLE_CLASSES + 1, most);
+    for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
+        g->classes[c].radius = most[c];
     }
+    set->uniform = set->stuff_count == 1 && set->clump_count == 0 && !(*differs > 0.0);
+    set->skin = choose_skin(set, largest);
     return largest;
 }
 
@@ -244,6 +292,24 @@ static void permute(se3di_particles *set)
     set->key = order;
 }
 
+/* The particles of each cell, in order[], by their numbers: cells[c + 1] is where cell c ends. */
+static void sort_cells(se3di_particles *set, size_t total)
+{
+    uint32_t begin = 0;
+    for (size_t c = 0; c < total; ++c) {
+        const uint32_t end = set->cells[c + 1];
+        for (uint32_t k = begin + 1; k < end; ++k) {
+            const uint32_t here = set->order[k], number = se3di_share_number(set, here);
+            uint32_t at = k;
+            for (; at > begin && se3di_share_number(set, set->order[at - 1]) > number; --at) {
+                set->order[at] = set->order[at - 1];
+            }
+            set->order[at] = here;
+        }
+        begin = end;
+    }
+}
+
 /* Sort by cell, stably; cells[] becomes the first particle of each. */
 static void sort(se3di_particles *set, const grid *g, double largest, size_t total)
 {
@@ -258,6 +324,9 @@ static void sort(se3di_particles *set, const grid *g, double largest, size_t tot
     }
     for (size_t k = 0; k < set->count; ++k) {
         set->order[set->cells[set->key[k] + 1]++] = (uint32_t)k;
+    }
+    if (se3di_share_is_spread(set)) {
+        sort_cells(set, total);
     }
     permute(set);
     se3di_particles_remap(set, set->order);
@@ -285,6 +354,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
     const se3di_particle *gi = &set->particles[q->i];
     const double *stretch = se3di_particles_reach(set);
     double border = gi->radius + stretch[q->i];
+    const int ghost = se3di_share_is_ghost(set, q->i);
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
     const se3di_clump *own = se3di_clump_find(set, q->i);
     for (uint32_t j = begin; j < end; ++j) {
@@ -295,7 +365,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
         }
         double reach = border + gj->radius + stretch[j];
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach &&
-            !(own && se3di_clump_find(set, j) == own)) {
+            !(own && se3di_clump_find(set, j) == own) && !(ghost && se3di_share_is_ghost(set, j))) {
             set->list[set->list_count++] = j;
         }
     }
@@ -435,7 +505,7 @@ static se3d_status divide_all(se3di_particles *set, grid *g, double largest, siz
 {
     double total = divide(set, g, largest, 1.0);
     for (double scale = 1.25; scale < 1e30; scale *= 1.25) {
-        if (total <= 4.0 * (double)set->count + 1e4) {
+        if (total <= 4.0 * (double)se3di_share_total(set) + 1e4) {
             *cells = (size_t)total;
             size_t needed = *cells + 2 < CELLS_LEAST ? CELLS_LEAST : *cells + 2;
             if (se3di_particles_grow(set, &set->cells, &set->cell_capacity, needed) == SE3D_OK) {
@@ -455,7 +525,7 @@ static se3d_status list_all(se3di_particles *set, const grid *g)
     const double least = 1e-3 * set->skin;
     for (;;) {
         se3di_particles_set_reach(set);
-        se3d_status status = set->count > 0 ? search_all(set, g) : SE3D_OK;
+        se3d_status status = se3di_share_total(set) > 0 ? search_all(set, g) : SE3D_OK;
         if (status == SE3D_OK) {
             status = se3di_particles_list_walls(set);
         }
@@ -474,7 +544,7 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
     grid g = {.slabs = 1};
     double largest = measure(set, &g);
     set->slab_count = 0;
-    if (set->count > 0) {
+    if (se3di_share_total(set) > 0) {
         size_t cells = 0;
         double room = HUGE_VAL; /* for the reaches of two */
         choose_axes(set, &g);
@@ -489,6 +559,9 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         }
         set->skin = fmin(set->skin, room);
         se3di_particles_stretch(set, room);
+        if (se3di_share_is_spread(set)) {
+            set->share->border(set, 2.0 * (largest + set->stretch) * (1.0 + 1e-9));
+        }
         SE3DI_TRY(divide_all(set, &g, largest, &cells));
         sort(set, &g, largest, cells);
     }

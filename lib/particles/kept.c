@@ -6,6 +6,7 @@
  * comes back, the addresses and sizes of the arrays stay what they are now. */
 
 #include "particles/kept.h"
+#include "particles/share.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -194,6 +195,9 @@ void se3di_particles_come_back(se3di_particles *set)
 {
     if (!set->kept || !set->kept->filled) {
         return;
+    }
+    if (se3di_share_is_spread(set) && set->kept->set.rebuilds != set->rebuilds) {
+        set->share->give_up(set, "a step failed after particles had changed hands");
     }
     const se3di_particles now = *set;
     part parts[PARTS];

@@ -8,6 +8,7 @@
 
 #include "math/vec3.h"
 #include "particles/cell.h"
+#include "particles/share.h"
 #include "particles/slabs.h"
 
 #include <math.h>
@@ -207,7 +208,9 @@ int se3di_particles_list_holds(const se3di_particles *set)
         hold = wall_rest(set, wall) >= LEFT_LEAST * wall_wanted(set, wall);
     }
     for (size_t k = 0; hold && k < set->count; ++k) {
-        hold = rest_of(set, k) >= LEFT_LEAST * wanted_of(set, k);
+        hold = se3di_share_is_ghost(set, k) || rest_of(set, k) >= LEFT_LEAST * wanted_of(set, k);
     }
-    return hold;
+    double fails = !hold;
+    se3di_share_largest(set, 1, &fails);
+    return !(fails > 0.0);
 }

@@ -4,6 +4,7 @@
 #include "particles/kept.h"
 #include "particles/list.h"
 #include "particles/memory.h"
+#include "particles/share.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,6 +33,9 @@ void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator)
 void se3di_particles_destroy(se3di_particles *set)
 {
     const se3d_allocator *a = &set->allocator;
+    if (set->share) {
+        set->share->forget(set);
+    }
     se3di_particles_forget(set);
     se3di_text_free(a, set->name);
     se3di_free(a, set->stuffs, set->stuff_capacity, sizeof *set->stuffs);
@@ -337,6 +341,7 @@ se3d_status se3di_particles_clone(const se3di_particles *set, se3di_particles *c
     copy->next = NULL;
     copy->name = NULL;
     copy->kept = NULL;
+    copy->share = NULL;
     copy->particle_memory = copy->spin_memory = copy->load_memory = none;
     copy->block_memory = copy->roll_memory = none;
     copy->particles = NULL;
@@ -359,11 +364,14 @@ void se3di_particles_replace(se3di_particles *set, const se3di_particles *other)
 {
     struct se3di_particles *next = set->next;
     char *name = set->name;
+    struct se3di_share *share = set->share;
     set->name = NULL;
+    set->share = NULL;
     se3di_particles_destroy(set);
     *set = *other;
     set->next = next;
     set->name = name;
+    set->share = share;
 }
 
 se3d_status se3di_particles_remove(se3di_particles *set, size_t count, const uint32_t *ids)

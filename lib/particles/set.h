@@ -27,6 +27,7 @@
 #define SE3DI_PARTICLE_SLABS_MAX 64
 #define SE3DI_PERIOD_LEAST       4.04 /* of the largest radius: least length along an axis */
 #define SE3DI_ORIGIN_SIZE        5
+#define SE3DI_EXACT_PARTS        3 /* of a number in sums without rounding: share.h */
 
 /* One cache line: what nearly every pass reads. */
 typedef struct se3di_particle {
@@ -428,6 +429,7 @@ typedef struct se3di_particles {
     void *ctx;
     se3di_law_failure law_failure;
     se3di_particles_kept *kept; /* of the step under way; NULL: none was needed yet */
+    struct se3di_share *share;  /* over processes; NULL: none */
 } se3di_particles;
 
 /* The images of a cell that strains: one period along `gradient` is `column`. */
@@ -460,7 +462,11 @@ typedef struct se3di_force_task {
     double overlap;             /* out: largest excess, starts at the caller's value */
     uint64_t touching;          /* out: added to */
     double *wall_sums;          /* walls: [walls * 6], added to */
-    const se3di_stuff *stuffs;  /* of a user-defined law, as the next three */
+    double *exact;              /* the same without rounding; NULL: no; share.h */
+    const double *exact_steps;  /* [SE3DI_EXACT_PARTS] */
+    int32_t in_turn;            /* loads are added to i and j pair by pair */
+    int32_t reserved;
+    const se3di_stuff *stuffs; /* of a user-defined law, as the next three */
     se3d_contact_callback callback;
     void *ctx;
     se3di_law_failure failure; /* out: the first one */

@@ -7,6 +7,7 @@
 #include "particles/flow.h"
 #include "particles/kept.h"
 #include "particles/passage.h"
+#include "particles/share.h"
 #include "particles/step.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
@@ -135,6 +136,21 @@ static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3
     return SE3D_OK;
 }
 
+/* A set that several processes share is spread over them. */
+static se3d_status spread_set(se3di_particles *set, se3di_error *error)
+{
+    const char *why = NULL;
+    const se3d_status status =
+        set->share && !set->share->is_spread ? set->share->spread(set, &why) : SE3D_OK;
+    if (status < 0 && why) {
+        const char *of;
+        const char *name = set_name(set, &of);
+        return se3di_error_set(error, status, "particles%s%.80s that several processes share %s",
+                               of, name, why);
+    }
+    return status < 0 ? report(set, status, error) : status;
+}
+
 /* Before a step of length h begins: what its sources give. */
 static se3d_status aim_set(se3di_particles *set, const se3di_model *model, double h,
                            se3di_error *error)
@@ -159,11 +175,9 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
     return isfinite(safe) ? safe : 0.0;
 }
 
-se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
-                                double length, size_t steps, se3di_error *error)
+static se3d_status run_steps(se3di_particles *set, const se3di_model *model, double length,
+                             size_t steps, se3di_error *error)
 {
-    SE3DI_TRY(check_step(set, model, h, error));
-    SE3DI_TRY(place_set(set, model, error));
     const int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
                        model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
     size_t done = 0;
@@ -180,6 +194,17 @@ se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, 
     return SE3D_OK;
 }
 
+se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
+                                double length, size_t steps, se3di_error *error)
+{
+    SE3DI_TRY(check_step(set, model, h, error));
+    SE3DI_TRY(place_set(set, model, error));
+    SE3DI_TRY(spread_set(set, error));
+    const se3d_status status = run_steps(set, model, length, steps, error);
+    se3di_share_gather(set);
+    return status;
+}
+
 static se3d_status begin(se3di_particles *set, const se3di_model *model, double h,
                          se3di_error *error)
 {
@@ -191,16 +216,28 @@ static se3d_status begin(se3di_particles *set, const se3di_model *model, double 
     SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
     SE3DI_TRY(place_set(set, model, error));
     se3di_particles_free_walls(set, model);
+    SE3DI_TRY(spread_set(set, error));
     se3d_status status = se3di_particles_prepare(set);
     return status < 0 ? report(set, status, error) : SE3D_OK;
 }
 
-se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
+void se3di_sets_end(se3di_model *model)
 {
     for (se3di_particles *set = model->sets; set; set = set->next) {
-        SE3DI_TRY(begin(set, model, h, error));
+        se3di_share_gather(set);
     }
-    return SE3D_OK;
+}
+
+se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
+{
+    se3d_status status = SE3D_OK;
+    for (se3di_particles *set = model->sets; set && status >= 0; set = set->next) {
+        status = begin(set, model, h, error);
+    }
+    if (status < 0) {
+        se3di_sets_end(model);
+    }
+    return status;
 }
 
 se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error)

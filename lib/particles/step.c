@@ -15,6 +15,7 @@
 #include "particles/passage.h"
 #include "particles/piece.h"
 #include "particles/reach.h"
+#include "particles/share.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
 #include "particles/wall.h"
@@ -53,11 +54,15 @@ void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model)
 /* Lists that hold every pair that touches. */
 static se3d_status update_lists(se3di_particles *set)
 {
-    if (set->list_valid && se3di_particles_blocks_hold(set)) {
+    const int blocks_hold = set->list_valid && se3di_particles_blocks_hold(set);
+    const int list_holds = set->list_valid && (blocks_hold || se3di_particles_list_holds(set));
+    if (list_holds && se3di_share_is_spread(set)) {
+        set->share->renew(set);
+    }
+    if (blocks_hold) {
         return SE3D_OK;
     }
-    return set->list_valid && se3di_particles_list_holds(set) ? se3di_particles_refresh(set)
-                                                              : se3di_particles_rebuild(set);
+    return list_holds ? se3di_particles_refresh(set) : se3di_particles_rebuild(set);
 }
 
 /* Of particle i with particle j, or with a wall. */
@@ -65,9 +70,9 @@ static void note_overlap(se3di_particles *set, uint32_t i, uint32_t j, uint32_t 
 {
     if (amount > set->failed_amount) {
         set->failed_amount = amount;
-        set->failed = set->spins[i].id;
+        set->failed = se3di_share_number(set, i);
         set->failed_wall = wall;
-        set->failed_with = wall == SE3DI_NO_INDEX ? set->spins[j].id : 0;
+        set->failed_with = wall == SE3DI_NO_INDEX ? se3di_share_number(set, j) : 0;
     }
 }
 
@@ -134,7 +139,7 @@ static se3d_status find_not_finite(se3di_particles *set)
         const se3di_particle *g = &set->particles[k];
         double sum = g->x[0] + g->x[1] + g->x[2] + g->v[0] + g->v[1] + g->v[2];
         if (!isfinite(sum)) {
-            set->failed = set->spins[k].id;
+            set->failed = se3di_share_number(set, k);
             set->failed_amount = 0.0;
             return SE3D_ERR_NOT_FINITE;
         }
@@ -144,7 +149,7 @@ static se3d_status find_not_finite(se3di_particles *set)
 
 int se3di_particles_is_idle(const se3di_particles *set)
 {
-    return set->count == 0 && set->source_count == 0;
+    return se3di_share_total(set) == 0 && set->source_count == 0;
 }
 
 int se3di_particles_is_complete(const se3di_particles *set, se3d_status status)
@@ -153,9 +158,33 @@ int se3di_particles_is_complete(const se3di_particles *set, se3d_status status)
            (status == SE3D_ERR_NO_MEMORY && set->force_valid);
 }
 
+/* The parts are added up slab by slab and over all processes, and rounded at last. */
+static void sum_exactly(se3di_particles *set)
+{
+    const size_t size = 6 * SE3DI_EXACT_PARTS * set->wall_count;
+    double *sums = set->share->sums;
+    for (size_t s = 1; s < set->slab_count; ++s) {
+        for (size_t k = 0; k < size; ++k) {
+            sums[k] += sums[size * s + k];
+        }
+    }
+    set->share->add(set, size, sums);
+    for (size_t w = 0; w < set->wall_count; ++w) {
+        se3di_wall *wall = &set->walls[w];
+        for (size_t a = 0; a < 6; ++a) {
+            const double *part = sums + SE3DI_EXACT_PARTS * (6 * w + a);
+            *(a < 3 ? &wall->force[a] : &wall->torque[a - 3]) = part[0] + (part[1] + part[2]);
+        }
+    }
+}
+
 static void sum_walls(se3di_particles *set)
 {
     size_t walls = set->wall_count;
+    if (se3di_share_is_spread(set)) {
+        sum_exactly(set);
+        return;
+    }
     for (size_t w = 0; w < walls; ++w) {
         double sum[6] = {0.0};
         for (size_t s = 0; s < set->slab_count; ++s) {
@@ -190,6 +219,11 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .clumped = set->clump_count > 0 ? set : NULL,
         .strain = se3di_domain_strains(set) ? strain : NULL,
     };
+    if (se3di_share_is_spread(set)) {
+        task.in_turn = 1;
+        task.exact = set->share->sums;
+        task.exact_steps = set->share->steps;
+    }
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
             task.periodic = 1;
@@ -205,20 +239,24 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
 static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motion *motion)
 {
     if (!isfinite(set->worn)) {
-        SE3DI_TRY(find_not_finite(set));
+        SE3DI_TRY(se3di_share_agree(set, find_not_finite(set)));
     }
     set->starved = 0;
     if (h > 0.0 && set->source_count > 0 && se3di_sources_feed(set, h) < 0) {
         set->starved = 1; /* what could not be inserted waits */
     }
-    SE3DI_TRY(update_lists(set));
+    const se3d_status listed = update_lists(set);
+    if (se3di_share_is_spread(set) && (listed == SE3D_ERR_NO_MEMORY || set->starved)) {
+        set->share->give_up(set, "memory is missing");
+    }
+    SE3DI_TRY(listed);
     if (set->starved && motion->drift != 0.0) {
         *motion = (se3di_particle_motion){1, h, 0.0};
     }
     set->touching = 0;
     set->law_failure = (se3di_law_failure){0, 0, 0, 0};
     set->force_valid = 1;
-    if (set->count == 0) {
+    if (se3di_share_total(set) == 0) {
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
     const se3di_strain strain = se3di_domain_images(set);
@@ -233,6 +271,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
             set->law_failure = set->slabs[s].failure;
         }
     }
+    se3di_share_largest(set, 1, &excess);
     if (set->law_failure.happened) {
         return SE3D_ERR_CALLBACK;
     }
@@ -248,6 +287,7 @@ se3d_status se3di_particles_forces(se3di_particles *set, double h)
     se3d_status status = evaluate(set, h, &none);
     if (status == SE3D_ERR_STEP_SIZE) {
         find_overlap(set, 0.0, !(h > 0.0));
+        status = se3di_share_agree(set, status);
     }
     return status;
 }
@@ -340,11 +380,12 @@ se3d_status se3di_particles_advance(se3di_particles *set, double h, size_t steps
             failure = status;
             if (status == SE3D_ERR_STEP_SIZE) {
                 find_overlap(set, motion.drift, 0);
+                failure = se3di_share_agree(set, status);
             }
             steps = motion.drift != 0.0 ? 1 : 0; /* the step that has begun */
         }
     }
-    return failure < 0 ? failure : find_not_finite(set);
+    return failure < 0 ? failure : se3di_share_agree(set, find_not_finite(set));
 }
 
 uint64_t se3di_particles_hash(const se3di_particles *set)

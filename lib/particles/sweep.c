@@ -17,6 +17,7 @@
 #include "particles/clump.h"
 #include "particles/mesh.h"
 #include "particles/passage.h"
+#include "particles/share.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,17 +37,21 @@ static haste hastier(haste a, haste b)
     return (haste){se3di_larger(a.fastest, b.fastest), se3di_larger(a.hasty, b.hasty)};
 }
 
+/* Which particles a pass leaves alone. */
+enum { SKIP_NONE = 0, SKIP_CLUMPS = 1, SKIP_GHOSTS = 2 };
+
 /* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled;
- * `clumped`, too: then spheres of clumps are left alone. */
+ * `skips`, too. */
 static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
-                                int clumped, const se3di_particle_motion *motion)
+                                int skips, const se3di_particle_motion *motion)
 {
     const double half = 0.5 * motion->h, drift = motion->drift;
     const int drifts = drift != 0.0;
     const double *wear = se3di_particles_wear(set);
     haste most = {0.0, 0.0};
     for (size_t k = begin; k < end; ++k) {
-        if (clumped && se3di_clump_find(set, k)) {
+        if ((skips == SKIP_CLUMPS && se3di_clump_find(set, k)) ||
+            (skips == SKIP_GHOSTS && se3di_share_is_ghost(set, k))) {
             continue;
         }
         se3di_particle *particle = &set->particles[k];
@@ -85,15 +90,18 @@ static haste move_range(se3di_particles *set, size_t begin, size_t end,
         se3di_flows_mark(set, begin, end);
     }
     if (set->clump_count > 0) {
-        return move_kicked(set, begin, end, motion->kicks, 1, motion);
+        return move_kicked(set, begin, end, motion->kicks, SKIP_CLUMPS, motion);
+    }
+    if (se3di_share_is_spread(set)) {
+        return move_kicked(set, begin, end, motion->kicks, SKIP_GHOSTS, motion);
     }
     switch (motion->kicks) {
     case 0:
-        return move_kicked(set, begin, end, 0, 0, motion);
+        return move_kicked(set, begin, end, 0, SKIP_NONE, motion);
     case 1:
-        return move_kicked(set, begin, end, 1, 0, motion);
+        return move_kicked(set, begin, end, 1, SKIP_NONE, motion);
     default:
-        return move_kicked(set, begin, end, 2, 0, motion);
+        return move_kicked(set, begin, end, 2, SKIP_NONE, motion);
     }
 }
 
@@ -101,6 +109,9 @@ static haste move_range(se3di_particles *set, size_t begin, size_t end,
 static void note_motion(se3di_particles *set, const se3di_particle_motion *motion, haste most)
 {
     if (motion->drift != 0.0) {
+        double both[2] = {most.fastest, most.hasty};
+        se3di_share_largest(set, 2, both);
+        most = (haste){both[0], both[1]};
         if (set->flow_count > 0) {
             se3di_flows_count(set, motion->drift);
         }
@@ -259,6 +270,10 @@ static void evaluate_forces(const sweep *w, uint32_t s)
     if (walls > 0) {
         task.wall_sums = set->wall_sums + 6 * walls * s;
         memset(task.wall_sums, 0, 6 * walls * sizeof(double));
+        if (task.exact) {
+            task.exact += 6 * SE3DI_EXACT_PARTS * walls * s;
+            memset(task.exact, 0, 6 * SE3DI_EXACT_PARTS * walls * sizeof(double));
+        }
         se3di_particles_get_kernels(set)->walls(&task);
         se3di_particles_mesh_forces(set, slab, &task);
     }

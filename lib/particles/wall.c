@@ -7,6 +7,7 @@
 #include "contact/shape/mesh.h"
 #include "math/vec3.h"
 #include "particles/memory.h"
+#include "particles/share.h"
 
 #include <math.h>
 
@@ -313,6 +314,9 @@ static se3d_status list_slab(se3di_particles *set, const se3di_slab *slab)
                 continue;
             }
             for (uint32_t i = p * size; i < (p + 1) * size && i < count; ++i) {
+                if (se3di_share_is_ghost(set, slab->begin + i)) {
+                    continue; /* its owner sees to it */
+                }
                 SE3DI_TRY(list_wall(set, slab->begin + i, w));
             }
         }

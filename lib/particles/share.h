@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A set that is spread over processes while it moves. Each has some particles of its own, and
+ * copies of those of others that these may touch: ghosts. Between runs the set is whole everywhere.
+ *
+ * The hooks are called by all processes at the same places, in the same order. The order of sums is
+ * that of the whole: particles of a cell stand in the order of their numbers, the two sides of a
+ * pair are added in turn, and what walls get is added up without rounding. So nothing depends on
+ * who has which particles.                                                           docs/mpi.md */
+#ifndef SE3DI_PARTICLES_SHARE_H
+#define SE3DI_PARTICLES_SHARE_H
+
+#include "particles/set.h"
+
+typedef struct se3di_share {
+    int32_t is_spread;               /* 0: the set is whole here */
+    uint32_t owned;                  /* own particles have the ids below this, ghosts the others */
+    const uint32_t *number;          /* [id] their ids in the whole */
+    uint64_t total;                  /* own particles of all processes */
+    double *sums;                    /* [slabs most * walls * 6 * SE3DI_EXACT_PARTS] */
+    double steps[SE3DI_EXACT_PARTS]; /* 3/2 2^52 times what the parts are multiples of */
+    void *ctx;
+    /* A run begins: lists are made anew, and what is not carried is refused; *why says what. */
+    se3d_status (*spread)(se3di_particles *set, const char **why);
+    void (*gather)(se3di_particles *set); /* and ends */
+    /* Lists are to be made anew: history has been collected, order[] is 0 for what goes. Particles
+     * come to whom they belong, ghosts are gone. */
+    void (*migrate)(se3di_particles *set);
+    /* Ghosts as far as `reach` from the places of the own ones, and the history. */
+    void (*border)(se3di_particles *set, double reach);
+    void (*renew)(se3di_particles *set); /* places and velocities of ghosts */
+    void (*largest)(se3di_particles *set, size_t count, double *values); /* of all processes */
+    void (*add)(se3di_particles *set, size_t count, double *values);     /* without rounding */
+    /* The worst status of all, and what it is about. */
+    se3d_status (*agree)(se3di_particles *set, se3d_status status);
+    void (*give_up)(se3di_particles *set, const char *why); /* ends all processes */
+    void (*forget)(se3di_particles *set);                   /* the set goes */
+} se3di_share;
+
+static inline int se3di_share_is_spread(const se3di_particles *set)
+{
+    return set->share && set->share->is_spread;
+}
+
+/* Particle k is a copy of another process's. */
+static inline int se3di_share_is_ghost(const se3di_particles *set, size_t k)
+{
+    return se3di_share_is_spread(set) && set->spins[k].id >= set->share->owned;
+}
+
+/* What particle k is called in the whole. */
+static inline uint32_t se3di_share_number(const se3di_particles *set, size_t k)
+{
+    const uint32_t id = set->spins[k].id;
+    return se3di_share_is_spread(set) ? set->share->number[id] : id;
+}
+
+/* Particles of all processes. */
+static inline size_t se3di_share_total(const se3di_particles *set)
+{
+    return se3di_share_is_spread(set) ? (size_t)set->share->total : set->count;
+}
+
+/* The largest values of all processes; NaN if one is NaN. */
+static inline void se3di_share_largest(se3di_particles *set, size_t count, double *values)
+{
+    if (se3di_share_is_spread(set)) {
+        set->share->largest(set, count, values);
+    }
+}
+
+static inline se3d_status se3di_share_agree(se3di_particles *set, se3d_status status)
+{
+    return se3di_share_is_spread(set) ? set->share->agree(set, status) : status;
+}
+
+static inline void se3di_share_gather(se3di_particles *set)
+{
+    if (se3di_share_is_spread(set)) {
+        set->share->gather(set);
+    }
+}
+
+#endif
