@@ -24,6 +24,18 @@ foreach(kind shared static)
     install(EXPORT se3d-${kind}-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}" COMPONENT development)
 endforeach()
 
+# What needs MPI, in a component of its own.
+if(TARGET se3d_mpi)
+    install(TARGETS se3d_mpi EXPORT se3d-mpi-targets
+            LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT mpi)
+    install(EXPORT se3d-mpi-targets NAMESPACE se3d:: DESTINATION "${se3d_cmake_dir}" COMPONENT mpi)
+    install(FILES "${PROJECT_SOURCE_DIR}/mpi/include/se3d/mpi.h"
+            DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/se3d" COMPONENT mpi)
+endif()
+if(TARGET se3d_mpi_program)
+    install(TARGETS se3d_mpi_program RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT mpi)
+endif()
+
 if(TARGET se3d_record)
     install(TARGETS se3d_record LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/se3d" COMPONENT program)
     install(FILES "${PROJECT_SOURCE_DIR}/record/record.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/se3d"
@@ -78,6 +90,13 @@ endforeach()
 foreach(library IN LISTS SE3D_OPENMP_LIBRARIES)
     string(APPEND SE3D_PC_OPENMP " -l${library}")
 endforeach()
+if(TARGET se3d_mpi)
+    list(TRANSFORM MPI_C_INCLUDE_DIRS PREPEND " -I" OUTPUT_VARIABLE SE3D_PC_MPI)
+    string(REPLACE ";" "" SE3D_PC_MPI "${SE3D_PC_MPI}")
+    list(JOIN MPI_C_LIBRARIES " " SE3D_PC_MPI_LIBRARIES)
+    configure_file("${PROJECT_SOURCE_DIR}/pkgconfig/se3d-mpi.pc.in" "${PROJECT_BINARY_DIR}/se3d-mpi.pc" @ONLY)
+    install(FILES "${PROJECT_BINARY_DIR}/se3d-mpi.pc" DESTINATION "${se3d_pc_dir}" COMPONENT mpi)
+endif()
 foreach(pc se3d se3d-io)
     if(pc STREQUAL "se3d" OR TARGET se3d_io)
         configure_file("${PROJECT_SOURCE_DIR}/pkgconfig/${pc}.pc.in"

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a process knows of a set that several share. Memory is the process's own; if it is missing,
+ * or a message fails, all processes end. */
+#ifndef SE3DM_TEAM_H
+#define SE3DM_TEAM_H
+
+#include <mpi.h>
+
+#include "boxes.h"
+#include "particles/share.h"
+#include "se3d/mpi.h"
+
+/* Bytes to be sent, or that have come. */
+typedef struct bytes {
+    unsigned char *data;
+    size_t count, capacity;
+} bytes;
+
+/* A particle on its way. */
+typedef struct mover {
+    uint32_t number, reserved;
+    se3di_particle particle;
+    se3di_spin spin;
+} mover;
+
+/* The history of a pair, by numbers; j >= SE3DI_CARRY_WALL: with a wall. */
+typedef struct history {
+    uint32_t i, j;
+    double xi[3], rho[4];
+} history;
+
+/* Another process with which ghosts are exchanged. */
+typedef struct peer {
+    int rank;
+    uint32_t first, count;   /* ids of its particles here */
+    size_t sent, sent_count; /* of those that it sees, in team.seen */
+    double *out, *in;        /* in team.values */
+} peer;
+
+typedef struct team {
+    se3di_share share;
+    MPI_Comm comm;
+    int rank, size;
+    boxes boxes;
+    uint32_t *number;
+    size_t number_capacity;
+    peer *peers; /* [size] the first peer_count */
+    size_t peer_count;
+    uint32_t *seen; /* ids of own particles that others see */
+    size_t seen_capacity;
+    double *values; /* places and velocities on their way */
+    size_t value_capacity;
+    MPI_Request *requests; /* [2 * size] */
+    bytes *to;             /* [size] */
+    bytes came;            /* from all, in the order of ranks, */
+    size_t *from;          /* [size + 1] where that of each begins */
+    history *histories;    /* of what came, until the ghosts are here */
+    size_t history_count, history_capacity;
+    se3di_mesh_pair *touches; /* the same on meshes; i: number */
+    size_t touch_count, touch_capacity;
+    uint32_t *table; /* hash of numbers -> index */
+    size_t table_size;
+    int32_t from_whole; /* all have all: nothing need be sent */
+    int32_t reserved;
+    size_t ids; /* of the whole */
+    uint64_t lost, lost_of[SE3D_PARTICLES_TAGS];
+    uint64_t *removed; /* [sinks] as the last three, when the run began */
+    size_t sum_capacity, removed_capacity;
+    se3d_mpi_stats stats;
+    double begun;
+} team;
+
+/* message.c */
+void team_fail(const team *t, const char *what, const char *why) __attribute__((noreturn));
+/* Room for `count` elements; those that are there stay. */
+void team_reserve(const team *t, void *array, size_t *capacity, size_t count, size_t size);
+void bytes_put(const team *t, bytes *to, const void *data, size_t size);
+void team_exchange(team *t); /* team.to -> team.came */
+/* What all have, one after the other. */
+void team_collect(team *t, const bytes *own);
+void team_largest(se3di_particles *set, size_t count, double *values);
+void team_add(se3di_particles *set, size_t count, double *values);
+void team_add_counts(team *t, uint64_t *counts, int count);
+se3d_status team_agree(se3di_particles *set, se3d_status status);
+void team_renew(se3di_particles *set);
+
+/* migrate.c */
+void team_migrate(se3di_particles *set);
+void team_border(se3di_particles *set, double reach);
+
+/* whole.c */
+se3d_status team_spread(se3di_particles *set, const char **why);
+void team_gather(se3di_particles *set);
+
+static inline team *team_of(const se3di_particles *set)
+{
+    return set->share->ctx;
+}
+
+static inline history history_of(const se3di_particles *set, const se3di_carry *carry, size_t k)
+{
+    history h = {carry->i, carry->j, {carry->xi[0], carry->xi[1], carry->xi[2]}, {0.0}};
+    for (size_t a = 0; set->carry_rolling && a < 4; ++a) {
+        h.rho[a] = set->carry_roll[4 * k + a];
+    }
+    return h;
+}
+
+#endif

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What several processes do not carry is refused by name, one that fails or is killed ends all with
+# a message, and a run is resumed on another number of processes.
+# Run with SE3D_MPI_PROGRAM and SE3D_SOURCE_DIR set.
+set -u
+. "${SE3D_SOURCE_DIR:-.}/tests/mpi/support.sh"
+
+column=$source/tests/mpi/column.yaml
+
+# refuses WHAT: the model in $dir/refused.yaml
+refuses() {
+    share 2 run "$dir/refused.yaml" -o "$dir/refused"
+    holds "refused: $1" test "$status" -eq 2
+    holds "the message says $1" grep -q "that several processes share .*$1" "$dir/err"
+    holds "$1: it is said once" test "$(grep -c 'several processes share' "$dir/err")" -eq 1
+}
+
+{ cat "$column" && echo 'flows: [{name: f, point: [0, 0, 0.01], normal: [0, 0, 1]}]'; } >"$dir/refused.yaml"
+refuses flows
+{
+    sed 's/radius: \[[^]]*\], packing: lattice, jitter: [^,]*/clump: two, packing: lattice/' "$column"
+    echo 'clumps: [{name: two, spheres: [{position: [0, 0, 0], radius: 0.002}, {position: [0.002, 0, 0], radius: 0.002}]}]'
+} >"$dir/refused.yaml"
+refuses clumps
+
+share 2 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
+holds "an overlap ends the run" test "$status" -eq 1
+holds "the message names the particles" grep -q 'particle [0-9]* .*overlap' "$dir/err"
+share 1 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
+grep -o 'particle [0-9]* .*' "$dir/err" >"$dir/err1"
+share 3 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
+grep -o 'particle [0-9]* .*' "$dir/err" >"$dir/err3"
+holds "it names the same ones on three processes" cmp "$dir/err1" "$dir/err3"
+
+# Killed in the midst: the others end, and mpirun says why.
+share 3 run "$column" -o "$dir/killed" --set analysis.duration=100 --checkpoint 0 &
+here=$!
+own_processes() { # that may end meanwhile
+    for entry in /proc/[0-9]*; do
+        [ -r "$entry/cmdline" ] || continue
+        case $(tr '\0' ' ' 2>/dev/null <"$entry/cmdline") in
+        "$SE3D_MPI_PROGRAM run $column -o $dir/killed "*) echo "${entry#/proc/}" ;;
+        esac
+    done 2>/dev/null
+}
+tries=0
+while [ ! -e "$dir/killed/run.checkpoint" ] && [ $tries -lt 200 ]; do
+    sleep 0.1
+    tries=$((tries + 1))
+done
+victim=$(own_processes | tail -n 1)
+holds "there is a process to kill" test -n "$victim"
+kill -9 "$victim"
+wait $here
+holds "a killed process ends all" grep -q -i 'signal 9\|killed' "$dir/err"
+holds "none is left" test -z "$(own_processes)"
+
+finish
