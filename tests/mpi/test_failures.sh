@@ -32,8 +32,9 @@ share 3 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
 grep -o 'particle [0-9]* .*' "$dir/err" >"$dir/err3"
 holds "it names the same ones on three processes" cmp "$dir/err1" "$dir/err3"
 
-# Killed in the midst: the others end, and mpirun says why.
-share 3 run "$column" -o "$dir/killed" --set analysis.duration=100 --checkpoint 0 &
+# Killed in the midst: the others end, and mpirun says why; resumed on fewer, as if nothing had been.
+long=analysis.duration=0.04
+share 3 run "$column" -o "$dir/killed" --set $long --checkpoint 0 &
 here=$!
 own_processes() { # that may end meanwhile
     for entry in /proc/[0-9]*; do
@@ -44,8 +45,8 @@ own_processes() { # that may end meanwhile
     done 2>/dev/null
 }
 tries=0
-while [ ! -e "$dir/killed/run.checkpoint" ] && [ $tries -lt 200 ]; do
-    sleep 0.1
+while [ ! -e "$dir/killed/run.checkpoint" ] && [ $tries -lt 1000 ]; do
+    sleep 0.02
     tries=$((tries + 1))
 done
 victim=$(own_processes | tail -n 1)
@@ -54,5 +55,10 @@ kill -9 "$victim"
 wait $here
 holds "a killed process ends all" grep -q -i 'signal 9\|killed' "$dir/err"
 holds "none is left" test -z "$(own_processes)"
+
+share 2 run "$column" -o "$dir/killed" --set $long --resume
+holds "two processes go on with what three had begun" test "$status" -eq 0
+share 1 run "$column" -o "$dir/whole" --set $long
+holds "the files are the same" diff -r "$dir/whole" "$dir/killed"
 
 finish
