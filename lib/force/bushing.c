@@ -5,7 +5,8 @@
  *     V = 1/2 z^T K z,  n = K z + C zdot,  wrench = -sum_k n_k dz_k/dq
  *
  * u_k is a DP2. With Tinv the inverse tangent of the exponential map and turns dpi_i, dpi_j,
- * dtheta = Tinv R_j^T dpi_j - Tinv^T R_i^T dpi_i.  Degenerate at |theta| = pi.
+ * dtheta = Tinv R_j^T dpi_j - Tinv^T R_i^T dpi_i.  Degenerate at |theta| = pi, unless no angle has
+ * a stiffness or damping: then none is computed.
  * docs/theory/bushing.md */
 #include "force/measure.h"
 #include "math/elementary.h"
@@ -24,10 +25,9 @@ typedef struct bushing_frames {
     double curve_slope;        /* (da/dphi)/phi */
 } bushing_frames;
 
-static void read_frames(const se3di_model *model, const se3di_force *force, bushing_frames *f)
+static void read_angles(const se3di_model *model, const se3di_force *force, bushing_frames *f)
 {
     double p_i[4], p_j[4];
-    se3di_quat_to_matrix(force->p_i, f->R_i);
     se3di_quat_to_matrix(force->p_j, f->R_j);
     se3di_quat_mul(model->frames[force->body_i].p, force->p_i, p_i);
     se3di_quat_mul(model->frames[force->body_j].p, force->p_j, p_j);
@@ -109,11 +109,22 @@ static void measure_rotation(const bushing_frames *f, int axis, int wants_H, se3
     }
 }
 
-static void measure_all(const se3di_model *model, const se3di_force *force, int wants_H,
+/* How many coordinates act: 3 where nothing depends on the angles. */
+static int count_coordinates(const se3di_force *force)
+{
+    for (int k = 0; k < 36; ++k) {
+        if ((k >= 18 || k % 6 >= 3) && (force->K[k] != 0.0 || force->C[k] != 0.0)) {
+            return 6;
+        }
+    }
+    return 3;
+}
+
+static void measure_all(const se3di_model *model, const se3di_force *force, int count, int wants_H,
                         se3di_measure z[6])
 {
     bushing_frames frames;
-    read_frames(model, force, &frames);
+    se3di_quat_to_matrix(force->p_i, frames.R_i);
     for (int k = 0; k < 3; ++k) {
         se3di_term term;
         se3di_length_term(force, &term);
@@ -122,16 +133,21 @@ static void measure_all(const se3di_model *model, const se3di_force *force, int 
             term.a_i[c] = frames.R_i[3 * c + k];
         }
         se3di_measure_term(model, &term, wants_H, &z[k]);
-        se3di_velocity_pair(model, force, z[3 + k].u);
-        measure_rotation(&frames, k, wants_H, &z[3 + k]);
+    }
+    if (count > 3) {
+        read_angles(model, force, &frames);
+    }
+    for (int k = 3; k < count; ++k) {
+        se3di_velocity_pair(model, force, z[k].u);
+        measure_rotation(&frames, k - 3, wants_H, &z[k]);
     }
 }
 
-static void add_derivatives(const se3di_force *force, const se3di_measure z[6], const double n[6],
-                            se3di_effect *effect)
+static void add_derivatives(const se3di_force *force, const se3di_measure z[6], int count,
+                            const double n[6], se3di_effect *effect)
 {
     double rate_q[6][12]; /* d zdot / dq */
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < count; ++k) {
         for (int c = 0; c < 12; ++c) {
             rate_q[k][c] = 0.0;
             for (int r = 0; r < 12; ++r) {
@@ -139,10 +155,10 @@ static void add_derivatives(const se3di_force *force, const se3di_measure z[6], 
             }
         }
     }
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < count; ++k) {
         double slope[12] = {0.0};
         double rate_slope[12] = {0.0};
-        for (int l = 0; l < 6; ++l) {
+        for (int l = 0; l < count; ++l) {
             for (int c = 0; c < 12; ++c) {
                 slope[c] += force->K[6 * k + l] * z[l].g[c] + force->C[6 * k + l] * rate_q[l][c];
                 rate_slope[c] += force->C[6 * k + l] * z[l].g[c];
@@ -161,11 +177,12 @@ static se3d_status eval_bushing(const se3di_model *model, const se3di_force *for
     (void)t;
     se3di_measure z[6];
     double n[6];
-    measure_all(model, force, effect->wants_derivative, z);
-    for (int k = 0; k < 6; ++k) {
+    const int count = count_coordinates(force);
+    measure_all(model, force, count, effect->wants_derivative, z);
+    for (int k = 0; k < count; ++k) {
         double elastic = 0.0;
         double viscous = 0.0;
-        for (int l = 0; l < 6; ++l) {
+        for (int l = 0; l < count; ++l) {
             elastic += force->K[6 * k + l] * z[l].value;
             viscous += force->C[6 * k + l] * z[l].rate;
         }
@@ -177,7 +194,7 @@ static se3d_status eval_bushing(const se3di_model *model, const se3di_force *for
         }
     }
     if (effect->wants_derivative) {
-        add_derivatives(force, z, n, effect);
+        add_derivatives(force, z, count, n, effect);
     }
     return SE3D_OK;
 }
