@@ -83,10 +83,16 @@ typedef struct wide {
 
 static wide multiply(uint64_t a, uint64_t b)
 {
+#if defined(__SIZEOF_INT128__)
+    __extension__ typedef unsigned __int128 widest;
+    const widest product = (widest)a * b;
+    return (wide){(uint64_t)(product >> 64), (uint64_t)product};
+#else
     const uint64_t mask = 0xFFFFFFFFu, a0 = a & mask, a1 = a >> 32, b0 = b & mask, b1 = b >> 32;
     const uint64_t low = a0 * b0, middle = a1 * b0 + (low >> 32);
     const uint64_t other = a0 * b1 + (middle & mask);
     return (wide){a1 * b1 + (middle >> 32) + (other >> 32), (other << 32) | (low & mask)};
+#endif
 }
 
 /* The first 128 of the 256 bits of a b. */
@@ -117,6 +123,9 @@ static int shift_down(int x, int bits)
 /* The place of the first bit of a number that is not 0, 0 ... 63. */
 static int first_bit(uint64_t x)
 {
+#if defined(__GNUC__)
+    return 63 - __builtin_clzll(x);
+#else
     int place = 0;
     for (int half = 32; half > 0; half /= 2) {
         if (x >> half) {
@@ -125,6 +134,7 @@ static int first_bit(uint64_t x)
         }
     }
     return place;
+#endif
 }
 
 /* Shift a up to its last bit; *by: how far. */
@@ -180,19 +190,34 @@ bool se3di_digits_of(double value, uint64_t *digits, int *exponent)
     return true;
 }
 
+/* Two digits. */
+static void write_pair(uint32_t pair, char *text)
+{
+    static const char pairs[] = "00010203040506070809101112131415161718192021222324"
+                                "25262728293031323334353637383940414243444546474849"
+                                "50515253545556575859606162636465666768697071727374"
+                                "75767778798081828384858687888990919293949596979899";
+    memcpy(text, pairs + 2 * pair, 2);
+}
+
+/* Eight digits. */
+static void write_eight(uint32_t x, char *text)
+{
+    const uint32_t first = x / 10000, last = x % 10000;
+    write_pair(first / 100, text);
+    write_pair(first % 100, text + 2);
+    write_pair(last / 100, text + 4);
+    write_pair(last % 100, text + 6);
+}
+
 /* The digits as a text without the zeros at its end; @return how many */
 static int write_digits(uint64_t q, char text[DIGITS])
 {
     int count = DIGITS;
-    uint32_t part = (uint32_t)(q % 100000000);
-    q /= 100000000;
-    for (int k = DIGITS - 1; k >= 0; --k) {
-        if (k == DIGITS - 9) {
-            part = (uint32_t)(q % 1000000000);
-        }
-        text[k] = (char)('0' + part % 10);
-        part /= 10;
-    }
+    const uint64_t first = q / 100000000;
+    write_eight((uint32_t)(q % 100000000), text + 9);
+    write_eight((uint32_t)(first % 100000000), text + 1);
+    text[0] = (char)('0' + first / 100000000);
     while (count > 1 && text[count - 1] == '0') {
         --count;
     }
