@@ -217,29 +217,47 @@ static void take_ride(const se3di_wheel_motion *motion, const se3di_wheel *wheel
     ride->spring = se3di_wheel_spring_rate(motion, wheel);
 }
 
-/* The ride of a wheel while the opposite one stays. */
-static se3d_status find_ride(const se3di_model *model, const se3di_wheel *wheel, const pose *p,
-                             ride_rates *ride)
+/* The ride of one of the wheels of a motion. */
+static void read_ride(const se3di_wheel_motion *motion, const se3di_wheel *wheel, const pose *p,
+                      ride_rates *ride)
 {
-    se3di_wheel_motion motion;
-    const double rates[2] = {1.0, 0.0};
-    se3di_wheel_ride_init(&motion, model, wheel, rates);
-    SE3DI_TRY(se3di_wheel_motion_find(&motion));
-    take_ride(&motion, wheel, p, ride);
-    if (!motion.exists) {
+    take_ride(motion, wheel, p, ride);
+    if (!motion->exists) {
         for (size_t k = 0; k < sizeof *ride / sizeof(double); ++k) {
             ((double *)ride)[k] = (double)NAN;
         }
     }
-    se3di_wheel_motion_destroy(&motion);
+}
+
+/* The ride of the opposite wheel while the own one stays: another motion, unless both wheels are
+ * opposite to each other on one chassis. */
+static se3d_status find_opposite_ride(se3di_wheel_motion *motion, const pose *p, ride_rates *ride)
+{
+    const se3di_model *model = motion->model;
+    const se3di_wheel *opposite = &model->wheels[motion->wheel->opposite];
+    if (opposite->chassis == motion->wheel->chassis && opposite->opposite >= 0 &&
+        &model->wheels[opposite->opposite] == motion->wheel) {
+        const double rates[2] = {0.0, 1.0};
+        SE3DI_TRY(se3di_wheel_motion_change(motion, rates));
+        read_ride(motion, opposite, p, ride);
+        return SE3D_OK;
+    }
+    se3di_wheel_motion other;
+    const double rates[2] = {1.0, 0.0};
+    se3di_wheel_ride_init(&other, model, opposite, rates);
+    SE3DI_TRY(se3di_wheel_motion_find(&other));
+    read_ride(&other, opposite, p, ride);
+    se3di_wheel_motion_destroy(&other);
     return SE3D_OK;
 }
 
 /* Height over the middle of the contact points of where the lines from them to the front centres
  * meet; without an opposite wheel, of where the line meets the plane y = 0. */
-static se3d_status measure_roll_center(const se3di_model *model, const se3di_wheel *wheel,
-                                       const pose *p, const ride_rates *own, double *height)
+static se3d_status measure_roll_center(se3di_wheel_motion *motion, const pose *p,
+                                       const ride_rates *own, double *height)
 {
+    const se3di_model *model = motion->model;
+    const se3di_wheel *wheel = motion->wheel;
     double C[2][3];
     const double slope = -own->material[1] / own->material[2];
     to_vehicle(model, wheel, p, p->contact, C[0]);
@@ -251,7 +269,7 @@ static se3d_status measure_roll_center(const se3di_model *model, const se3di_whe
     pose there;
     ride_rates other;
     take_pose(model, opposite, &there);
-    SE3DI_TRY(find_ride(model, opposite, &there, &other));
+    SE3DI_TRY(find_opposite_ride(motion, &there, &other));
     to_vehicle(model, wheel, p, there.contact, C[1]);
     const double slope2 = -other.material[1] / other.material[2];
     double y = 0.5 * (C[0][1] + C[1][1]);
@@ -275,12 +293,12 @@ static void measure_anti(const se3di_wheel *wheel, const ride_rates *ride, doubl
     values[SE3D_WHEEL_ANTI_SQUAT] = 0.0 - driven;
 }
 
-static se3d_status measure_ride(const se3di_model *model, const se3di_wheel *wheel, const pose *p,
-                                double *values)
+/* Of a motion with a travel of 1 that has just been found. */
+static se3d_status measure_ride(se3di_wheel_motion *motion, const pose *p, double *values)
 {
     ride_rates ride;
     double a[3];
-    SE3DI_TRY(find_ride(model, wheel, p, &ride));
+    read_ride(motion, motion->wheel, p, &ride);
     to_axes(p, p->axis, a);
     const double level = a[0] * a[0] + a[1] * a[1];
     values[SE3D_WHEEL_CAMBER_GRADIENT] = -ride.axis[2] / sqrt(level);
@@ -293,17 +311,18 @@ static se3d_status measure_ride(const se3di_model *model, const se3di_wheel *whe
     values[SE3D_WHEEL_SIDE_SWING_ARM] = ride.material[2] / ride.omega[1];
     values[SE3D_WHEEL_SIDE_CENTER_HEIGHT] = -ride.material[0] / ride.omega[1];
     values[SE3D_WHEEL_MOTION_RATIO] = 0.0 - ride.spring;
-    measure_anti(wheel, &ride, values);
-    return measure_roll_center(model, wheel, p, &ride, &values[SE3D_WHEEL_ROLL_CENTER_HEIGHT]);
+    measure_anti(motion->wheel, &ride, values);
+    return measure_roll_center(motion, p, &ride, &values[SE3D_WHEEL_ROLL_CENTER_HEIGHT]);
 }
 
 /* ---- Loads ---------------------------------------------------------------------------------*/
 
-static se3d_status measure_loads(const se3di_model *model, const se3di_wheel *wheel, const pose *p,
-                                 double *values)
+static se3d_status measure_loads(se3di_wheel_motion *motion, const pose *p, double *values)
 {
+    const se3di_model *model = motion->model;
+    const se3di_wheel *wheel = motion->wheel;
     const double up[2] = {1.0, 0.0};
-    SE3DI_TRY(se3di_wheel_load(model, wheel, up, &values[SE3D_WHEEL_WHEEL_LOAD],
+    SE3DI_TRY(se3di_wheel_load(motion, up, &values[SE3D_WHEEL_WHEEL_LOAD],
                                &values[SE3D_WHEEL_WHEEL_RATE]));
     values[SE3D_WHEEL_ROLL_RATE] = (double)NAN;
     if (wheel->opposite < 0) {
@@ -316,7 +335,23 @@ static se3d_status measure_loads(const se3di_model *model, const se3di_wheel *wh
     se3di_sub(p->contact, other.contact, apart);
     const double half = 0.5 * fabs(se3di_dot(apart, p->axes + 3));
     const double roll[2] = {half, -half};
-    return se3di_wheel_load(model, wheel, roll, &unused, &values[SE3D_WHEEL_ROLL_RATE]);
+    return se3di_wheel_load(motion, roll, &unused, &values[SE3D_WHEEL_ROLL_RATE]);
+}
+
+/* What needs the ride of the wheel: the equations are factored once. */
+static se3d_status measure_motion(const se3di_model *model, const se3di_wheel *wheel, const pose *p,
+                                  int wants_ride, int wants_loads, double *values)
+{
+    se3di_wheel_motion motion;
+    const double rates[2] = {1.0, 0.0};
+    se3di_wheel_ride_init(&motion, model, wheel, rates);
+    SE3DI_TRY(se3di_wheel_motion_find(&motion));
+    se3d_status status = wants_ride ? measure_ride(&motion, p, values) : SE3D_OK;
+    if (wants_loads && status >= 0) {
+        status = measure_loads(&motion, p, values);
+    }
+    se3di_wheel_motion_destroy(&motion);
+    return status;
 }
 
 se3d_status se3di_wheel_measure(const se3di_model *model, uint32_t index, size_t first,
@@ -330,8 +365,9 @@ se3d_status se3di_wheel_measure(const se3di_model *model, uint32_t index, size_t
     if (first < SE3D_WHEEL_CAMBER_GRADIENT && end > SE3D_WHEEL_CASTER) {
         SE3DI_TRY(measure_steering(model, wheel, &p, values));
     }
-    if (first < SE3D_WHEEL_WHEEL_LOAD && end > SE3D_WHEEL_CAMBER_GRADIENT) {
-        SE3DI_TRY(measure_ride(model, wheel, &p, values));
-    }
-    return end > SE3D_WHEEL_WHEEL_LOAD ? measure_loads(model, wheel, &p, values) : SE3D_OK;
+    const int wants_ride = first < SE3D_WHEEL_WHEEL_LOAD && end > SE3D_WHEEL_CAMBER_GRADIENT;
+    const int wants_loads = end > SE3D_WHEEL_WHEEL_LOAD;
+    return wants_ride || wants_loads
+               ? measure_motion(model, wheel, &p, wants_ride, wants_loads, values)
+               : SE3D_OK;
 }

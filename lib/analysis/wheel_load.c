@@ -130,23 +130,17 @@ static se3d_status add_at_rest(const se3di_wheel_motion *motion, double sums[2])
     return status;
 }
 
-se3d_status se3di_wheel_load(const se3di_model *model, const se3di_wheel *wheel,
-                             const double rates[2], double *load, double *rate)
+se3d_status se3di_wheel_load(se3di_wheel_motion *motion, const double rates[2], double *load,
+                             double *rate)
 {
-    se3di_wheel_motion motion;
     double sums[2] = {0.0, 0.0};
-    se3di_wheel_ride_init(&motion, model, wheel, rates);
-    SE3DI_TRY(se3di_wheel_motion_find(&motion));
-    se3d_status status = SE3D_OK;
-    const int exists = motion.exists;
+    SE3DI_TRY(se3di_wheel_motion_change(motion, rates));
+    const int exists = motion->exists;
     if (exists) {
-        status = se3di_wheel_motion_curve(&motion);
-    }
-    if (exists && status >= 0) {
-        status = add_at_rest(&motion, sums);
+        SE3DI_TRY(se3di_wheel_motion_curve(motion));
+        SE3DI_TRY(add_at_rest(motion, sums));
     }
     *load = exists ? 0.0 - sums[0] : (double)NAN;
-    *rate = exists && motion.exists ? 0.0 - sums[1] : (double)NAN;
-    se3di_wheel_motion_destroy(&motion);
-    return status;
+    *rate = exists && motion->exists ? 0.0 - sums[1] : (double)NAN;
+    return SE3D_OK;
 }

@@ -5,7 +5,6 @@
 #include "force/measure.h"
 #include "joint/equation.h"
 #include "joint/user.h"
-#include "linsol/rank.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -29,6 +28,7 @@ void se3di_wheel_motion_destroy(se3di_wheel_motion *m)
     se3di_free(allocator, m->used, m->model->constraint_slots.count, sizeof *m->used);
     se3di_free(allocator, m->velocity, 6 * bodies, sizeof *m->velocity);
     se3di_free(allocator, m->acceleration, 6 * bodies, sizeof *m->acceleration);
+    se3di_least_norm_destroy(allocator, &m->factors);
     m->column = NULL;
     m->used = NULL;
     m->velocity = m->acceleration = NULL;
@@ -110,12 +110,12 @@ static void collect(se3di_wheel_motion *m)
     }
 }
 
-/* The equations as a dense system, column-major, rows of unit length, rotations times the radius;
- * twice, as the solution destroys the first. */
+/* The equations as a dense system, column-major: rows of unit length, turns times the radius. */
 typedef struct equations {
     const se3di_model *view; /* the model in the motion */
     size_t rows, columns;
-    double *A, *g, *x, *copy;
+    double *A, *g, *x;
+    double *work; /* [rows] */
     size_t size;
 } equations;
 
@@ -247,7 +247,7 @@ static se3d_status fill(const se3di_wheel_motion *m, equations *e, int curved)
 }
 
 /* The largest equation that x leaves, relative. */
-static double measure_gap(const equations *e, const double *g)
+static double measure_gap(const equations *e)
 {
     double largest = 0.0;
     double size = 0.0;
@@ -255,9 +255,9 @@ static double measure_gap(const equations *e, const double *g)
         size = fmax(size, fabs(e->x[c]));
     }
     for (size_t r = 0; r < e->rows; ++r) {
-        double rest = -g[r];
+        double rest = -e->g[r];
         for (size_t c = 0; c < e->columns; ++c) {
-            rest += e->copy[c * e->rows + r] * e->x[c];
+            rest += e->A[c * e->rows + r] * e->x[c];
         }
         largest = fmax(largest, fabs(rest));
     }
@@ -266,13 +266,14 @@ static double measure_gap(const equations *e, const double *g)
 
 static se3d_status solve(se3di_wheel_motion *m, equations *e, int curved, double *result)
 {
-    double *kept = e->copy + e->rows * e->columns;
     SE3DI_TRY(fill(m, e, curved));
-    memcpy(e->copy, e->A, e->rows * e->columns * sizeof *e->copy);
-    memcpy(kept, e->g, e->rows * sizeof *kept);
-    SE3DI_TRY(se3di_rank_least_norm(&m->model->allocator, (int32_t)e->rows, (int32_t)e->columns,
-                                    e->A, e->g, RANK_TOLERANCE, e->x, NULL));
-    m->exists = measure_gap(e, kept) <= GAP_MAX;
+    if (!m->factors.qr.A) {
+        SE3DI_TRY(se3di_least_norm_factor(&m->model->allocator, (int32_t)e->rows,
+                                          (int32_t)e->columns, e->A, RANK_TOLERANCE, &m->factors));
+    }
+    memcpy(e->work, e->g, e->rows * sizeof *e->work);
+    se3di_least_norm_solve(&m->factors, e->work, e->x);
+    m->exists = measure_gap(e) <= GAP_MAX;
     for (size_t k = 0; k < m->model->body_slots.count; ++k) {
         for (size_t c = 0; c < 6; ++c) {
             const double scale = c < 3 ? 1.0 : 1.0 / m->wheel->radius;
@@ -288,15 +289,14 @@ static se3d_status solve_with_memory(se3di_wheel_motion *m, const se3di_model *v
 {
     const se3d_allocator *allocator = &m->model->allocator;
     equations e = {.view = view, .rows = m->rows + m->prescribed_count, .columns = m->columns};
-    const size_t whole = e.rows * e.columns;
-    e.size = 2 * whole + 2 * e.rows + e.columns;
+    e.size = e.rows * e.columns + 2 * e.rows + e.columns;
     e.A = se3di_alloc(allocator, e.size, sizeof *e.A);
     if (!e.A) {
         return SE3D_ERR_NO_MEMORY;
     }
-    e.copy = e.A + whole; /* and behind it the right-hand sides of the copy */
-    e.g = e.copy + whole + e.rows;
-    e.x = e.g + e.rows;
+    e.g = e.A + e.rows * e.columns;
+    e.work = e.g + e.rows;
+    e.x = e.work + e.rows;
     const se3d_status status = solve(m, &e, curved, result);
     se3di_free(allocator, e.A, e.size, sizeof *e.A);
     return status;
@@ -310,6 +310,7 @@ se3d_status se3di_wheel_motion_find(se3di_wheel_motion *m)
     m->used = se3di_alloc(allocator, m->model->constraint_slots.count, sizeof *m->used);
     m->velocity = se3di_alloc(allocator, 6 * bodies, sizeof *m->velocity);
     m->acceleration = se3di_alloc(allocator, 6 * bodies, sizeof *m->acceleration);
+    m->factors = (se3di_least_norm){0};
     se3d_status status = SE3D_ERR_NO_MEMORY;
     if (m->column && m->used && m->velocity && m->acceleration) {
         collect(m);
@@ -319,6 +320,14 @@ se3d_status se3di_wheel_motion_find(se3di_wheel_motion *m)
         se3di_wheel_motion_destroy(m);
     }
     return status;
+}
+
+se3d_status se3di_wheel_motion_change(se3di_wheel_motion *m, const double *rates)
+{
+    for (size_t k = 0; k < m->prescribed_count; ++k) {
+        m->prescribed[k].rate = rates[k];
+    }
+    return m->columns > 0 ? solve_with_memory(m, m->model, 0, m->velocity) : SE3D_OK;
 }
 
 se3d_status se3di_wheel_motion_curve(se3di_wheel_motion *m)

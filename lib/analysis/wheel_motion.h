@@ -10,6 +10,7 @@
 #ifndef SE3DI_WHEEL_MOTION_H
 #define SE3DI_WHEEL_MOTION_H
 
+#include "linsol/rank.h"
 #include "model/model.h"
 
 enum { SE3DI_WHEEL_COORDINATES = 2 };
@@ -37,13 +38,16 @@ typedef struct se3di_wheel_motion {
     int32_t *column; /* [bodies] first unknown, -1: at rest */
     uint8_t *used;   /* [constraints] */
     size_t columns, rows;
-    double *velocity;     /* [bodies * 6]: v (ground frame), w (body frame) */
-    double *acceleration; /* [bodies * 6], by se3di_wheel_motion_curve */
+    se3di_least_norm factors; /* of the equations */
+    double *velocity;         /* [bodies * 6]: v (ground frame), w (body frame) */
+    double *acceleration;     /* [bodies * 6], by se3di_wheel_motion_curve */
 } se3di_wheel_motion;
 
 /* Find the motion of model, wheel, released and prescribed, which the caller has filled in. On
  * failure nothing is held. @return OK, NO_MEMORY, NOT_FINITE, CALLBACK */
 se3d_status se3di_wheel_motion_find(se3di_wheel_motion *motion);
+/* The motion with other rates of what is prescribed. */
+se3d_status se3di_wheel_motion_change(se3di_wheel_motion *motion, const double *rates);
 /* Its accelerations. */
 se3d_status se3di_wheel_motion_curve(se3di_wheel_motion *motion);
 void se3di_wheel_motion_destroy(se3di_wheel_motion *motion);

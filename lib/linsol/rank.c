@@ -21,14 +21,7 @@ static double dot(const double *a, const double *b, size_t n)
 
 /* ---- QR with column pivoting of C^T ---- */
 
-typedef struct pivoted_qr {
-    double *A;     /* columns x rows, column-major = C row-major */
-    double *tau;   /* [min] */
-    double *work;  /* [2 rows] */
-    double *scale; /* [rows]: 1 / length of each row of C */
-    int32_t *pivot;
-    size_t rows, columns;
-} pivoted_qr;
+typedef se3di_pivoted_qr pivoted_qr;
 
 static void qr_destroy(const se3d_allocator *allocator, pivoted_qr *qr)
 {
@@ -326,54 +319,101 @@ se3d_status se3di_rank_analyse(const se3d_allocator *allocator, int32_t rows, in
 
 /* ---- least norm ---- */
 
-/* After A D P = Q R with rank r: least |l| with R1 P^T D^-1 l = (Q^T g)_1. T = (R1 P^T D^-1)^T is
- * columns x r, of full rank; T = Q2 R2, l = Q2 R2^-T (Q^T g)_1. */
-static void least_norm_solve(const pivoted_qr *qr, int32_t rank, double *T, double *g, double *tau,
-                             double *l)
+void se3di_least_norm_destroy(const se3d_allocator *allocator, se3di_least_norm *f)
 {
-    size_t n = qr->rows, r1 = (size_t)rank;
-    size_t least = n < qr->columns ? n : qr->columns;
-    se3di_householder_apply_transposed(qr->columns, least, qr->A, qr->tau, g);
+    se3di_free(allocator, f->T, f->qr.rows * (size_t)f->rank, sizeof(double));
+    se3di_free(allocator, f->tau, (size_t)f->rank, sizeof(double));
+    qr_destroy(allocator, &f->qr);
+    *f = (se3di_least_norm){0};
+}
+
+/* T = (R1 P^T D^-1)^T, columns x r, of full rank; T = Q2 R2. */
+static se3d_status factor_again(const se3d_allocator *allocator, se3di_least_norm *f)
+{
+    const pivoted_qr *qr = &f->qr;
+    const size_t n = qr->rows, r1 = (size_t)f->rank;
+    f->T = se3di_alloc(allocator, n * r1, sizeof(double));
+    f->tau = se3di_alloc(allocator, r1, sizeof(double));
+    if (!f->T || !f->tau) {
+        return SE3D_ERR_NO_MEMORY;
+    }
     for (size_t k = 0; k < n; ++k) {
         size_t column = (size_t)qr->pivot[k];
         for (size_t r = 0; r < r1; ++r) {
-            T[r * n + column] = r <= k ? qr->A[k * qr->columns + r] / qr->scale[column] : 0.0;
+            f->T[r * n + column] = r <= k ? qr->A[k * qr->columns + r] / qr->scale[column] : 0.0;
         }
     }
-    se3di_householder(n, r1, T, tau);
-    for (size_t r = 0; r < r1; ++r) { /* R2^T l = g */
-        l[r] = (g[r] - dot(T + r * n, l, r)) / T[r * n + r];
+    se3di_householder(n, r1, f->T, f->tau);
+    return SE3D_OK;
+}
+
+se3d_status se3di_least_norm_factor(const se3d_allocator *allocator, int32_t rows, int32_t columns,
+                                    const double *A, double tolerance, se3di_least_norm *f)
+{
+    const size_t n = (size_t)columns, m = (size_t)rows;
+    double low, high;
+    *f = (se3di_least_norm){0};
+    SE3DI_TRY(qr_create(allocator, n, m, &f->qr));
+    if (n * m > 0) {
+        memcpy(f->qr.A, A, n * m * sizeof(double));
     }
-    se3di_householder_apply(n, r1, T, tau, l);
+    se3d_status status = qr_factor(&f->qr);
+    f->rank = status < 0 ? 0 : qr_rank(&f->qr, tolerance, &low, &high);
+    if (status >= 0 && f->rank > 0 && f->rank < columns) {
+        status = factor_again(allocator, f);
+    }
+    if (status < 0) {
+        se3di_least_norm_destroy(allocator, f);
+    }
+    return status;
+}
+
+/* R P^T D^-1 l = g of full rank: the solution is unique. */
+static void solve_unique(const pivoted_qr *qr, double *g, double *l)
+{
+    for (size_t k = qr->rows; k-- > 0;) {
+        const double *column = qr->A + k * qr->columns;
+        const size_t at = (size_t)qr->pivot[k];
+        g[k] /= column[k];
+        for (size_t r = 0; r < k; ++r) {
+            g[r] -= column[r] * g[k];
+        }
+        l[at] = qr->scale[at] * g[k];
+    }
+}
+
+void se3di_least_norm_solve(const se3di_least_norm *f, double *g, double *l)
+{
+    const pivoted_qr *qr = &f->qr;
+    const size_t n = qr->rows, r1 = (size_t)f->rank;
+    const size_t least = n < qr->columns ? n : qr->columns;
+    memset(l, 0, n * sizeof(double));
+    if (r1 == 0) {
+        return;
+    }
+    se3di_householder_apply_transposed(qr->columns, least, qr->A, qr->tau, g);
+    if (!f->T) {
+        solve_unique(qr, g, l);
+        return;
+    }
+    for (size_t r = 0; r < r1; ++r) { /* R2^T l = g */
+        l[r] = (g[r] - dot(f->T + r * n, l, r)) / f->T[r * n + r];
+    }
+    se3di_householder_apply(n, r1, f->T, f->tau, l);
 }
 
 se3d_status se3di_rank_least_norm(const se3d_allocator *allocator, int32_t rows, int32_t columns,
                                   double *A, double *g, double tolerance, double *l, int32_t *rank)
 {
-    pivoted_qr qr;
-    double low, high;
-    size_t n = (size_t)columns, m = (size_t)rows;
-    memset(l, 0, n * sizeof(double));
-    SE3DI_TRY(qr_create(allocator, n, m, &qr));
-    if (n * m > 0) {
-        memcpy(qr.A, A, n * m * sizeof(double));
+    se3di_least_norm f;
+    memset(l, 0, (size_t)columns * sizeof(double));
+    const se3d_status status = se3di_least_norm_factor(allocator, rows, columns, A, tolerance, &f);
+    if (status >= 0) {
+        se3di_least_norm_solve(&f, g, l);
     }
-    se3d_status status = qr_factor(&qr);
-    int32_t found = status < 0 ? 0 : qr_rank(&qr, tolerance, &low, &high);
-    if (status >= 0 && found > 0) {
-        size_t size = n * (size_t)found;
-        double *T = se3di_alloc(allocator, size, sizeof(double));
-        double *tau = se3di_alloc(allocator, (size_t)found, sizeof(double));
-        status = T && tau ? SE3D_OK : SE3D_ERR_NO_MEMORY;
-        if (status == SE3D_OK) {
-            least_norm_solve(&qr, found, T, g, tau, l);
-        }
-        se3di_free(allocator, T, size, sizeof(double));
-        se3di_free(allocator, tau, (size_t)found, sizeof(double));
-    }
-    qr_destroy(allocator, &qr);
     if (rank) {
-        *rank = found;
+        *rank = f.rank;
     }
+    se3di_least_norm_destroy(allocator, &f);
     return status;
 }

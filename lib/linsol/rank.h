@@ -33,10 +33,34 @@ se3d_status se3di_rank_analyse(const se3d_allocator *allocator, int32_t rows, in
                                const double *C, double tolerance, se3di_rank *result);
 void se3di_rank_destroy(const se3d_allocator *allocator, se3di_rank *result);
 
-/* The least-norm solution l[columns] of A l = g in the least-squares sense, A[rows x columns] in
- * column-major order (destroyed), g[rows] (destroyed). Columns are dependent below `tolerance`
- * after scaling to unit length; the norm is that of the unscaled l. *rank may be NULL.
- * @return SE3D_OK, SE3D_ERR_NO_MEMORY, SE3D_ERR_NOT_FINITE */
+/* A D P = Q R, with columns of unit length that are taken in the order of P. */
+typedef struct se3di_pivoted_qr {
+    double *A;     /* columns x rows, column-major: R, and the reflectors below it */
+    double *tau;   /* [min] */
+    double *work;  /* [2 rows] */
+    double *scale; /* [rows]: D, 1 / length of each column */
+    int32_t *pivot;
+    size_t rows, columns; /* of its transpose */
+} se3di_pivoted_qr;
+
+/* A matrix that is factored for solutions of least norm. */
+typedef struct se3di_least_norm {
+    se3di_pivoted_qr qr;
+    double *T, *tau; /* the first rank rows of R P^T D^-1, transposed and factored; NULL: full rank,
+                      * the solution is unique */
+    int32_t rank, reserved;
+} se3di_least_norm;
+
+/* Factor A[rows x columns], column-major. Columns are dependent below `tolerance` after scaling to
+ * unit length. On failure *f is empty. @return SE3D_OK, SE3D_ERR_NO_MEMORY, SE3D_ERR_NOT_FINITE */
+se3d_status se3di_least_norm_factor(const se3d_allocator *allocator, int32_t rows, int32_t columns,
+                                    const double *A, double tolerance, se3di_least_norm *f);
+/* The least-norm solution l[columns] of A l = g in the least-squares sense, g[rows] (destroyed);
+ * the norm is that of the unscaled l. */
+void se3di_least_norm_solve(const se3di_least_norm *f, double *g, double *l);
+void se3di_least_norm_destroy(const se3d_allocator *allocator, se3di_least_norm *f);
+
+/* Both in one, with A untouched; *rank may be NULL. @return as se3di_least_norm_factor */
 se3d_status se3di_rank_least_norm(const se3d_allocator *allocator, int32_t rows, int32_t columns,
                                   double *A, double *g, double tolerance, double *l, int32_t *rank);
 
