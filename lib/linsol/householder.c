@@ -39,6 +39,9 @@ double se3di_householder_reflect(size_t n, double *column)
 void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
 {
     double f = tau * (x[0] + dot(v + 1, x + 1, n - 1));
+    if (f == 0.0) {
+        return; /* most pairs of columns of a sparse matrix, at first */
+    }
     x[0] -= f;
     for (size_t i = 1; i < n; ++i) {
         x[i] -= f * v[i];
