@@ -3,6 +3,7 @@
 #include "force/force.h"
 
 #include "force/friction.h"
+#include "force/tyre.h"
 #include "math/vec3.h"
 #include "model/state.h"
 
@@ -53,6 +54,13 @@ static se3d_status sum_gravity(const se3di_model *model, double t, se3di_force_s
     return SE3D_OK;
 }
 
+/* A slip that lags, whose rate comes with the tyre. */
+static int is_told_by_tyre(const se3di_model *model, const se3di_force *force)
+{
+    return force->type == SE3DI_FORCE_STATE && force->tyre_index >= 0 && !force->released &&
+           !model->forces[force->tyre_index].released;
+}
+
 static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
                                se3di_force_sums *sums)
 {
@@ -62,9 +70,21 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
         sums->effort[along] += sums->has_efforts ? 0.0 : force->value[0];
         return SE3D_OK;
     }
+    if (is_told_by_tyre(model, force)) {
+        return SE3D_OK;
+    }
     se3di_effect effect;
     effect.wants_derivative = 0;
-    SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    if (force->type == SE3DI_FORCE_TYRE && !force->released) {
+        double rate[2];
+        SE3DI_TRY(se3di_tyre_eval_all(model, force, t, &effect, rate));
+        for (int d = 0; d < 2; ++d) {
+            const size_t carrier = force->tyre->lags[d] ? force->tyre->carrier[d] : 0;
+            sums->wrench[6 * carrier] += SE3DI_CARRIER_MASS * rate[d];
+        }
+    } else {
+        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    }
     for (int c = 0; c < 6; ++c) {
         sums->wrench[6 * force->body_i + (uint32_t)c] += effect.wrench[c];
         sums->wrench[6 * force->body_j + (uint32_t)c] += effect.wrench[6 + c];

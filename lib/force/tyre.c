@@ -22,6 +22,7 @@
 #include "model/state.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define UPRIGHT  1e-3 /* cos g: a wheel that lies touches nothing */
@@ -478,36 +479,42 @@ static void to_wrench(const se3di_frame *const frames[2], const patch *c, const 
     se3di_mul_transposed(frames[1]->A, T, wrench + 9);
 }
 
-static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
-                             se3di_effect *effect)
+static void eval_patch(const se3di_model *model, const se3di_force *force, const patch *c,
+                       se3di_effect *effect)
 {
     const se3di_frame *const frames[2] = {&model->frames[force->body_i],
                                           &model->frames[force->body_j]};
-    patch c;
     se3di_tyre_slip slip;
     se3di_tyre_forces forces;
     double of[6], u[12];
-    SE3DI_TRY(take_patch(model, force, t, &c));
-    if (!c.touches) {
-        return SE3D_OK;
+    if (!c->touches) {
+        return;
     }
-    find_forces(force, &c, &slip, &forces);
+    find_forces(force, c, &slip, &forces);
     for (int k = 0; k < 6; ++k) {
         of[k] = forces.of[k].v;
     }
-    to_wrench(frames, &c, of, effect->wrench);
-    const double *in = c.input;
+    to_wrench(frames, c, of, effect->wrench);
+    const double *in = c->input;
     effect->potential = 0.5 * force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_DEFLECTION];
-    effect->power[1] = c.rise * se3di_dot(effect->wrench + 6, c.up); /* of a road that rises */
+    effect->power[1] = c->rise * se3di_dot(effect->wrench + 6, c->up); /* of a road that rises */
     effect->power[0] = effect->power[1] -
-                       force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, &c);
+                       force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, c);
     se3di_velocity_pair(model, force, u);
     for (int k = 0; k < 12; ++k) {
         effect->power[0] -= effect->wrench[k] * u[k];
     }
     if (effect->wants_derivative) {
-        add_derivatives(frames, &c, &forces, effect);
+        add_derivatives(frames, c, &forces, effect);
     }
+}
+
+static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
+{
+    patch c;
+    SE3DI_TRY(take_patch(model, force, t, &c));
+    eval_patch(model, force, &c, effect);
     return SE3D_OK;
 }
 
@@ -557,6 +564,19 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
         }
         to_wrench(frames, c, of, gain);
     }
+}
+
+se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyre, double t,
+                                se3di_effect *effect, double rate[2])
+{
+    patch c;
+    memset(effect, 0, offsetof(se3di_effect, K));
+    SE3DI_TRY(take_patch(model, tyre, t, &c));
+    eval_patch(model, tyre, &c, effect);
+    for (int k = 0; k < 2; ++k) {
+        rate[k] = tyre->tyre->lags[k] ? find_rate(tyre, &c, k).v : 0.0;
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,

@@ -70,6 +70,11 @@ typedef struct se3di_tyre_lag {
 se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,
                                 int direction, se3di_tyre_lag *lag);
 
+/* The element without derivatives, and the rates of both slips that lag (0 of one that does not):
+ * the road below the wheel is looked at once. @return as se3di_force_eval */
+se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyre, double t,
+                                se3di_effect *effect, double rate[2]);
+
 /* What it tells at the present state, see se3d_tyre_value. @return as se3di_force_eval */
 se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
                             double values[SE3D_TYRE_VALUES]);
