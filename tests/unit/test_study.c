@@ -682,6 +682,40 @@ static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
     }
 }
 
+/* Channels, times, bands and curves of measures may be made of what varies: x = t. A spring that
+ * does nothing lets the parameter be set in place otherwise. */
+static void numbers_of_measures_are_those_of_their_sample(void)
+{
+    static const char text[] =
+        "se3d: 1\nparameters: {T: 0.2}\ngravity: [0, 0, 0]\n"
+        "bodies: [{name: b, mass: 1, inertia: [1, 1, 1]}]\n"
+        "joints: [{name: s, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [1, "
+        "0, "
+        "0]}]\n"
+        "drivers: [{name: d, joint: s, value: t}]\n"
+        "forces: [{name: f, type: tsda, body_i: ground, body_j: b, at: [0, -1, 0], at_2: [0, 0, "
+        "0], "
+        "k: 5*T, l0: 1}]\n"
+        "analysis: {type: kinematics, duration: 1, step: 0.05}\n"
+        "study: {parameters: {T: [0.1, 0.3]}, measures: {a: {at: b.position.x, time: T}, "
+        "s: {settling: b.position.x, band: 2*T, target: 1}, m: {max: T*b.position.x}, "
+        "w: {misfit: b.position.x, curve: {linear: [[0, T], [1, 1 + T]]}}}}\n";
+    se3d_model *model = read_model(text);
+    se3d_study *s = NULL;
+    CHECK(model && se3d_study_create(model, &s, NULL) == SE3D_OK);
+    for (uint64_t k = 0; s && k < 2; ++k) {
+        double T, m[4];
+        CHECK(se3d_study_get_sample(s, k, &T) == SE3D_OK);
+        CHECK(se3d_study_eval(s, &T, m, NULL) == SE3D_OK);
+        CHECK_NEAR(m[0], T, 1e-12);
+        CHECK_NEAR(m[1], 1.0 - 2.0 * T, 1e-12);
+        CHECK_NEAR(m[2], T, 1e-12);
+        CHECK_NEAR(m[3], T, 1e-12);
+    }
+    se3d_study_destroy(s);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
     RUN(the_generator_gives_the_known_answers);
@@ -699,5 +733,6 @@ int main(void)
     RUN(tables_have_a_row_for_each_sample);
     RUN(requests_are_answered);
     RUN(samples_are_set_in_place_with_the_bits_of_a_reading);
+    RUN(numbers_of_measures_are_those_of_their_sample);
     return check_finish();
 }

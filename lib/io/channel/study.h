@@ -60,6 +60,7 @@ typedef enum se3di_reduction {
 typedef struct se3di_study_measure {
     const char *name;
     const se3di_node *node; /* of the expression */
+    const se3di_node *map;  /* of the measure; NULL: it is an expression */
     se3di_reduction reduction;
     size_t source;     /* index of what it is made of, SE3DI_STUDY_NO_SOURCE: of no channel */
     const char *event; /* NULL: none */

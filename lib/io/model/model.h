@@ -147,8 +147,11 @@ struct se3d_model {
     size_t event_count;
     se3d_model_picture *pictures;
     size_t picture_count;
-    struct se3di_library *library;        /* io/read/include.h: files that it includes */
-    struct se3di_study_entry *study;      /* io/channel/study.h; NULL: none */
+    struct se3di_library *library;   /* io/read/include.h: files that it includes */
+    struct se3di_study_entry *study; /* io/channel/study.h; NULL: none */
+    struct se3di_study_measure
+        *measures; /* [study->measure_count] with the numbers of the sample that it
+                                           * was read for */
     struct se3di_study_channel *measured; /* [study->source_count] of it, or of the study that the
                                              model is a sample of */
     se3d_model_channel *listed;           /* [listed_count]; NULL: not asked for yet */

@@ -140,16 +140,75 @@ static bool read_number_of(se3di_reader *reader, const se3di_node *node, se3di_s
                                                  : se3di_reader_fail(reader, node, "%s", problem);
 }
 
+/* The points that a channel is to go through. */
+static bool read_points(se3di_reader *reader, const se3di_node *curve, se3di_study_measure *m)
+{
+    se3d_function_def def = se3d_function_def_default();
+    const int alternative = reader->alternative;
+    reader->alternative = -1; /* the units of the channels, whatever they are */
+    const bool good = se3di_read_curve(reader, curve, "x", &def);
+    reader->alternative = alternative;
+    if (!good) {
+        return false;
+    }
+    m->point_count = def.table_count;
+    m->x = se3di_iopool_array(reader->pool, 2 * def.table_count, sizeof *m->x);
+    if (!m->x) {
+        return se3di_reader_fail_memory(reader);
+    }
+    m->y = m->x + def.table_count;
+    for (size_t k = 0; k < def.table_count; ++k) {
+        m->x[k] = def.table_x[k];
+        m->y[k] = def.table_y[k];
+    }
+    return true;
+}
+
+/* Its numbers, with the parameters of this reading. */
+static bool read_numbers(se3di_reader *reader, se3di_study_measure *m)
+{
+    const bool is_mode =
+        m->reduction == SE3DI_REDUCE_FREQUENCY || m->reduction == SE3DI_REDUCE_DAMPING;
+    if (is_mode) {
+        return se3di_read_key(reader, m->map, &se3di_object_measure, NULL,
+                              measure_keys[m->reduction].key, &m->mode);
+    }
+    const int alternative = reader->alternative;
+    reader->alternative = -1; /* the unit of the channel, whatever that is */
+    const bool good =
+        se3di_read_fields(reader, m->map, &se3di_object_measure, NULL, "se3di_study_measure", m);
+    reader->alternative = alternative;
+    return good;
+}
+
+/* The measures of a model that is read for a sample. Points of a file stay. */
+static bool read_again(se3di_reader *reader, se3di_study_measure *m)
+{
+    const se3di_node *curve = m->map ? se3di_node_get(m->map, "curve") : NULL;
+    const se3di_node *points = curve ? se3di_node_get(curve, "linear") : NULL;
+    if (m->map && !read_numbers(reader, m)) {
+        return false;
+    }
+    return !points || points->kind == SE3DI_NODE_SCALAR || read_points(reader, curve, m);
+}
+
 bool se3di_read_measured(se3di_reader *reader, const se3di_study_entry *study)
 {
     se3d_model *model = reader->model;
-    model->measured =
-        se3di_iopool_array(&model->pool, study->source_count, sizeof *model->measured);
-    if (!model->measured) {
+    const size_t sources = study->source_count, measures = study->measure_count;
+    model->measured = se3di_iopool_array(&model->pool, sources, sizeof *model->measured);
+    model->measures = se3di_iopool_array(&model->pool, measures, sizeof *model->measures);
+    if (!model->measured || !model->measures) {
         return se3di_reader_fail_memory(reader);
     }
-    for (size_t k = 0; k < study->source_count; ++k) {
+    for (size_t k = 0; k < sources; ++k) {
         if (!read_number_of(reader, study->sources[k], &model->measured[k])) {
+            return false;
+        }
+    }
+    for (size_t k = 0; k < measures; ++k) {
+        model->measures[k] = study->measures[k];
+        if (reader->study && !read_again(reader, &model->measures[k])) {
             return false;
         }
     }
@@ -222,7 +281,6 @@ static bool read_wanted(se3di_reader *reader, const se3di_node *node, se3di_stud
     const se3di_node *curve = se3di_node_get(node, "curve");
     const se3di_node *along = se3di_node_get(node, "along");
     const char *text = NULL;
-    se3d_function_def def = se3d_function_def_default();
     if (!curve) {
         return se3di_reader_fail_key(reader, node, "curve", "is missing, `misfit` needs it");
     }
@@ -230,21 +288,10 @@ static bool read_wanted(se3di_reader *reader, const se3di_node *node, se3di_stud
         return se3di_reader_fail(reader, curve,
                                  "must be {linear: [[x, y], ...]} or {linear: a.csv}");
     }
-    if (!se3di_read_curve(reader, curve, "x", &def) ||
-        (along && !se3di_read_text(reader, along, &text))) {
+    if (!read_points(reader, curve, m) || (along && !se3di_read_text(reader, along, &text))) {
         return false;
     }
     m->along = along ? add_source(entry, along) : SE3DI_STUDY_NO_SOURCE;
-    m->point_count = def.table_count;
-    m->x = se3di_iopool_array(reader->pool, 2 * def.table_count, sizeof *m->x);
-    if (!m->x) {
-        return se3di_reader_fail_memory(reader);
-    }
-    m->y = m->x + def.table_count;
-    for (size_t k = 0; k < def.table_count; ++k) {
-        m->x[k] = def.table_x[k];
-        m->y[k] = def.table_y[k];
-    }
     return true;
 }
 
@@ -253,8 +300,7 @@ static bool read_mode(se3di_reader *reader, const se3di_node *node, const se3di_
                       se3di_study_measure *m)
 {
     m->node = what;
-    return se3di_read_key(reader, node, &se3di_object_measure, NULL, what->key, &m->mode) &&
-           check_belongings(reader, node, m) &&
+    return read_numbers(reader, m) && check_belongings(reader, node, m) &&
            (m->mode > 0.0 || se3di_reader_fail(reader, what, "is 0, modes are counted from 1"));
 }
 
@@ -270,11 +316,7 @@ static bool read_reduction(se3di_reader *reader, const se3di_node *node, se3di_s
     if (m->reduction == SE3DI_REDUCE_FREQUENCY || m->reduction == SE3DI_REDUCE_DAMPING) {
         return read_mode(reader, node, what, m);
     }
-    if (!se3di_read_text(reader, what, &text)) {
-        return false;
-    }
-    reader->alternative = -1; /* the unit of the channel, whatever that is */
-    if (!se3di_read_fields(reader, node, &se3di_object_measure, NULL, "se3di_study_measure", m) ||
+    if (!se3di_read_text(reader, what, &text) || !read_numbers(reader, m) ||
         !check_belongings(reader, node, m)) {
         return false;
     }
@@ -355,6 +397,7 @@ static bool read_measures(se3di_reader *reader, const se3di_node *map, se3di_stu
     for (const se3di_node *node = map->first; node; node = node->next) {
         se3di_study_measure *m = &entry->measures[entry->measure_count];
         m->name = node->key;
+        m->map = node->kind == SE3DI_NODE_MAP ? node : NULL;
         m->source = SE3DI_STUDY_NO_SOURCE;
         if (!check_name(reader, node) ||
             !(node->kind == SE3DI_NODE_MAP ? read_reduction(reader, node, entry, m)

@@ -205,11 +205,27 @@ static bool take_list(prototype *p, const se3di_node *list,
     return true;
 }
 
+/* Whether a channel, band or curve of a measure depends on the parameters; an expression of other
+ * measures is evaluated with those of the sample anyway. */
+static bool has_dependent_measure(const prototype *p, const se3di_node *study)
+{
+    const se3di_node *measures = se3di_node_get(study, "measures");
+    for (const se3di_node *node = measures ? measures->first : NULL; node; node = node->next) {
+        if (node->kind == SE3DI_NODE_MAP && depends(p, node)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Whether all that the parameters say can be set. */
 static bool take_root(prototype *p, const se3di_node *root, bool *good)
 {
     for (const se3di_node *key = root->first; key; key = key->next) {
         const bool is_list = key->kind == SE3DI_NODE_LIST;
+        if (strcmp(key->key, "study") == 0 && has_dependent_measure(p, key)) {
+            return false;
+        }
         if (is_passed_over(key->key)) {
             continue;
         }

@@ -118,7 +118,7 @@ static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue
 {
     const trial *t = ctx;
     for (size_t k = 0; k < t->study->entry->measure_count; ++k) {
-        const se3di_study_measure *m = &t->study->entry->measures[k];
+        const se3di_study_measure *m = &t->model->measures[k];
         if (m->mode > 0.0 && (size_t)m->mode == index + 1) {
             se3di_tally_find(&t->study->tallies[k], m->reduction == SE3DI_REDUCE_FREQUENCY
                                                         ? eigenvalue->frequency
@@ -226,7 +226,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
     }
     sharpen(t);
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
-        se3di_tally_begin(&study->tallies[k], &study->entry->measures[k]);
+        se3di_tally_begin(&study->tallies[k], &t->model->measures[k]);
     }
     const se3di_watch watch = {.output = &output,
                                .analysis = study->analysis,
