@@ -272,13 +272,21 @@ SE3D_API se3d_status se3d_coupler_get_def(const se3d_system *system, se3d_constr
  * force elements, positions of points, Euler parameters. Such a driver ties the coordinate to the
  * signals as an ideal cam does: what moves them feels its effort, too, and it does work only if f
  * depends on the time. Its first bodies are those of the joint; with those of the signals they are
- * at most 8. @since 0.1 */
+ * at most 8.
+ *
+ * With `is_rate` the rate of the coordinate = f(t, s_1, s_2, ...) with signals of any kind but that
+ * rate itself, states and their outputs among them; the coordinate starts as it is. Such an
+ * equation between velocities is part of dynamics alone (and of assemblies, for velocities):
+ * kinematics, inverse dynamics, equilibria and modes, and the methods rattle, verlet and convex,
+ * return UNSUPPORTED. It too acts on all bodies whose velocities f depends on, as a gear does; what
+ * f depends on otherwise does not feel it. Outputs and inputs of states that f takes must be set
+ * before, and stay. @since 0.1 */
 typedef struct se3d_driver_def {
     size_t struct_size;
-    const char *name;      /* copied; NULL or unique among constraints */
-    se3d_constraint joint; /* with that coordinate */
-    int32_t coordinate;    /* se3d_joint_coordinate */
-    int32_t reserved;
+    const char *name;       /* copied; NULL or unique among constraints */
+    se3d_constraint joint;  /* with that coordinate */
+    int32_t coordinate;     /* se3d_joint_coordinate */
+    int32_t is_rate;        /* not 0: f is the rate of the coordinate; it must have signals */
     double value;           /* f if `function` is null [m, rad] */
     se3d_function function; /* f, or null; with signals an expression whose only variable beside
                                them is the time */
@@ -308,7 +316,7 @@ SE3D_API se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constra
                                          se3d_driver_def *def);
 
 /* Get the prescribed value f of a driver, or of any constraint of one equation, at the present
- * time and positions.
+ * time and positions; of a driver with `is_rate` the coordinate.
  * @param[out] value  as in the definition [rad, m]
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (more than one equation), NOT_FINITE, SINGULAR
  * (the points of a length among its signals coincide), CALLBACK.

@@ -66,8 +66,9 @@ static inline se3d_modes_def se3d_modes_def_default(void)
  * a body, as of a rotor in a gimbal; or in axes that do not turn. They are tried in this order; a
  * motion that is steady in none of these is refused (STATE). Accelerations and multipliers of the
  * present state are computed; poses that are open by more than 1e-3 of the size are refused
- * (INCONSISTENT). `def` may be NULL. @return OK, NULL, INVALID_ARGUMENT, STALE_HANDLE, STATE,
- * INCONSISTENT, SINGULAR, NOT_FINITE, NO_CONVERGENCE, CALLBACK, NO_MEMORY. @since 0.1 */
+ * (INCONSISTENT), and so are drivers whose rates follow signals (UNSUPPORTED). `def` may be NULL.
+ * @return OK, NULL, INVALID_ARGUMENT, STALE_HANDLE, STATE, INCONSISTENT, SINGULAR, NOT_FINITE,
+ * UNSUPPORTED, NO_CONVERGENCE, CALLBACK, NO_MEMORY. @since 0.1 */
 SE3D_API se3d_status se3d_modes_create(se3d_system *system, const se3d_modes_def *def,
                                        se3d_modes **out);
 

@@ -57,13 +57,15 @@ SE3D_API se3d_status se3d_state_set_rate(se3d_system *system, se3d_state state, 
 
 /* Give a state another output.
  * @param[in] output  of time and of signals; null: its value
- * @return OK, NULL, INVALID_ARGUMENT (also if it depends on itself), STALE_HANDLE. @since 0.1 */
+ * @return OK, NULL, INVALID_ARGUMENT (also if it depends on itself), STALE_HANDLE, IN_USE (the rate
+ * of a driver depends on it). @since 0.1 */
 SE3D_API se3d_status se3d_state_set_output(se3d_system *system, se3d_state state,
                                            se3d_function output);
 
 /* Give a state another input.
  * @param[in] input  of time and of signals; null: 0
- * @return OK, NULL, INVALID_ARGUMENT (also if it depends on itself), STALE_HANDLE. @since 0.1 */
+ * @return OK, NULL, INVALID_ARGUMENT (also if it depends on itself), STALE_HANDLE, IN_USE (the rate
+ * of a driver depends on it). @since 0.1 */
 SE3D_API se3d_status se3d_state_set_input(se3d_system *system, se3d_state state,
                                           se3d_function input);
 

@@ -2,6 +2,7 @@
 #include "analysis/modes.h"
 
 #include "analysis/steady.h"
+#include "force/driver_rate.h"
 #include "linsol/dense.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
@@ -221,6 +222,11 @@ se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error
                            .inputs = inputs,
                            .outputs = outputs,
                            .bodies = model->body_slots.count};
+    if (se3di_find_driver_rate(model) != SE3DI_NO_INDEX) {
+        return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
+                               "the rate of a driver follows signals: no position is held, about "
+                               "which the model could be linearised");
+    }
     SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, 0, error));
     se3di_error_clear(error);
     const se3d_status status = make(modes, &equations, ports, quantity);

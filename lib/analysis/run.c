@@ -7,6 +7,7 @@
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
+#include "analysis/kinds.h"
 #include "analysis/start_moved.h"
 #include "analysis/stiffness.h"
 #include "assembly/energy.h"
@@ -15,6 +16,7 @@
 #include "base/log.h"
 #include "base/pending.h"
 #include "contact/bodies/pace.h"
+#include "force/driver_rate.h"
 #include "integrator/convex.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
@@ -207,6 +209,28 @@ static se3d_status check_armatures(se3di_run *run)
                            method->name, name ? name : "");
 }
 
+/* Drivers whose rates follow signals leave nothing to be solved for where there are only positions,
+ * and methods that make steps of positions first do not see them. */
+static se3d_status check_rates(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    const uint32_t driver = se3di_find_driver_rate(run->model);
+    const int is_of_positions =
+        run->analysis != SE3D_ANALYSIS_DYNAMICS && run->analysis != SE3D_ANALYSIS_ASSEMBLY;
+    if (driver == SE3DI_NO_INDEX ||
+        (!is_of_positions && (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->weighs_bodies))) {
+        return SE3D_OK;
+    }
+    const char *name = run->model->constraints[driver].name;
+    release(run);
+    return se3di_error_set(
+        run->error, SE3D_ERR_UNSUPPORTED,
+        "the rate of driver '%.64s' follows signals, which its coordinate is the integral of: "
+        "%s %s does not take it, dynamics by other methods does",
+        name ? name : "", is_of_positions ? "the analysis" : "method",
+        is_of_positions ? se3di_analysis_get_name(run->analysis) : method->name);
+}
+
 /* Build what the model's structure decides. */
 static se3d_status build(se3di_run *run)
 {
@@ -224,6 +248,7 @@ static se3d_status build(se3di_run *run)
     run->integration.equations = &run->equations;
     run->prepared = 1;
     SE3DI_TRY(check_armatures(run));
+    SE3DI_TRY(check_rates(run));
     run->told_redundant = run->told_left_out = 0;
     run->determined = 0;
     run->values_version = run->model->values_version;

@@ -12,6 +12,13 @@
 int se3di_driver_law_draft(const se3di_model *model, uint32_t joint, int32_t coordinate,
                            int32_t function, const char *name, se3di_draft *draft);
 
+/* What drivers that follow functions of signals have in common: the row on the coordinate, and the
+ * bodies of a signal. @return 0: they are too many */
+void se3di_driver_law_begin(const se3di_model *model, uint32_t joint, int32_t coordinate,
+                            int32_t function, const char *name, se3di_draft *draft);
+int se3di_driver_law_add_bodies(const se3di_model *model, const se3di_signal *signal,
+                                se3di_draft *draft);
+
 /* The prescribed value at the time and positions of the model.
  * @return OK, NOT_FINITE, SINGULAR: the points of a length coincide */
 se3d_status se3di_driver_law_value(const se3di_model *model, const se3di_constraint *constraint,

@@ -5,6 +5,7 @@
 #include "assembly/loads.h"
 #include "assembly/user.h"
 #include "contact/bodies/body_contacts.h"
+#include "force/driver_rate.h"
 #include "force/friction.h"
 #include "force/measure.h"
 #include "math/larger.h"
@@ -327,6 +328,10 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
             equations->b[c] += equations->x[c];
         }
         se3di_assembly_set_velocity(assembly, equations->b);
+        if (assembly->user_count > 0 && se3di_find_driver_rate(assembly->model) != SE3DI_NO_INDEX) {
+            se3di_assembly_eval_jacobian(assembly); /* rows of such drivers depend on velocities */
+            is_factored = 0;
+        }
     }
     return SE3D_OK;
 }

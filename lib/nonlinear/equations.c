@@ -3,11 +3,14 @@
 #include "nonlinear/equations.h"
 
 #include "assembly/user.h"
+#include "force/driver_rate.h"
+#include "math/larger.h"
 #include "model/integral.h"
 
 #include <math.h>
 #include <string.h>
 
+#define RATES_MAX         10   /* Newton steps for velocities */
 #define MIN_NORM_ROWS_MAX 600  /* for a dense solution */
 #define LIGHT             1e-7 /* of the heaviest body */
 
@@ -519,10 +522,28 @@ static void take_held_rates(se3di_equations *equations)
     se3di_assembly_mul(assembly, equations->x, equations->phi);
 }
 
-se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
+/* Whether velocities meet rows that are no linear equations of them, as rates that follow other
+ * velocities by any function. */
+static int follows_rates(se3di_equations *equations)
 {
     se3di_assembly *assembly = &equations->assembly;
-    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
+    double largest = 0.0, worst = 0.0;
+    if (assembly->user_count == 0 || se3di_find_driver_rate(assembly->model) == SE3DI_NO_INDEX) {
+        return 1;
+    }
+    se3di_assembly_eval_jacobian(assembly);
+    se3di_assembly_get_velocity(assembly, equations->x);
+    se3di_assembly_mul(assembly, equations->x, equations->c);
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        largest = se3di_larger(largest, fabs(equations->c[k]));
+        worst = se3di_larger(worst, fabs(assembly->f[3 * k + 1] - equations->c[k]));
+    }
+    return worst <= 1e-14 * largest;
+}
+
+static se3d_status solve_velocity(se3di_equations *equations, double t)
+{
+    se3di_assembly *assembly = &equations->assembly;
     memset(equations->phi, 0, assembly->row_count * sizeof *equations->phi);
     if (equations->hold) {
         take_held_rates(equations);
@@ -535,6 +556,16 @@ se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
     SE3DI_TRY(se3di_equations_solve(equations));
     SE3DI_TRY(check_level(equations, t, "velocity"));
     se3di_assembly_set_velocity(assembly, equations->x);
+    return SE3D_OK;
+}
+
+se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
+{
+    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    SE3DI_TRY(solve_velocity(equations, t));
+    for (int k = 0; k < RATES_MAX && !follows_rates(equations); ++k) {
+        SE3DI_TRY(solve_velocity(equations, t));
+    }
     return SE3D_OK;
 }
 

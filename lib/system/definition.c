@@ -4,6 +4,7 @@
  * a gear) is what it became. */
 #include "system/definition.h"
 
+#include "force/driver_rate.h"
 #include "joint/equation.h"
 #include "joint/joint.h"
 #include "math/vec3.h"
@@ -158,6 +159,7 @@ se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constraint drive
         data->law >= 0 ? data->coordinate : coordinate_of(&model->terms[row->term_begin]);
     full.value = row->value;
     full.function = se3di_function_handle(model, data->law >= 0 ? data->law : row->function);
+    full.is_rate = se3di_is_driver_rate(data);
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }
 

@@ -2,10 +2,13 @@
 /* Public layer: drivers, coordinate of a joint = f(t). One row of one term: the joint's angle (Phi
  * is taken modulo 2 pi: regular at every angle, no constraint is ever exchanged) or displacement.
  * The effort is -lambda, because the driver's virtual work on body j is -lambda per unit of the
- * coordinate. If the value is a function of signals, too, the row is that of force/driver_law.h.
+ * coordinate. If the value is a function of signals, too, the row is that of force/driver_law.h; if
+ * its rate is one, that of force/driver_rate.h.
  *                                              docs/theory/reactions.md, docs/theory/signals.md */
 #include "expression/expression.h"
 #include "force/driver_law.h"
+#include "force/driver_rate.h"
+#include "force/signal.h"
 #include "joint/draft.h"
 #include "joint/equation.h"
 #include "system/coordinate.h"
@@ -37,6 +40,66 @@ static se3d_status check_signal(se3d_system *system, const se3di_signal *signal,
         signal->component == coordinate) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "function depends on the coordinate that the driver prescribes");
+    }
+    return SE3D_OK;
+}
+
+/* Functions that a rate depends on have derivatives along directions. */
+static int is_differentiable(const se3di_model *model, const se3di_function *function)
+{
+    int is_good = function->signal_count == 0 ||
+                  (function->expression && function->variable_count == function->signal_count + 1);
+    for (uint32_t k = 0; k < function->signal_count && is_good; ++k) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[k]);
+        is_good = !inner || is_differentiable(model, inner);
+    }
+    return is_good;
+}
+
+/* A rate may depend on anything but itself. */
+static se3d_status check_leaves(se3d_system *system, const se3di_function *law, uint32_t joint,
+                                int32_t coordinate)
+{
+    const se3di_model *model = &system->model;
+    const uint32_t leaves = se3di_law_count_leaves(model, law);
+    if (leaves > SE3DI_RATE_LEAVES_MAX) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function depends on %u signals with those of the outputs of states, a "
+                          "rate may on at most %d",
+                          leaves, SE3DI_RATE_LEAVES_MAX);
+    }
+    for (uint32_t k = 0; k < leaves; ++k) {
+        const se3di_signal *signal = se3di_law_get_leaf(model, law, k);
+        if (signal->kind == SE3D_SIGNAL_JOINT_RATE && signal->joint == joint &&
+            signal->component == coordinate) {
+            return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                              "function depends on the rate that the driver prescribes");
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status draft_rate(se3d_system *system, const se3d_driver_def *def, uint32_t joint,
+                              int32_t function, se3di_draft *draft)
+{
+    const se3di_function *law = function >= 0 ? &system->model.functions[function] : NULL;
+    if (!law || law->signal_count == 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "is_rate is set, but function has no signals: let it be a function with "
+                          "`integrate`");
+    }
+    if (!is_differentiable(&system->model, law)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function and outputs of states that it takes must be expressions of the "
+                          "time and of signals: their derivatives are needed");
+    }
+    SE3DI_TRY(check_leaves(system, law, joint, def->coordinate));
+    if (!se3di_driver_rate_draft(&system->model, joint, def->coordinate, function, def->name,
+                                 draft)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function has signals of too many bodies, with those of the joint at "
+                          "most %d",
+                          SE3DI_NODE_BODIES_MAX);
     }
     return SE3D_OK;
 }
@@ -79,6 +142,10 @@ se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,
     SE3DI_TRY(se3di_find_law(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
     se3di_draft draft;
+    if (def.is_rate) {
+        SE3DI_TRY(draft_rate(system, &def, joint, function, &draft));
+        return se3di_constraint_add(system, &draft, driver);
+    }
     if (function >= 0 && system->model.functions[function].signal_count > 0) {
         SE3DI_TRY(draft_law(system, &def, joint, function, &draft));
         return se3di_constraint_add(system, &draft, driver);
@@ -114,6 +181,10 @@ se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint dri
     const se3di_model *model = &system->model;
     double jet[3];
     se3di_reading reading;
+    if (se3di_is_driver_rate(found)) {
+        *value = se3di_driver_rate_coordinate(model, found);
+        return SE3D_OK;
+    }
     SE3DI_TRY(se3di_read_begin(system, &reading));
     SE3DI_TRY(se3di_read_end(
         &reading, found->law >= 0

@@ -2,6 +2,7 @@
 /* Public layer: user-defined states. */
 #include "se3d/state.h"
 
+#include "force/driver_rate.h"
 #include "force/signal.h"
 #include "model/state.h"
 #include "system/definition.h"
@@ -76,6 +77,22 @@ static int asks_for(const se3di_model *model, const se3di_function *function, ui
     return 0;
 }
 
+/* The rows of drivers whose rates take an output are made of what it depends on. */
+static se3d_status check_rates(se3d_system *system, const char *what, uint32_t state, int place)
+{
+    const se3di_model *model = &system->model;
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *driver = &model->constraints[k];
+        if (se3di_is_driver_rate(driver) &&
+            asks_for(model, &model->functions[driver->law], state, place)) {
+            return SE3DI_FAIL_OF(system, what, SE3D_ERR_IN_USE,
+                                 " of the state is what the rate of driver %.80s depends on",
+                                 driver->name ? driver->name : "without a name");
+        }
+    }
+    return SE3D_OK;
+}
+
 static se3d_status set_function(se3d_system *system, se3d_state state, const char *what, int place,
                                 se3d_function handle)
 {
@@ -92,6 +109,7 @@ static se3d_status set_function(se3d_system *system, se3d_state state, const cha
                              "loop",
                              name ? name : "without a name");
     }
+    SE3DI_TRY(check_rates(system, what, index, place));
     se3di_model_set_state_function(&system->model, index, place, function);
     return SE3D_OK;
 }

@@ -6,6 +6,8 @@
 #include "check.h"
 
 #include "assembly/assembly.h"
+#include "force/driver_rate.h"
+#include "force/signal.h"
 #include "joint/equation.h"
 #include "joint/user.h"
 #include "math/quaternion.h"
@@ -277,10 +279,162 @@ static void curvatures_of_drivers_fit(void)
     }
 }
 
+/* ---- rates that follow signals ---- */
+
+/* The rate of a coordinate of one joint that follows positions, velocities of all kinds, a state
+ * and an output of it that depends on a velocity. @return the carrier of the state */
+static uint32_t build_rate(world *w, int32_t coordinate, uint64_t *seed)
+{
+    enum { SIGNALS = 8 };
+    static const char *const names[] = {"t", "a", "d", "l", "x", "o", "p", "z", "y"};
+    se3d_constraint driven, other;
+    se3d_signal signals[SIGNALS];
+    se3d_function_def law = se3d_function_def_default();
+    se3d_driver_def driver = se3d_driver_def_default();
+    se3d_tsda_def gauge = se3d_tsda_def_default();
+    se3d_state_def def = se3d_state_def_default();
+    build_bodies(w, BODIES_MAX, seed);
+    add_joint(w, 0, 1, seed, &driven);
+    add_joint(w, 2, 3, seed, &other);
+    memset(signals, 0, sizeof signals);
+    signals[0] = (se3d_signal){.kind = SE3D_SIGNAL_JOINT_RATE, .joint = other};
+    signals[1] = (se3d_signal){.kind = SE3D_SIGNAL_JOINT_COORDINATE,
+                               .component = SE3D_JOINT_COORDINATE_DISPLACEMENT,
+                               .joint = other};
+    gauge.body_i = w->bodies[1];
+    gauge.body_j = w->bodies[2];
+    gauge.point_i[0] = 3.0;
+    gauge.point_j[1] = 4.0;
+    signals[2].kind = SE3D_SIGNAL_FORCE_RATE;
+    CHECK(!se3d_force_create_tsda(w->system, &gauge, &signals[2].force));
+    signals[3] = (se3d_signal){.kind = SE3D_SIGNAL_POINT_VELOCITY,
+                               .component = 1,
+                               .body = w->bodies[3],
+                               .point = {0.3, -0.5, 0.7}};
+    signals[4] =
+        (se3d_signal){.kind = SE3D_SIGNAL_ANGULAR_VELOCITY, .component = 2, .body = w->bodies[0]};
+    signals[5] = (se3d_signal){.kind = SE3D_SIGNAL_POINT_POSITION, .body = w->bodies[2]};
+    law.variables = names;
+    law.expression = "0.7 + 0*t";
+    law.variable_count = 1;
+    CHECK(!se3d_function_create(w->system, &law, &def.rate));
+    def.initial = 0.4;
+    CHECK(!se3d_state_create(w->system, &def, &signals[6].state));
+    signals[6].kind = SE3D_SIGNAL_STATE;
+    signals[6].component = SE3D_STATE_VALUE;
+    signals[7] = signals[6];
+    signals[7].component = SE3D_STATE_OUTPUT;
+    law.expression = "a*d + t*a^2";
+    law.variable_count = 3;
+    law.signals = signals;
+    law.signal_count = 2;
+    CHECK(!se3d_function_create(w->system, &law, &def.output));
+    CHECK(!se3d_state_set_output(w->system, signals[6].state, def.output));
+    law.expression = "sin(t)*a + 0.3*d*l + x*o*cos(p) + 0.2*x^2 + t^2*z + y*o*z + 0.1*y^2";
+    law.variable_count = SIGNALS + 1;
+    law.signal_count = SIGNALS;
+    CHECK(!se3d_function_create(w->system, &law, &driver.function));
+    driver.joint = driven;
+    driver.coordinate = coordinate;
+    driver.is_rate = 1;
+    CHECK(!se3d_driver_create(w->system, &driver, &other));
+    return w->system->model.forces[w->system->model.force_slots.count - 1].body_j;
+}
+
+/* The state at s of the motion, with its velocities: A u - nu; *x, *f, and A a - gamma. */
+static double eval_rate(world *w, uint32_t carrier, double t, double s, double *x, double *f,
+                        double *second)
+{
+    se3di_model *model = &w->system->model;
+    const se3di_constraint *driver = &model->constraints[model->constraint_slots.count - 1];
+    se3di_user_values values;
+    double jet[3], time = t + s, sum = 0.0;
+    *second = 0.0;
+    for (int k = 0; k < w->count; ++k) {
+        se3di_frame *frame = &model->frames[k + 1];
+        place(&w->motions[k], s, frame);
+        se3di_add_scaled(s, w->motions[k].a, frame->v);
+        se3di_add_scaled(s, w->motions[k].wdot, frame->w);
+    }
+    model->frames[carrier].v[0] = 0.4 + 0.7 * s;
+    CHECK(!se3di_user_eval(model, driver, time,
+                           SE3DI_USER_JACOBIAN | SE3DI_USER_NU | SE3DI_USER_GAMMA, &values));
+    CHECK(driver->body_count == BODIES_MAX);
+    for (uint32_t b = 0; b < driver->body_count; ++b) {
+        const double *row = se3di_user_row(driver, &values, 0, b);
+        const se3di_frame *frame = &model->frames[driver->bodies[b]];
+        const motion *m = &w->motions[driver->bodies[b] - 1];
+        sum += se3di_dot(row, frame->v) + se3di_dot(row + 3, frame->w);
+        *second += se3di_dot(row, m->a) + se3di_dot(row + 3, m->wdot);
+    }
+    *x = se3di_driver_rate_coordinate(model, driver);
+    CHECK(!se3di_law_eval(model, &model->functions[driver->law], &time, jet, NULL));
+    *f = jet[0];
+    *second -= values.gamma[0];
+    return sum - values.nu[0];
+}
+
+/* x' - f is A u - nu, and its rate A a - gamma, along a motion with known accelerations. */
+static void rates_of_drivers_fit(void)
+{
+    static const double steps[2] = {2e-3, 1e-3};
+    uint64_t seed = 88172645463325252u;
+    for (int trial = 0; trial < 20; ++trial) {
+        world w = {0};
+        double worst[2][2], x[3], f[3], second[3], gap[3];
+        const uint32_t carrier = build_rate(&w, trial % 2, &seed);
+        for (int k = 0; k < 2; ++k) {
+            for (int n = 0; n < 3; ++n) {
+                gap[n] = eval_rate(&w, carrier, 0.8, (n - 1) * steps[k], &x[n], &f[n], &second[n]);
+            }
+            worst[k][0] = fabs((x[2] - x[0]) / (2.0 * steps[k]) - f[1] - gap[1]);
+            worst[k][1] = fabs((gap[2] - gap[0]) / (2.0 * steps[k]) - second[1]);
+        }
+        for (int c = 0; c < 2; ++c) {
+            CHECK(worst[1][c] < 1e-3 && worst[1][c] > 1e-12);
+            CHECK_NEAR(worst[0][c] / worst[1][c], 4.0, 0.1);
+        }
+        se3d_system_destroy(w.system);
+    }
+}
+
+/* The curvature is the derivative of the row to positions, and multiplied with a step of all
+ * velocities nothing of it is left out. */
+static void curvatures_of_rates_fit(void)
+{
+    uint64_t seed = 1234567u;
+    for (int trial = 0; trial < 6; ++trial) {
+        enum { N = 6 * BODIES_MAX };
+        static const double steps[2] = {2e-3, 1e-3};
+        double H[N * N], g[N], worst[2] = {0.0, 0.0}, lambda = 1.7, x, f, second;
+        world w = {0};
+        const uint32_t carrier = build_rate(&w, trial % 2, &seed);
+        se3di_model *model = &w.system->model;
+        const se3di_constraint *driver = &model->constraints[model->constraint_slots.count - 1];
+        (void)eval_rate(&w, carrier, 0.7, 0.0, &x, &f, &second);
+        CHECK(!se3di_user_curvature(model, driver, 0.7, &lambda, H, g));
+        for (int k = 0; k < 2 * N; ++k) {
+            double before[N], after[N];
+            const double h = steps[k / N];
+            eval_displaced(&w, k % N / 6, k % 6, -h, before);
+            eval_displaced(&w, k % N / 6, k % 6, h, after);
+            for (int r = 0; r < N; ++r) {
+                const double slope = 0.5 * lambda * (after[r] - before[r]) / h;
+                worst[k / N] = fmax(worst[k / N], fabs(slope - H[N * r + k % N]));
+            }
+        }
+        CHECK(worst[1] < 1e-4 && worst[1] > 1e-10);
+        CHECK_NEAR(worst[0] / worst[1], 4.0, 0.1);
+        se3d_system_destroy(w.system);
+    }
+}
+
 int main(void)
 {
     RUN(values_fit_in_romega);
     RUN(values_fit_in_rp);
     RUN(curvatures_of_drivers_fit);
+    RUN(rates_of_drivers_fit);
+    RUN(curvatures_of_rates_fit);
     return check_finish();
 }

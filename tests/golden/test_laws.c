@@ -229,6 +229,170 @@ static void a_driver_follows_a_driven_angle(void)
     }
 }
 
+/* A rate that follows others; the methods that begin with positions do not take it. */
+typedef struct rated {
+    const char *law, *states, *motor;
+    double (*x)(double t), (*force)(double t), (*torque)(double t);
+} rated;
+
+static double x_square(double t)
+{
+    return 4.0 * t * t * t / 3.0;
+}
+
+static double force_square(double t)
+{
+    return 16.0 * t;
+}
+
+/* The row is x' - 2 w w + w^2 about w = 2 t: 4 t of what the cart feels, and 2 * 2 to turn it. */
+static double torque_square(double t)
+{
+    return 4.0 + 4.0 * t * 16.0 * t;
+}
+
+static double x_pid(double t)
+{
+    return t - 1.0 / 3.0 + exp(-3.0 * t) / 3.0;
+}
+
+static double force_pid(double t)
+{
+    return 6.0 * exp(-3.0 * t);
+}
+
+static double torque_pid(double t)
+{
+    return 4.0 + 1.5 * 6.0 * exp(-3.0 * t);
+}
+
+static double x_lag(double t)
+{
+    return t - 0.2 * (1.0 - exp(-t / 0.2)) + 0.5 * t * t;
+}
+
+static double force_lag(double t)
+{
+    return 2.0 * (exp(-t / 0.2) / 0.2 + 1.0);
+}
+
+static double torque_lag(double t)
+{
+    (void)t;
+    return 4.0;
+}
+
+/* In order: not linear in a velocity; a controller with feed-through of a velocity and a position;
+ * a state, and the time. */
+static const rated rates[] = {
+    {"pin.rate^2", "", "t^2", x_square, force_square, torque_square},
+    {"control.value",
+     "states: [{name: control, type: pid, kp: 3, input: 0.5*pin.rate - rail.displacement}]\n",
+     "t^2", x_pid, force_pid, torque_pid},
+    {"filter.value + t", "states: [{name: filter, type: lag, time_constant: 0.2, input: 1}]\n",
+     "t^2", x_lag, force_lag, torque_lag}};
+
+static void rates_follow_velocities_states_and_positions(void)
+{
+    for (size_t c = 0; c < sizeof rates / sizeof *rates; ++c) {
+        for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+            char text[3000];
+            const double t = 0.8;
+            const int is_equal = ways[k].step > 0.0;
+            snprintf(text, sizeof text,
+                     CAM "drivers:\n  - {name: motor, joint: pin, value: \"%s\"}\n"
+                         "  - {name: cam, joint: rail, rate: \"%s\"}\n%s" TAIL
+                         "output: [{file: r.csv, channels: [rail.displacement, cam.value, "
+                         "cam.effort, motor.effort]}]\n",
+                     rates[c].motor, rates[c].law, rates[c].states);
+            if (ways[k].method == SE3D_METHOD_RATTLE) {
+                continue;
+            }
+            text_model m = text_model_open(text, ways[k].method, ways[k].formulation, ways[k].step);
+            text_model_run(&m, t);
+            CHECK_NEAR(text_model_get(&m, 0, 0), rates[c].x(t), is_equal ? 2e-5 : 1e-6);
+            CHECK_NEAR(text_model_get(&m, 1, 0), text_model_get(&m, 0, 0), 0.0);
+            CHECK_NEAR(text_model_get(&m, 2, 0), rates[c].force(t), is_equal ? 1e-2 : 1e-4);
+            CHECK_NEAR(text_model_get(&m, 3, 0), rates[c].torque(t), is_equal ? 5e-2 : 1e-3);
+            text_model_close(&m);
+        }
+    }
+}
+
+/* A gear whose ratio is 2 cos(angle) makes the motion of the cam 2 sin(angle), by its own
+ * integration: no energy is lost on the way, and both sides feel it. */
+static void a_rate_of_a_free_angle_is_a_gear(void)
+{
+    char text[3000];
+    snprintf(text, sizeof text,
+             CAM "drivers:\n  - {name: cam, joint: rail, rate: 2*cos(pin.angle)*pin.rate}\n" TAIL
+                 "output: [{file: r.csv, channels: [pin.angle, rail.displacement, "
+                 "energy.kinetic, work.drivers]}]\n");
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+        if (ways[k].method == SE3D_METHOD_RATTLE) {
+            continue;
+        }
+        text_model m = text_model_open(text, ways[k].method, ways[k].formulation, ways[k].step);
+        text_model_run(&m, 1.7);
+        const double theta = text_model_get(&m, 0, 0);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 2.0 * sin(theta), 2.0 * ways[k].tolerance);
+        CHECK_NEAR(time_of(theta), 1.7, 2.0 * ways[k].tolerance);
+        CHECK_NEAR(text_model_get(&m, 2, 0), 5.0, 10.0 * ways[k].tolerance);
+        CHECK_NEAR(text_model_get(&m, 3, 0), 0.0, 1e-9);
+        text_model_close(&m);
+    }
+}
+
+/* Analyses of positions and methods that begin with them say that they do not take it; a clone
+ * goes on with the same bits; a file is written as it was. */
+static void rates_are_refused_where_positions_come_first(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET, SE3D_METHOD_CONVEX};
+    static const int32_t analyses[] = {SE3D_ANALYSIS_KINEMATICS, SE3D_ANALYSIS_INVERSE_DYNAMICS,
+                                       SE3D_ANALYSIS_EQUILIBRIUM};
+    const char *const text =
+        CAM "drivers: [{name: cam, joint: rail, rate: control.value}]\n"
+            "states: [{name: control, type: pid, kp: 2, input: pin.rate}]\n" TAIL;
+    text_model m = text_model_open(text, SE3D_METHOD_DOP853, -1, 0.0);
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_write_options how = se3d_write_options_default();
+    se3d_model_error error;
+    se3d_modes *modes = NULL;
+    se3d_state control;
+    se3d_system *copy = NULL;
+    char written[4000];
+    size_t length = 0;
+    for (size_t k = 0; k < 6; ++k) {
+        se3d_solver *solver = NULL;
+        def.analysis = k < 3 ? SE3D_ANALYSIS_DYNAMICS : analyses[k - 3];
+        def.method = k < 3 ? methods[k] : SE3D_METHOD_AUTO;
+        def.step = 1e-3;
+        CHECK(!se3d_solver_create(m.system, &def, &solver));
+        CHECK(se3d_solver_run(solver, 0.01) == SE3D_ERR_UNSUPPORTED);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), "the rate of driver 'cam' follows signals");
+        se3d_solver_destroy(solver);
+    }
+    CHECK(se3d_modes_create(m.system, NULL, &modes) == SE3D_ERR_UNSUPPORTED && !modes);
+    CHECK(!se3d_state_find(m.system, "control", &control));
+    CHECK(se3d_state_set_output(m.system, control, (se3d_function){0, 0}) == SE3D_ERR_IN_USE);
+    CHECK_CONTAINS(se3d_system_get_error(m.system), "the rate of driver cam depends on");
+    how.partial = 1;
+    CHECK(se3d_model_write_text(m.model, &how, written, sizeof written, &length, &error) >= 0);
+    CHECK_CONTAINS(written, "{name: cam, joint: rail, rate: control.value}");
+    CHECK(!se3d_system_clone(m.system, &copy));
+    text_model_run(&m, 0.5);
+    const uint64_t hash = se3d_system_hash(m.system);
+    CHECK(!se3d_model_get_solver(m.model, 0, &def));
+    text_model_close(&m);
+    se3d_solver *solver = NULL;
+    def.method = SE3D_METHOD_DOP853;
+    CHECK(!se3d_solver_create(copy, &def, &solver));
+    CHECK(se3d_solver_run(solver, 0.5) >= 0);
+    CHECK(se3d_system_hash(copy) == hash);
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(copy);
+}
+
 #define CHAIN                                                                                      \
     "se3d: 1\nbodies:\n  - {name: arm, mass: 1, inertia: [1, 1, 2]}\n"                             \
     "  - {name: cart, mass: 2, inertia: [1, 1, 1]}\n"                                              \
@@ -349,6 +513,9 @@ int main(void)
 {
     RUN(a_driver_follows_an_angle_that_is_free);
     RUN(a_driver_follows_a_driven_angle);
+    RUN(rates_follow_velocities_states_and_positions);
+    RUN(a_rate_of_a_free_angle_is_a_gear);
+    RUN(rates_are_refused_where_positions_come_first);
     RUN(drivers_follow_lengths_positions_and_followers);
     RUN(a_follower_takes_its_part_in_frequencies);
     RUN(followers_are_checked_and_given_back);

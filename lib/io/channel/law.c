@@ -145,15 +145,17 @@ static bool check_position(se3di_reader *reader, const se3di_node *node, const c
     case SE3D_SIGNAL_STATE:
         return se3di_reader_fail(reader, node,
                                  "`%.100s` is integrated with the motion: the value of a driver "
-                                 "may depend on t, positions, angles and lengths; what a "
-                                 "controller moves is moved by an `effort`",
+                                 "may depend on t, positions, angles and lengths; its `rate` may "
+                                 "follow any channel, and what a controller moves is moved by an "
+                                 "`effort`",
                                  name);
     default:
-        return se3di_reader_fail(reader, node,
-                                 "`%.100s` is a velocity: the value of a driver may depend on t, "
-                                 "positions, angles and lengths; what reacts to velocities is an "
-                                 "`effort` or another force",
-                                 name);
+        return se3di_reader_fail(
+            reader, node,
+            "`%.100s` is a velocity: the value of a driver may depend on t, "
+            "positions, angles and lengths; its `rate` may follow any channel, "
+            "and what reacts to velocities is an `effort` or another force",
+            name);
     }
 }
 
@@ -245,12 +247,23 @@ bool se3di_is_followed(const se3di_reader *reader, const se3di_node *node)
            se3di_text_has_mention(reader->part, node->text);
 }
 
-bool se3di_read_followed(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+static bool read_followed(se3di_reader *reader, const se3di_node *node, bool is_position,
+                          se3d_function *function)
 {
     se3di_mentions *m = se3di_iopool_alloc(reader->pool, sizeof *m);
     if (!m) {
         return se3di_reader_fail_memory(reader);
     }
     return se3di_mentions_read(reader, node, time_only, m) &&
-           create(reader, node, m, 1, true, function);
+           create(reader, node, m, 1, is_position, function);
+}
+
+bool se3di_read_followed(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+{
+    return read_followed(reader, node, true, function);
+}
+
+bool se3di_read_followed_rate(se3di_reader *reader, const se3di_node *node, se3d_function *function)
+{
+    return read_followed(reader, node, false, function);
 }

@@ -17,6 +17,10 @@ bool se3di_read_prescribed(se3di_reader *reader, const se3di_node *node, double 
 bool se3di_is_followed(const se3di_reader *reader, const se3di_node *node);
 /* The value of a driver that names channels: a function of the time and of positions. */
 bool se3di_read_followed(se3di_reader *reader, const se3di_node *node, se3d_function *function);
+/* The rate of one that does: of the time and of channels of any kind but accelerations and
+ * forces. */
+bool se3di_read_followed_rate(se3di_reader *reader, const se3di_node *node,
+                              se3d_function *function);
 /* Whether a text, of a function of time alone, names no channel; reports one that does. */
 bool se3di_check_of_time(se3di_reader *reader, const se3di_node *node);
 

@@ -18,8 +18,8 @@ static const se3di_key driver_keys[] = {
      .text = "may be left out if the joint has one only"},
     {"value", SE3DI_KIND_FUNCTION, .text = "a number or a function of t [m, rad]"},
     {"rate", SE3DI_KIND_FUNCTION,
-     .text = "in place of value: its rate, a number or a function of t [m/s, rad/s], such as 600 "
-             "rpm; the coordinate is start plus the integral of it"},
+     .text = "in place of value: its rate, a number or a function of t or of channels [m/s, "
+             "rad/s], such as 600 rpm; the coordinate is start plus the integral of it"},
     {"start", SE3DI_KIND_NUMBER, .standard = "as at the given pose",
      .text = "with rate: the coordinate at t = 0 [m, rad]"},
     {.key = NULL}};
@@ -29,6 +29,18 @@ const se3di_object se3di_object_driver = {
     driver_keys, NULL,
     NULL};
 /* clang-format on */
+
+/* A rate that names channels. */
+static bool read_followed_rate(se3di_reader *reader, const se3di_node *node, const se3di_node *rate,
+                               se3d_driver_def *def)
+{
+    const se3di_node *start = se3di_node_get(node, "start");
+    def->is_rate = 1;
+    return (!start || se3di_reader_fail(reader, start,
+                                        "is for a rate of t alone: where the rate follows channels "
+                                        "the coordinate starts as at the given pose")) &&
+           se3di_read_followed_rate(reader, rate, &def->function);
+}
 
 /* What the coordinate follows, from its rate. */
 static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_def *def,
@@ -45,8 +57,10 @@ static bool read_rate(se3di_reader *reader, const se3di_node *node, se3d_driver_
     if (status < 0) {
         return se3di_reader_fail_system(reader, rate, status);
     }
+    if (se3di_is_followed(reader, rate)) {
+        return read_followed_rate(reader, node, rate, def);
+    }
     if (!se3di_read_key(reader, node, &se3di_object_driver, NULL, "start", &start) ||
-        !se3di_check_of_time(reader, rate) ||
         !se3di_read_rate(reader, rate, start, &entry->value[0], &is_number, &def->function)) {
         return false;
     }
@@ -96,14 +110,27 @@ static bool read_driver(se3di_reader *reader, const se3di_node *node)
     entry->coordinate = def.coordinate;
     entry->driven = def.joint;
     const se3d_status status = se3d_driver_create(reader->system, &def, &entry->constraint);
-    const se3di_node *value = se3di_node_get(node, "value");
+    const se3di_node *law = se3di_node_get(node, def.is_rate ? "rate" : "value");
     return status < 0 ? se3di_reader_fail_system(
-                            reader, se3di_is_followed(reader, value) ? value : node, status)
+                            reader, se3di_is_followed(reader, law) ? law : node, status)
                       : true;
 }
 
-/* Those that follow time alone, or the others, whose channels have to be there. */
-static bool read_drivers(se3di_reader *reader, const se3di_node *root, bool follows_time)
+/* Those that follow the time alone; positions, whose channels have to be there; or, by their rates,
+ * any channel, also those of states, whose laws have to be there. */
+typedef enum follows { FOLLOWS_TIME, FOLLOWS_POSITIONS, FOLLOWS_RATES } follows;
+
+static follows find_follows(const se3di_reader *reader, const se3di_node *node)
+{
+    const bool is_map = node->kind == SE3DI_NODE_MAP;
+    if (is_map && se3di_is_followed(reader, se3di_node_get(node, "value"))) {
+        return FOLLOWS_POSITIONS;
+    }
+    return is_map && se3di_is_followed(reader, se3di_node_get(node, "rate")) ? FOLLOWS_RATES
+                                                                             : FOLLOWS_TIME;
+}
+
+static bool read_drivers(se3di_reader *reader, const se3di_node *root, follows which)
 {
     const se3di_node *list = NULL;
     if (!se3di_read_list(reader, root, "drivers", &list)) {
@@ -111,9 +138,7 @@ static bool read_drivers(se3di_reader *reader, const se3di_node *root, bool foll
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
-        const se3di_node *value =
-            node->kind == SE3DI_NODE_MAP ? se3di_node_get(node, "value") : NULL;
-        if (se3di_is_followed(reader, value) == follows_time) {
+        if (find_follows(reader, node) != which) {
             continue;
         }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_driver(reader, node))) {
@@ -125,10 +150,15 @@ static bool read_drivers(se3di_reader *reader, const se3di_node *root, bool foll
 
 bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root)
 {
-    return read_drivers(reader, root, true);
+    return read_drivers(reader, root, FOLLOWS_TIME);
 }
 
 bool se3di_read_followers(se3di_reader *reader, const se3di_node *root)
 {
-    return read_drivers(reader, root, false);
+    return read_drivers(reader, root, FOLLOWS_POSITIONS);
+}
+
+bool se3di_read_rate_followers(se3di_reader *reader, const se3di_node *root)
+{
+    return read_drivers(reader, root, FOLLOWS_RATES);
 }

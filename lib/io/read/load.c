@@ -197,6 +197,7 @@ static bool read_mechanism(se3di_reader *reader)
            read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_states) &&
            read_section(reader, se3di_read_roads) && read_section(reader, se3di_read_forces) &&
            read_section(reader, se3di_read_followers) && se3di_read_state_laws(reader) &&
+           read_section(reader, se3di_read_rate_followers) &&
            read_section(reader, se3di_read_wheels);
 }
 

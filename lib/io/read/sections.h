@@ -9,9 +9,11 @@ bool se3di_read_materials(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_joints(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root);
-/* Those of the time; se3di_read_followers, after the forces: those of channels. */
+/* Those of the time; se3di_read_followers, after the forces: those of channels;
+ * se3di_read_rate_followers, after the laws of states: those whose rates follow channels. */
 bool se3di_read_drivers(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_followers(se3di_reader *reader, const se3di_node *root);
+bool se3di_read_rate_followers(se3di_reader *reader, const se3di_node *root);
 /* Makes the states, before the forces; se3di_read_state_laws, after them: what they depend on. */
 bool se3di_read_states(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_state_laws(se3di_reader *reader);

@@ -118,7 +118,7 @@ static void save_driver(se3di_save *s, se3d_constraint driver)
         save_rate(s, &def, &function);
         return;
     }
-    se3di_save_word(s, "value", "");
+    se3di_save_word(s, def.is_rate ? "rate" : "value", "");
     se3di_save_put_function(s, def.function, def.value, NULL);
 }
 
