@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* FMI 2.0, co-simulation. Steps are finished when the call returns; inputs stay as they are between
- * communication points. */
+/* FMI 2.0. In co-simulation steps are finished when the call returns; inputs stay as they are
+ * between communication points. */
 #include "fmi2.h"
 
 #include <math.h>
@@ -65,11 +65,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                           .environment = functions->componentEnvironment,
                           .logs_events = logging != 0,
                           .logs_warnings = logging != 0};
-    if (type != fmi2CoSimulation) {
-        fmi_refuse(&model, "fmi2Instantiate", "the unit is for co-simulation only");
-        return NULL;
-    }
-    return fmi_create(&model, name, guid, resources);
+    return fmi_create(&model, name, guid, resources, type == fmi2ModelExchange);
 }
 
 void fmi2FreeInstance(fmi2Component c)
@@ -165,13 +161,15 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         fmi2Real *sensitivity)
 {
     INSTANCE(c)
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)sensitivity;
-    return (fmi2Status)fmi_refuse(i, "fmi2GetDirectionalDerivative", "the unit does not have it");
+    const fmi_direction direction = {.unknowns = unknowns,
+                                     .knowns = knowns,
+                                     .unknown_count = unknown_count,
+                                     .known_count = known_count,
+                                     .seed_count = known_count,
+                                     .out_count = unknown_count,
+                                     .seed = seed,
+                                     .out = sensitivity};
+    return (fmi2Status)fmi_derive(i, &direction);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference *vr, size_t count,
@@ -263,6 +261,90 @@ fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2S
     INSTANCE(c)
     (void)kind;
     return discard(i, value);
+}
+
+/* ---- model exchange -------------------------------------------------------------------------*/
+
+static fmi2Status exchanged(const fmi_instance *i, bool good)
+{
+    return (fmi2Status)fmi_done(i, good);
+}
+
+fmi2Status fmi2EnterEventMode(fmi2Component c)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_enter_event(i->unit));
+}
+
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
+{
+    INSTANCE(c)
+    bool ends = false;
+    bool moved = false;
+    if (!info) {
+        return (fmi2Status)fmi_refuse(i, "fmi2NewDiscreteStates", "the event info is NULL");
+    }
+    const fmi2Status status = exchanged(i, se3di_fmi_unit_update_event(i->unit, &ends, &moved));
+    *info = (fmi2EventInfo){.terminateSimulation = ends, .valuesOfContinuousStatesChanged = moved};
+    return status;
+}
+
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_enter_continuous(i->unit));
+}
+
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_state_before,
+                                       fmi2Boolean *event, fmi2Boolean *terminate)
+{
+    INSTANCE(c)
+    bool asks = false;
+    (void)no_state_before;
+    if (!event || !terminate) {
+        return (fmi2Status)fmi_refuse(i, "fmi2CompletedIntegratorStep",
+                                      "the place for an answer is NULL");
+    }
+    const fmi2Status status = exchanged(i, se3di_fmi_unit_complete_step(i->unit, &asks));
+    *event = asks;
+    *terminate = fmi2False;
+    return status;
+}
+
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_set_time(i->unit, time));
+}
+
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_set_states(i->unit, x, count));
+}
+
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_derivatives(i->unit, dx, count));
+}
+
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real values[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_indicators(i->unit, values, count));
+}
+
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_states(i->unit, x, count));
+}
+
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_nominals(i->unit, x, count));
 }
 
 /* ---- states ---------------------------------------------------------------------------------*/

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The functions of FMI 2.0 for co-simulation, written down from the text of the standard
- * (Functional Mock-up Interface for Model Exchange and Co-Simulation, 2.0.x; sections 2.1 and 4.2).
- * A unit exports them; whoever uses one looks them up by their names. */
+/* The functions of FMI 2.0, written down from the text of the standard (Functional Mock-up
+ * Interface for Model Exchange and Co-Simulation, 2.0.x; sections 2.1, 3.2 and 4.2). A unit exports
+ * them; whoever uses one looks them up by their names. */
 #ifndef SE3D_FMI2_H
 #define SE3D_FMI2_H
 
@@ -53,6 +53,15 @@ typedef struct {
     fmi2ComponentEnvironment componentEnvironment;
 } fmi2CallbackFunctions;
 
+typedef struct {
+    fmi2Boolean newDiscreteStatesNeeded;
+    fmi2Boolean terminateSimulation;
+    fmi2Boolean nominalsOfContinuousStatesChanged;
+    fmi2Boolean valuesOfContinuousStatesChanged;
+    fmi2Boolean nextEventTimeDefined;
+    fmi2Real nextEventTime;
+} fmi2EventInfo;
+
 /* The functions: name and parameters; all but the first four give a status. */
 #define FMI2_STATUS_FUNCTIONS(X)                                                                   \
     X(SetDebugLogging, (fmi2Component c, fmi2Boolean on, size_t count, const fmi2String *names))   \
@@ -97,7 +106,18 @@ typedef struct {
     X(GetRealStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Real *value))                \
     X(GetIntegerStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value))          \
     X(GetBooleanStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value))          \
-    X(GetStringStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2String *value))
+    X(GetStringStatus, (fmi2Component c, const fmi2StatusKind kind, fmi2String *value))            \
+    X(EnterEventMode, (fmi2Component c))                                                           \
+    X(NewDiscreteStates, (fmi2Component c, fmi2EventInfo * info))                                  \
+    X(EnterContinuousTimeMode, (fmi2Component c))                                                  \
+    X(CompletedIntegratorStep, (fmi2Component c, fmi2Boolean no_state_before, fmi2Boolean * event, \
+                                fmi2Boolean * terminate))                                          \
+    X(SetTime, (fmi2Component c, fmi2Real time))                                                   \
+    X(SetContinuousStates, (fmi2Component c, const fmi2Real x[], size_t count))                    \
+    X(GetDerivatives, (fmi2Component c, fmi2Real dx[], size_t count))                              \
+    X(GetEventIndicators, (fmi2Component c, fmi2Real values[], size_t count))                      \
+    X(GetContinuousStates, (fmi2Component c, fmi2Real x[], size_t count))                          \
+    X(GetNominalsOfContinuousStates, (fmi2Component c, fmi2Real x[], size_t count))
 
 #define FMI2_DECLARE(name, parameters)                                                             \
     typedef fmi2Status fmi2##name##TYPE parameters;                                                \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* FMI 3.0, co-simulation without event mode: steps are finished when the call returns, and end
+/* FMI 3.0. Co-simulation is without event mode: steps are finished when the call returns, and end
  * early only where an event of the model ends it. */
 #include "fmi3.h"
 
@@ -63,7 +63,7 @@ fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resour
         fmi_refuse(&model, "fmi3InstantiateCoSimulation", "the unit has no intermediate variables");
         return NULL;
     }
-    return fmi_create(&model, name, token, resources);
+    return fmi_create(&model, name, token, resources, false);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
@@ -72,12 +72,8 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3LogMessageCallback log)
 {
     fmi_instance model = model_of(log, environment, logging);
-    (void)name;
-    (void)token;
-    (void)resources;
     (void)visible;
-    fmi_refuse(&model, "fmi3InstantiateModelExchange", "the unit is for co-simulation only");
-    return NULL;
+    return fmi_create(&model, name, token, resources, true);
 }
 
 fmi3Instance
@@ -95,7 +91,8 @@ fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String 
     (void)update;
     (void)lock;
     (void)unlock;
-    fmi_refuse(&model, "fmi3InstantiateScheduledExecution", "the unit is for co-simulation only");
+    fmi_refuse(&model, "fmi3InstantiateScheduledExecution",
+               "the unit is for co-simulation and model exchange only");
     return NULL;
 }
 
@@ -308,6 +305,127 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_
         *state = s;
     }
     return (fmi3Status)status;
+}
+
+/* ---- model exchange and derivatives ---------------------------------------------------------*/
+
+static fmi3Status exchanged(const fmi_instance *i, bool good)
+{
+    return (fmi3Status)fmi_done(i, good);
+}
+
+fmi3Status fmi3EnterEventMode(fmi3Instance c)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_enter_event(i->unit));
+}
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needs_update,
+                                    fmi3Boolean *terminate, fmi3Boolean *nominals,
+                                    fmi3Boolean *values, fmi3Boolean *time_defined,
+                                    fmi3Float64 *time)
+{
+    INSTANCE(c)
+    if (!needs_update || !terminate || !nominals || !values || !time_defined || !time) {
+        return (fmi3Status)fmi_refuse(i, "fmi3UpdateDiscreteStates",
+                                      "the place for an answer is NULL");
+    }
+    *needs_update = *nominals = *time_defined = false;
+    *time = 0.0;
+    return exchanged(i, se3di_fmi_unit_update_event(i->unit, terminate, values));
+}
+
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_enter_continuous(i->unit));
+}
+
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_state_before,
+                                       fmi3Boolean *event, fmi3Boolean *terminate)
+{
+    INSTANCE(c)
+    (void)no_state_before;
+    if (!event || !terminate) {
+        return (fmi3Status)fmi_refuse(i, "fmi3CompletedIntegratorStep",
+                                      "the place for an answer is NULL");
+    }
+    *terminate = false;
+    return exchanged(i, se3di_fmi_unit_complete_step(i->unit, event));
+}
+
+fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_set_time(i->unit, time));
+}
+
+fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_set_states(i->unit, x, count));
+}
+
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 dx[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_derivatives(i->unit, dx, count));
+}
+
+fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 values[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_indicators(i->unit, values, count));
+}
+
+fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_states(i->unit, x, count));
+}
+
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t count)
+{
+    INSTANCE(c)
+    return exchanged(i, se3di_fmi_unit_get_nominals(i->unit, x, count));
+}
+
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *count)
+{
+    INSTANCE(c)
+    if (!count) {
+        return (fmi3Status)fmi_refuse(i, "fmi3GetNumberOfEventIndicators", "the place is NULL");
+    }
+    *count = se3di_fmi_unit_count_indicators(i->unit);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *count)
+{
+    INSTANCE(c)
+    if (!count) {
+        return (fmi3Status)fmi_refuse(i, "fmi3GetNumberOfContinuousStates", "the place is NULL");
+    }
+    *count = se3di_fmi_unit_count_states(i->unit);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknowns[],
+                                        size_t unknown_count, const fmi3ValueReference knowns[],
+                                        size_t known_count, const fmi3Float64 seed[],
+                                        size_t seed_count, fmi3Float64 sensitivity[],
+                                        size_t sensitivity_count)
+{
+    INSTANCE(c)
+    const fmi_direction direction = {.unknowns = unknowns,
+                                     .knowns = knowns,
+                                     .unknown_count = unknown_count,
+                                     .known_count = known_count,
+                                     .seed_count = seed_count,
+                                     .out_count = sensitivity_count,
+                                     .seed = seed,
+                                     .out = sensitivity};
+    return (fmi3Status)fmi_derive(i, &direction);
 }
 
 /* ---- what the unit does not have --------------------------------------------------------------*/

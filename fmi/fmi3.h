@@ -86,7 +86,7 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
     X(Boolean, fmi3Boolean)                                                                        \
     X(String, fmi3String)
 
-/* What a unit for co-simulation does: name and parameters; each gives a status. */
+/* What a unit does: name and parameters; each gives a status. */
 #define FMI3_STATUS_FUNCTIONS(X)                                                                   \
     X(SetDebugLogging, (fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String names[]))   \
     X(EnterInitializationMode, (fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,  \
@@ -103,23 +103,37 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
       (fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState *state))                  \
     X(DoStep, (fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boolean no_state_before,       \
                fmi3Boolean * event_needed, fmi3Boolean * terminate, fmi3Boolean * early_return,    \
-               fmi3Float64 * last_time))
+               fmi3Float64 * last_time))                                                           \
+    X(EnterEventMode, (fmi3Instance c))                                                            \
+    X(EnterContinuousTimeMode, (fmi3Instance c))                                                   \
+    X(GetDirectionalDerivative,                                                                    \
+      (fmi3Instance c, const fmi3ValueReference unknowns[], size_t unknown_count,                  \
+       const fmi3ValueReference knowns[], size_t known_count, const fmi3Float64 seed[],            \
+       size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count))                    \
+    X(UpdateDiscreteStates, (fmi3Instance c, fmi3Boolean * needs_update, fmi3Boolean * terminate,  \
+                             fmi3Boolean * nominals, fmi3Boolean * values,                         \
+                             fmi3Boolean * time_defined, fmi3Float64 * time))                      \
+    X(CompletedIntegratorStep,                                                                     \
+      (fmi3Instance c, fmi3Boolean no_state_before, fmi3Boolean * event, fmi3Boolean * terminate)) \
+    X(SetTime, (fmi3Instance c, fmi3Float64 time))                                                 \
+    X(SetContinuousStates, (fmi3Instance c, const fmi3Float64 x[], size_t count))                  \
+    X(GetContinuousStateDerivatives, (fmi3Instance c, fmi3Float64 dx[], size_t count))             \
+    X(GetEventIndicators, (fmi3Instance c, fmi3Float64 values[], size_t count))                    \
+    X(GetContinuousStates, (fmi3Instance c, fmi3Float64 x[], size_t count))                        \
+    X(GetNominalsOfContinuousStates, (fmi3Instance c, fmi3Float64 x[], size_t count))              \
+    X(GetNumberOfEventIndicators, (fmi3Instance c, size_t * count))                                \
+    X(GetNumberOfContinuousStates, (fmi3Instance c, size_t * count))
 
 /* What it does not: these fail with a message. */
 #define FMI3_MISSING_FUNCTIONS(X)                                                                  \
-    X(EnterEventMode, (fmi3Instance c))                                                            \
     X(EnterStepMode, (fmi3Instance c))                                                             \
     X(EnterConfigurationMode, (fmi3Instance c))                                                    \
     X(ExitConfigurationMode, (fmi3Instance c))                                                     \
     X(EvaluateDiscreteStates, (fmi3Instance c))                                                    \
-    X(EnterContinuousTimeMode, (fmi3Instance c))                                                   \
     X(GetNumberOfVariableDependencies, (fmi3Instance c, fmi3ValueReference a, size_t * b))         \
     X(GetVariableDependencies,                                                                     \
       (fmi3Instance c, fmi3ValueReference a, size_t b[], fmi3ValueReference d[], size_t e[],       \
        fmi3DependencyKind f[], size_t g))                                                          \
-    X(GetDirectionalDerivative,                                                                    \
-      (fmi3Instance c, const fmi3ValueReference a[], size_t b, const fmi3ValueReference d[],       \
-       size_t e, const fmi3Float64 f[], size_t g, fmi3Float64 h[], size_t i))                      \
     X(GetAdjointDerivative,                                                                        \
       (fmi3Instance c, const fmi3ValueReference a[], size_t b, const fmi3ValueReference d[],       \
        size_t e, const fmi3Float64 f[], size_t g, fmi3Float64 h[], size_t i))                      \
@@ -140,17 +154,6 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
       (fmi3Instance c, const fmi3ValueReference a[], size_t b, const fmi3Float64 d[]))             \
     X(SetShiftFraction, (fmi3Instance c, const fmi3ValueReference a[], size_t b,                   \
                          const fmi3UInt64 d[], const fmi3UInt64 e[]))                              \
-    X(UpdateDiscreteStates, (fmi3Instance c, fmi3Boolean * a, fmi3Boolean * b, fmi3Boolean * d,    \
-                             fmi3Boolean * e, fmi3Boolean * f, fmi3Float64 * g))                   \
-    X(CompletedIntegratorStep, (fmi3Instance c, fmi3Boolean a, fmi3Boolean * b, fmi3Boolean * d))  \
-    X(SetTime, (fmi3Instance c, fmi3Float64 a))                                                    \
-    X(SetContinuousStates, (fmi3Instance c, const fmi3Float64 a[], size_t b))                      \
-    X(GetContinuousStateDerivatives, (fmi3Instance c, fmi3Float64 a[], size_t b))                  \
-    X(GetEventIndicators, (fmi3Instance c, fmi3Float64 a[], size_t b))                             \
-    X(GetContinuousStates, (fmi3Instance c, fmi3Float64 a[], size_t b))                            \
-    X(GetNominalsOfContinuousStates, (fmi3Instance c, fmi3Float64 a[], size_t b))                  \
-    X(GetNumberOfEventIndicators, (fmi3Instance c, size_t * a))                                    \
-    X(GetNumberOfContinuousStates, (fmi3Instance c, size_t * a))                                   \
     X(ActivateModelPartition, (fmi3Instance c, fmi3ValueReference a, fmi3Float64 b))
 
 #define FMI3_DECLARE(name, parameters)                                                             \

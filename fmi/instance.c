@@ -69,7 +69,7 @@ static char *copy_text(const char *text)
 }
 
 fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char *token,
-                         const char *folder)
+                         const char *folder, bool exchanges)
 {
     fmi_instance *i = malloc(sizeof *i);
     if (!i) {
@@ -88,7 +88,7 @@ fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char
     } else if (!i->name || !path) {
         fmi_refuse(i, "instantiate", "out of memory");
     } else {
-        i->unit = se3di_fmi_unit_create(path, token, tell, i);
+        i->unit = se3di_fmi_unit_create(path, token, exchanges, tell, i);
     }
     free(path);
     if (!i->unit) {
@@ -105,6 +105,11 @@ void fmi_destroy(fmi_instance *instance)
         free(instance->name);
         free(instance);
     }
+}
+
+int fmi_done(const fmi_instance *instance, bool good)
+{
+    return good ? FMI_OK : se3di_fmi_unit_discards(instance->unit) ? FMI_DISCARD : FMI_ERROR;
 }
 
 int fmi_refuse(fmi_instance *instance, const char *call, const char *why)
@@ -161,7 +166,7 @@ int fmi_get(fmi_instance *instance, const uint32_t *references, size_t count, do
 {
     int status = check_arrays(instance, "get", references, count, values, value_count);
     for (size_t k = 0; k < count && status == FMI_OK; ++k) {
-        status = se3di_fmi_unit_get(instance->unit, references[k], &values[k]) ? FMI_OK : FMI_ERROR;
+        status = fmi_done(instance, se3di_fmi_unit_get(instance->unit, references[k], &values[k]));
     }
     return status;
 }
@@ -174,6 +179,20 @@ int fmi_set(fmi_instance *instance, const uint32_t *references, size_t count, co
         return status;
     }
     return se3di_fmi_unit_set(instance->unit, references, count, values) ? FMI_OK : FMI_ERROR;
+}
+
+int fmi_derive(fmi_instance *instance, const fmi_direction *d)
+{
+    static const char call[] = "directional derivative";
+    int status = check_arrays(instance, call, d->unknowns, d->unknown_count, d->out, d->out_count);
+    if (status == FMI_OK) {
+        status = check_arrays(instance, call, d->knowns, d->known_count, d->seed, d->seed_count);
+    }
+    return status != FMI_OK
+               ? status
+               : fmi_done(instance,
+                          se3di_fmi_unit_derive(instance->unit, d->unknowns, d->unknown_count,
+                                                d->knowns, d->known_count, d->seed, d->out));
 }
 
 int fmi_refuse_type(fmi_instance *instance, size_t count, const char *type)

@@ -33,9 +33,12 @@ typedef struct fmi_state {
 } fmi_state;
 
 /* `callback` and `environment` stay with the caller. `folder`: of the resources, or a URI of it.
+ * `exchanges`: the caller integrates.
  * @return NULL: `say` was told why */
 fmi_instance *fmi_create(const fmi_instance *model, const char *name, const char *token,
-                         const char *folder);
+                         const char *folder, bool exchanges);
+/* The status of what the unit has done. */
+int fmi_done(const fmi_instance *instance, bool good);
 /* From within `say` nothing is destroyed. */
 void fmi_destroy(fmi_instance *instance);
 /* Say why a call is refused. @return FMI_ERROR */
@@ -49,6 +52,16 @@ int fmi_set(fmi_instance *instance, const uint32_t *references, size_t count, co
             size_t value_count);
 /* Of another type than the variables have: fine for none of them. */
 int fmi_refuse_type(fmi_instance *instance, size_t count, const char *type);
+
+/* What is asked of a directional derivative. */
+typedef struct fmi_direction {
+    const uint32_t *unknowns, *knowns;
+    size_t unknown_count, known_count, seed_count, out_count;
+    const double *seed;
+    double *out;
+} fmi_direction;
+
+int fmi_derive(fmi_instance *instance, const fmi_direction *d);
 
 /* One that *state has is used again. */
 int fmi_get_state(fmi_instance *instance, fmi_state **state);

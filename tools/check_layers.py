@@ -42,6 +42,8 @@ CIRCLES = {
         "a run looks for events after each step, and a search for events makes steps",
     "io/document/reader io/document/reference io/document/value":
         "a text may hold numbers in braces, and a number may be written as a text",
+    "io/fmi/exchange io/fmi/unit":
+        "a unit whose caller integrates is one that lives as others do, with other steps",
     "io/import/chrono io/import/import io/import/mjcf io/import/mjcf_acts io/import/mjcf_body "
     "io/import/mjcf_geom":
         "formats include files by the function that chose them; a tree of bodies is read as it is "

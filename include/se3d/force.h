@@ -436,7 +436,11 @@ typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_LIMIT = 10,    /* friction */
     SE3D_FORCE_PARAMETER_VISCOUS = 11,  /* friction */
     SE3D_FORCE_PARAMETER_PRESLIDING = 12, /* friction */
-    SE3D_FORCE_PARAMETER_INERTIA = 13     /* armature */
+    SE3D_FORCE_PARAMETER_INERTIA = 13,    /* armature */
+    /* stop: the speed of the impact that it is in, or of one that would begin now, >= 0 [m/s,
+     * rad/s]; 0: not known. A part of the state: to go on from one that was kept elsewhere, set it
+     * after positions and velocities. */
+    SE3D_FORCE_PARAMETER_IMPACT = 14
 } se3d_force_parameter;
 
 /* Set a number of a tsda, rsda, stop, friction, tyre or armature element. What the change makes of

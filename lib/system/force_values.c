@@ -43,6 +43,7 @@ static const parameter parameters[] = {
     [SE3D_FORCE_PARAMETER_PRESLIDING] = {"presliding", FRICTION, 0,
                                          offsetof(se3di_force, presliding)},
     [SE3D_FORCE_PARAMETER_INERTIA] = {"inertia", ARMATURE, 0, offsetof(se3di_force, value)},
+    [SE3D_FORCE_PARAMETER_IMPACT] = {"impact", STOP, 0, offsetof(se3di_force, state)},
 };
 
 #define PARAMETERS ((int32_t)(sizeof parameters / sizeof parameters[0]))
@@ -106,6 +107,7 @@ static se3d_status check_stop(se3d_system *system, se3di_force *data)
         return SE3DI_FAIL_OF(system, "restitution", SE3D_ERR_INVALID_ARGUMENT,
                              " = %g, must be from 0.01 to 1", data->restitution);
     }
+    SE3DI_TRY(check_not_negative(system, "impact", data->state[0]));
     data->c = se3di_stop_damping(data->restitution);
     return SE3D_OK;
 }
@@ -246,6 +248,9 @@ se3d_status se3d_force_set_parameter(se3d_system *system, se3d_force force, int3
     data.mu_static = follows ? value : data.mu_static;
     SE3DI_TRY(se3di_force_check_values(system, &data));
     replace(&system->model, index, &data);
+    if (which == SE3D_FORCE_PARAMETER_IMPACT) {
+        system->model.remembers = 1;
+    }
     return SE3D_OK;
 }
 

@@ -92,8 +92,10 @@ static void description_has_the_right_kinds(void)
         const variable *v = &d.variables[k];
         const int sets = is(v->causality, "input") || is(v->causality, "parameter");
         const int fixed = is(v->causality, "parameter") || is(v->causality, "calculatedParameter");
-        CHECK(sets || fixed || is(v->causality, "output") || is(v->causality, "independent"));
-        CHECK(is(v->variability, fixed ? "fixed" : "continuous"));
+        CHECK(sets || fixed || is(v->causality, "output") || is(v->causality, "independent") ||
+              is(v->causality, "local"));
+        CHECK(is(v->variability, fixed ? "fixed" : "continuous") ||
+              (is(v->causality, "input") && is(v->variability, "discrete")));
         CHECK(v->has_start == sets);
         CHECK(isfinite(v->start));
         int known = v->unit[0] == '\0';
@@ -102,6 +104,17 @@ static void description_has_the_right_kinds(void)
         }
         CHECK(known);
     }
+}
+
+/* A state or a derivative of one. */
+static int is_integrated(size_t k)
+{
+    for (size_t i = 0; i < d.derivative_count; ++i) {
+        if (k == d.derivatives[i] || k + 1 == d.variables[d.derivatives[i]].derivative) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 static void description_lists_what_is_calculated(void)
@@ -114,14 +127,14 @@ static void description_lists_what_is_calculated(void)
             CHECK(outputs < d.output_count && d.outputs[outputs] == k);
             ++outputs;
         }
-        if (is_output || is(d.variables[k].causality, "calculatedParameter")) {
+        if (is_output || is(d.variables[k].causality, "calculatedParameter") || is_integrated(k)) {
             CHECK(unknowns < d.unknown_count && d.unknowns[unknowns] == k);
             ++unknowns;
         }
     }
     CHECK(outputs == d.output_count);
     CHECK(unknowns == d.unknown_count);
-    CHECK(d.can_save && d.can_serialize && !d.has_derivatives);
+    CHECK(d.can_save && d.can_serialize && d.has_derivatives);
     CHECK(d.category_count >= 3);
     CHECK(d.stop > d.start);
 }
@@ -412,7 +425,9 @@ static void wrong_numbers_are_refused(void)
     CHECK(f.free_state(c, &state) == GOOD);
     REFUSED(f.other_type(c, 1));
     CHECK(f.other_type(c, 0) == GOOD);
-    REFUSED(f.directional(c));
+    const double one = 1.0;
+    REFUSED(f.directional(c, &d.variables[0].reference, 1, unknown, 1, &one, &value));
+    REFUSED(f.directional(c, &references[1], 1, &references[1], 1, &one, &value));
     REFUSED(f.logging(c, "no such category"));
     CHECK(f.logging(c, "logAll") == GOOD);
     CHECK(go(c, 0, row_count - 2) == GOOD);
@@ -607,6 +622,39 @@ static void the_end_of_the_experiment_holds(void)
     f.free(c);
 }
 
+/* What the derivative tells of a small change of an input is what setting it shows; asking has no
+ * effect. */
+static void derivatives_of_outputs_are_those_of_steps(void)
+{
+    double values[3][COLUMNS_MAX];
+    double slopes[COLUMNS_MAX];
+    const double one = 1.0;
+    for (size_t k = 0; k < d.count; ++k) {
+        const variable *v = &d.variables[k];
+        if (!is(v->causality, "input")) {
+            continue;
+        }
+        void *c = begin();
+        CHECK(go(c, 0, 2) == GOOD);
+        get_row(c, values[0]);
+        for (size_t i = 1; i < column_count; ++i) {
+            CHECK(f.directional(c, &references[i], 1, &v->reference, 1, &one, &slopes[i]) == GOOD);
+        }
+        get_row(c, values[1]);
+        CHECK(same_bits(values[0], values[1]));
+        for (int side = 0; side < 2; ++side) {
+            const double other = v->start + (side ? 1e-4 : -1e-4);
+            CHECK(f.set(c, &v->reference, 1, &other) == GOOD);
+            get_row(c, values[1 + side]);
+        }
+        for (size_t i = 1; i < column_count; ++i) {
+            const double slope = (values[2][i] - values[1][i]) / 2e-4;
+            CHECK_NEAR(slopes[i], slope, 1e-6 * (1.0 + fabs(slope) + 10.0 * fabs(values[0][i])));
+        }
+        f.free(c);
+    }
+}
+
 int main(int argc, char **argv)
 {
     char path[3000];
@@ -646,5 +694,9 @@ int main(int argc, char **argv)
     RUN(inputs_act_and_are_restored);
     RUN(inputs_act_on_the_beginning);
     RUN(the_end_of_the_experiment_holds);
+    RUN(derivatives_of_outputs_are_those_of_steps);
+    const run results = {&d,          &f,        resources,  &rows[0][0],
+                         COLUMNS_MAX, row_count, references, column_count};
+    exchange_check(&results);
     return check_finish();
 }

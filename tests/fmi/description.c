@@ -8,7 +8,7 @@
 
 typedef struct reading {
     description *d;
-    int in_outputs, in_unknowns;
+    int in_outputs, in_unknowns, in_derivatives;
 } reading;
 
 static const char *find(const char **attributes, const char *name)
@@ -29,7 +29,9 @@ static void copy(char *out, size_t size, const char *text)
 static void take_head(description *d, const char **a)
 {
     const char *token = find(a, "guid");
+    const char *indicators = find(a, "numberOfEventIndicators");
     copy(d->version, sizeof d->version, find(a, "fmiVersion"));
+    d->indicator_count = indicators ? strtoul(indicators, NULL, 10) : 0;
     copy(d->model, sizeof d->model, find(a, "modelName"));
     copy(d->token, sizeof d->token, token ? token : find(a, "instantiationToken"));
 }
@@ -58,6 +60,10 @@ static void take_type(description *d, const char **a)
         copy(v->unit, sizeof v->unit, find(a, "unit"));
         v->has_start = start != NULL;
         v->start = start ? strtod(start, NULL) : 0.0;
+        const char *nominal = find(a, "nominal");
+        const char *derivative = find(a, "derivative");
+        v->nominal = nominal ? strtod(nominal, NULL) : 0.0;
+        v->derivative = derivative ? strtoul(derivative, NULL, 10) + (d->version[0] == '3') : 0;
     }
 }
 
@@ -88,10 +94,8 @@ static size_t find_reference(description *d, const char *text)
     return 0;
 }
 
-static void take_unknown(description *d, int is_output, size_t index)
+static void take_unknown(description *d, size_t *list, size_t *count, size_t index)
 {
-    size_t *list = is_output ? d->outputs : d->unknowns;
-    size_t *count = is_output ? &d->output_count : &d->unknown_count;
     if (*count < VARIABLES_MAX && index < d->count) {
         list[(*count)++] = index;
     } else {
@@ -99,11 +103,46 @@ static void take_unknown(description *d, int is_output, size_t index)
     }
 }
 
+/* The one thing that a derivative is. */
+static void take_derivative(description *d, const char **a, size_t index)
+{
+    const char *dependencies = find(a, "dependencies");
+    const char *kind = find(a, "dependenciesKind");
+    if (dependencies && kind && strcmp(kind, "constant") == 0 &&
+        d->derivative_count < VARIABLES_MAX) {
+        d->constants[d->derivative_count] =
+            strtoul(dependencies, NULL, 10) + (d->version[0] == '3');
+    }
+    take_unknown(d, d->derivatives, &d->derivative_count, index);
+}
+
 static void take_index(reading *r, const char **a)
 {
-    const char *index = find(a, "index");
-    take_unknown(r->d, r->in_outputs, index ? strtoul(index, NULL, 10) - 1 : VARIABLES_MAX);
-    r->d->malformed |= r->in_outputs == r->in_unknowns;
+    description *d = r->d;
+    const char *text = find(a, "index");
+    const size_t index = text ? strtoul(text, NULL, 10) - 1 : VARIABLES_MAX;
+    if (r->in_outputs) {
+        take_unknown(d, d->outputs, &d->output_count, index);
+    } else if (r->in_derivatives) {
+        take_derivative(d, a, index);
+    } else {
+        take_unknown(d, d->unknowns, &d->unknown_count, index);
+    }
+    d->malformed |= r->in_outputs + r->in_unknowns + r->in_derivatives != 1;
+}
+
+static void take_named(description *d, const char *name, const char **a)
+{
+    const size_t index = find_reference(d, find(a, "valueReference"));
+    if (strcmp(name, "Output") == 0) {
+        take_unknown(d, d->outputs, &d->output_count, index);
+    } else if (strcmp(name, "InitialUnknown") == 0) {
+        take_unknown(d, d->unknowns, &d->unknown_count, index);
+    } else if (strcmp(name, "ContinuousStateDerivative") == 0) {
+        take_derivative(d, a, index);
+    } else {
+        take_unknown(d, d->indicators, &d->indicator_count, index);
+    }
 }
 
 static void take_experiment(description *d, const char **a)
@@ -122,6 +161,8 @@ static void XMLCALL begin(void *ctx, const char *name, const char **a)
         take_head(d, a);
     } else if (strcmp(name, "CoSimulation") == 0) {
         take_kind(d, a);
+    } else if (strcmp(name, "ModelExchange") == 0) {
+        d->exchanges = 1;
     } else if (strcmp(name, "ScalarVariable") == 0) {
         take_variable(d, a);
     } else if (strcmp(name, "Real") == 0) {
@@ -139,10 +180,14 @@ static void XMLCALL begin(void *ctx, const char *name, const char **a)
         r->in_outputs = 1;
     } else if (strcmp(name, "InitialUnknowns") == 0) {
         r->in_unknowns = 1;
+    } else if (strcmp(name, "Derivatives") == 0) {
+        r->in_derivatives = 1;
     } else if (strcmp(name, "Unknown") == 0) {
         take_index(r, a);
-    } else if (strcmp(name, "Output") == 0 || strcmp(name, "InitialUnknown") == 0) {
-        take_unknown(d, name[0] == 'O', find_reference(d, find(a, "valueReference")));
+    } else if (strcmp(name, "Output") == 0 || strcmp(name, "InitialUnknown") == 0 ||
+               strcmp(name, "ContinuousStateDerivative") == 0 ||
+               strcmp(name, "EventIndicator") == 0) {
+        take_named(d, name, a);
     }
 }
 
@@ -153,13 +198,15 @@ static void XMLCALL end(void *ctx, const char *name)
         r->in_outputs = 0;
     } else if (strcmp(name, "InitialUnknowns") == 0) {
         r->in_unknowns = 0;
+    } else if (strcmp(name, "Derivatives") == 0) {
+        r->in_derivatives = 0;
     }
 }
 
 int description_read(const char *path, description *d)
 {
     char block[4096];
-    reading r = {d, 0, 0};
+    reading r = {d, 0, 0, 0};
     FILE *file = fopen(path, "rb");
     XML_Parser parser = XML_ParserCreate(NULL);
     int good = file && parser;

@@ -13,6 +13,7 @@
 int told_errors;
 char told_last[2000];
 void (*told_meddle)(void);
+int unit_exchanges;
 
 void told_clear(void)
 {
@@ -51,8 +52,8 @@ static void *instantiate(const char *name, const char *token, const char *folder
     static const fmi2CallbackFunctions callbacks = {hear, calloc, free, NULL, NULL};
     char uri[3000];
     snprintf(uri, sizeof uri, "file://%s", folder ? folder : "");
-    return p_Instantiate(name, fmi2CoSimulation, token, folder ? uri : NULL, &callbacks, 0,
-                         logging);
+    return p_Instantiate(name, unit_exchanges ? fmi2ModelExchange : fmi2CoSimulation, token,
+                         folder ? uri : NULL, &callbacks, 0, logging);
 }
 
 static void free_instance(void *c)
@@ -145,11 +146,66 @@ static int other_type(void *c, size_t count)
     return (int)p_GetInteger(c, &vr, count, &value);
 }
 
-static int directional(void *c)
+static int directional(void *c, const uint32_t *unknowns, size_t unknown_count,
+                       const uint32_t *knowns, size_t known_count, const double *seed, double *out)
 {
-    const fmi2ValueReference vr = 0;
-    double value = 1.0;
-    return (int)p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, &value);
+    return (int)p_GetDirectionalDerivative(c, unknowns, unknown_count, knowns, known_count, seed,
+                                           out);
+}
+
+static int enter_event(void *c)
+{
+    return (int)p_EnterEventMode(c);
+}
+
+static int update(void *c, int *ends, int *moved, int *more)
+{
+    fmi2EventInfo info = {0};
+    const fmi2Status status = p_NewDiscreteStates(c, &info);
+    *ends = info.terminateSimulation;
+    *moved = info.valuesOfContinuousStatesChanged;
+    *more = info.newDiscreteStatesNeeded;
+    return (int)status;
+}
+
+static int go_on(void *c)
+{
+    return (int)p_EnterContinuousTimeMode(c);
+}
+
+static int complete(void *c, int *event, int *ends)
+{
+    return (int)p_CompletedIntegratorStep(c, fmi2True, event, ends);
+}
+
+static int set_time(void *c, double time)
+{
+    return (int)p_SetTime(c, time);
+}
+
+static int set_states(void *c, const double *x, size_t count)
+{
+    return (int)p_SetContinuousStates(c, x, count);
+}
+
+static int get_states(void *c, double *x, size_t count)
+{
+    return (int)p_GetContinuousStates(c, x, count);
+}
+
+static int get_nominals(void *c, double *x, size_t count)
+{
+    return (int)p_GetNominalsOfContinuousStates(c, x, count);
+}
+
+static int get_derivatives(void *c, double *dx, size_t count)
+{
+    return (int)p_GetDerivatives(c, dx, count);
+}
+
+static int get_indicators(void *c, double *values, size_t count)
+{
+    return (int)p_GetEventIndicators(c, values, count);
 }
 
 static int logging(void *c, const char *category)
@@ -187,8 +243,18 @@ int functions_load_2(functions *f, const char *object)
                      write_state,
                      read_state,
                      other_type,
+                     logging,
                      directional,
-                     logging};
+                     enter_event,
+                     update,
+                     go_on,
+                     complete,
+                     set_time,
+                     set_states,
+                     get_states,
+                     get_nominals,
+                     get_derivatives,
+                     get_indicators};
     if (!f->object) {
         fprintf(stderr, "%s\n", dlerror());
         return -1;

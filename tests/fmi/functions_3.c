@@ -41,8 +41,9 @@ static void *instantiate(const char *name, const char *token, const char *folder
     char path[3000];
     snprintf(path, sizeof path, "%s/", folder ? folder : "");
     memset(&experiment, 0, sizeof experiment);
-    if (p_InstantiateModelExchange(name, token, path, false, false, NULL, NULL)) {
-        return NULL; /* it must not be */
+    if (unit_exchanges) {
+        return p_InstantiateModelExchange(name, token, folder ? path : NULL, false, logging != 0,
+                                          NULL, hear);
     }
     return p_Instantiate(name, token, folder ? path : NULL, false, logging != 0, false, false, NULL,
                          0, NULL, hear, NULL);
@@ -151,11 +152,73 @@ static int other_type(void *c, size_t count)
     return (int)p_GetInt32(c, &vr, count, &value, count);
 }
 
-static int directional(void *c)
+static int directional(void *c, const uint32_t *unknowns, size_t unknown_count,
+                       const uint32_t *knowns, size_t known_count, const double *seed, double *out)
 {
-    const fmi3ValueReference vr = 0;
-    double value = 1.0;
-    return (int)p_GetDirectionalDerivative(c, &vr, 1, &vr, 1, &value, 1, &value, 1);
+    return (int)p_GetDirectionalDerivative(c, unknowns, unknown_count, knowns, known_count, seed,
+                                           known_count, out, unknown_count);
+}
+
+static int enter_event(void *c)
+{
+    return (int)p_EnterEventMode(c);
+}
+
+static int update(void *c, int *ends, int *moved, int *more)
+{
+    bool answers[5] = {false, false, false, false, false};
+    double time = 0.0;
+    const fmi3Status status = p_UpdateDiscreteStates(c, &answers[0], &answers[1], &answers[2],
+                                                     &answers[3], &answers[4], &time);
+    *more = answers[0];
+    *ends = answers[1];
+    *moved = answers[3];
+    return (int)status;
+}
+
+static int go_on(void *c)
+{
+    return (int)p_EnterContinuousTimeMode(c);
+}
+
+static int complete(void *c, int *event, int *ends)
+{
+    bool asks = false;
+    bool ended = false;
+    const fmi3Status status = p_CompletedIntegratorStep(c, true, &asks, &ended);
+    *event = asks;
+    *ends = ended;
+    return (int)status;
+}
+
+static int set_time(void *c, double time)
+{
+    return (int)p_SetTime(c, time);
+}
+
+static int set_states(void *c, const double *x, size_t count)
+{
+    return (int)p_SetContinuousStates(c, x, count);
+}
+
+static int get_states(void *c, double *x, size_t count)
+{
+    return (int)p_GetContinuousStates(c, x, count);
+}
+
+static int get_nominals(void *c, double *x, size_t count)
+{
+    return (int)p_GetNominalsOfContinuousStates(c, x, count);
+}
+
+static int get_derivatives(void *c, double *dx, size_t count)
+{
+    return (int)p_GetContinuousStateDerivatives(c, dx, count);
+}
+
+static int get_indicators(void *c, double *values, size_t count)
+{
+    return (int)p_GetEventIndicators(c, values, count);
 }
 
 static int logging(void *c, const char *category)
@@ -193,8 +256,18 @@ int functions_load_3(functions *f, const char *object)
                      write_state,
                      read_state,
                      other_type,
+                     logging,
                      directional,
-                     logging};
+                     enter_event,
+                     update,
+                     go_on,
+                     complete,
+                     set_time,
+                     set_states,
+                     get_states,
+                     get_nominals,
+                     get_derivatives,
+                     get_indicators};
     if (!f->object) {
         fprintf(stderr, "%s\n", dlerror());
         return -1;

@@ -14,6 +14,8 @@ typedef struct variable {
     uint32_t reference;
     int has_start;
     double start;
+    double nominal;    /* 0: not told */
+    size_t derivative; /* number of the state, from 1; 0: it is none */
 } variable;
 
 typedef struct description {
@@ -22,10 +24,13 @@ typedef struct description {
     size_t count;
     size_t outputs[VARIABLES_MAX], output_count; /* indices of variables */
     size_t unknowns[VARIABLES_MAX], unknown_count;
+    size_t derivatives[VARIABLES_MAX], derivative_count;
+    size_t indicators[VARIABLES_MAX], indicator_count; /* 3.0 only; 2.0 has how many */
+    size_t constants[VARIABLES_MAX]; /* of a derivative: number of the state that it is, from 1 */
     char units[100][60];
     size_t unit_count, category_count;
     double start, stop;
-    int can_save, can_serialize, has_derivatives;
+    int can_save, can_serialize, has_derivatives, exchanges;
     int malformed;
 } description;
 
@@ -56,9 +61,24 @@ typedef struct functions {
     int (*write_state)(void *c, void *state, unsigned char *bytes, size_t size);
     int (*read_state)(void *c, const unsigned char *bytes, size_t size, void **state);
     int (*other_type)(void *c, size_t count);      /* get integers */
-    int (*directional)(void *c);                   /* its derivative */
     int (*logging)(void *c, const char *category); /* switch one on */
+    int (*directional)(void *c, const uint32_t *unknowns, size_t unknown_count,
+                       const uint32_t *knowns, size_t known_count, const double *seed, double *out);
+    /* Model exchange. */
+    int (*enter_event)(void *c);
+    int (*update)(void *c, int *ends, int *moved, int *more);
+    int (*go_on)(void *c); /* enter the continuous time mode */
+    int (*complete)(void *c, int *event, int *ends);
+    int (*set_time)(void *c, double time);
+    int (*set_states)(void *c, const double *x, size_t count);
+    int (*get_states)(void *c, double *x, size_t count);
+    int (*get_nominals)(void *c, double *x, size_t count);
+    int (*get_derivatives)(void *c, double *dx, size_t count);
+    int (*get_indicators)(void *c, double *values, size_t count);
 } functions;
+
+/* What the next instances are made for: 1: model exchange. */
+extern int unit_exchanges;
 
 /* What the units have told, since the last `told_clear`. */
 extern int told_errors;
@@ -69,5 +89,19 @@ extern void (*told_meddle)(void); /* called from within, unless NULL */
 /* Functions that cannot be found are counted. @return the number missing, -1: no such object. */
 int functions_load_2(functions *f, const char *object);
 int functions_load_3(functions *f, const char *object);
+
+/* A run of the same model: rows of numbers, of which the first is the time. */
+typedef struct run {
+    const description *d;
+    const functions *f;
+    const char *resources;
+    const double *rows;
+    size_t stride, row_count;
+    const uint32_t *references; /* of the columns */
+    size_t column_count;
+} run;
+
+/* exchange.c: what a caller that integrates meets. */
+void exchange_check(const run *results);
 
 #endif

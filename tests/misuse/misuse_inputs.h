@@ -71,6 +71,7 @@ static void check_parameters(arguments *a, const settable *m)
                 {m->stop, SE3D_FORCE_PARAMETER_LOWER, 0, 1.0, -infinite},
                 {m->stop, SE3D_FORCE_PARAMETER_UPPER, 0, nan, 3.0},
                 {m->stop, SE3D_FORCE_PARAMETER_RESTITUTION, 0, 1.5, 0.5},
+                {m->stop, SE3D_FORCE_PARAMETER_IMPACT, 0, -1.0, 0.25},
                 {m->friction, SE3D_FORCE_PARAMETER_MU, 0, -0.1, 0.3},
                 {m->friction, SE3D_FORCE_PARAMETER_MU_STATIC, 0, 0.2, 0.4},
                 {m->friction, SE3D_FORCE_PARAMETER_RADIUS, 0, nan, 0.01},

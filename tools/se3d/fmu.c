@@ -73,15 +73,24 @@ static void print_done(const options *o, const se3di_fmi_package *p, const char 
     if (o->json) {
         printf("{\"status\": \"done\", \"file\": ");
         json_put_text(target);
-        printf(", \"fmi\": \"%d.0\", \"inputs\": %zu, \"parameters\": %zu, \"outputs\": %zu}\n",
-               p->version, p->inputs, p->parameters, p->outputs);
+        printf(", \"fmi\": \"%d.0\", \"inputs\": %zu, \"parameters\": %zu, \"outputs\": %zu, "
+               "\"states\": %zu}\n",
+               p->version, p->inputs, p->parameters, p->outputs, p->states);
     } else if (!o->quiet) {
         fputs("wrote ", stdout);
         text_put_plain(stdout, target);
-        printf(": FMI %d.0 for co-simulation, ", p->version);
+        printf(": FMI %d.0 for co-simulation%s, ", p->version,
+               p->states > 0 ? " and model exchange" : "");
         put_count(p->inputs, "input", "inputs", ", ");
         put_count(p->parameters, "parameter", "parameters", ", ");
-        put_count(p->outputs, "output", "outputs", "\n");
+        put_count(p->outputs, "output", "outputs", p->states > 0 ? ", " : "\n");
+        if (p->states > 0) {
+            put_count(p->states, "state", "states", "\n");
+        } else {
+            fputs("not for model exchange: ", stdout);
+            text_put_plain(stdout, p->reason);
+            fputs("\n", stdout);
+        }
     }
 }
 
@@ -157,9 +166,10 @@ const command_entry fmu_entry = {
     .files = "yaml yml json",
     .summary = "make a functional mock-up unit (FMI) of a model",
     .text =
-        "Makes a functional mock-up unit for co-simulation: an archive with a description, the "
-        "files of the model and all that runs it, for other simulation programs on machines of "
-        "this kind. Inputs are the numbers of forces, torques, efforts and drivers, parameters "
+        "Makes a functional mock-up unit for co-simulation and model exchange: an archive with a "
+        "description, the files of the model and all that runs it, for other simulation programs "
+        "on machines of this kind. Inputs are the numbers of forces, torques, efforts and drivers, "
+        "parameters "
         "those of the model, outputs the channels of its `output`. The last analysis in which time "
         "passes is stepped through; those before it are run when the unit is initialized. "
         "docs/fmi.md says more.",

@@ -106,15 +106,36 @@ static void put_head(writer *w)
     if (model->title[0]) {
         put_text(w, "description", model->title);
     }
-    put(w, " generationTool=\"se3d %s\" variableNamingConvention=\"flat\"%s>\n",
-        se3d_version_get_text(), new ? "" : " numberOfEventIndicators=\"0\"");
-    put(w, "  <CoSimulation modelIdentifier=\"%s\"", w->d->identifier);
-    put(w, new ? " canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUState=\"true\" "
-                 "canSerializeFMUState=\"true\" providesDirectionalDerivatives=\"false\""
-               : " canHandleVariableCommunicationStepSize=\"true\" canGetAndSetFMUstate=\"true\" "
-                 "canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"false\" "
-                 "canNotUseMemoryManagementFunctions=\"true\"");
-    put(w, new &&can_end(model) ? " mightReturnEarlyFromDoStep=\"true\"/>\n" : "/>\n");
+    put(w, " generationTool=\"se3d %s\" variableNamingConvention=\"flat\"",
+        se3d_version_get_text());
+    if (!new) {
+        put(w, " numberOfEventIndicators=\"%zu\"", w->d->variables->indicators);
+    }
+    put(w, ">\n");
+}
+
+/* A kind of unit: its own attributes, and those of both. */
+static void put_kind(writer *w, const char *kind, const char *own)
+{
+    const bool new = w->d->version == 3;
+    put(w, "  <%s modelIdentifier=\"%s\"%s", kind, w->d->identifier, own);
+    put(w, new ? " canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" "
+                 "providesDirectionalDerivatives=\"true\"/>\n"
+               : " canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\" "
+                 "providesDirectionalDerivative=\"true\" "
+                 "canNotUseMemoryManagementFunctions=\"true\"/>\n");
+}
+
+static void put_kinds(writer *w)
+{
+    const bool new = w->d->version == 3;
+    if (w->d->variables->states > 0) {
+        put_kind(w, "ModelExchange", new ? " needsCompletedIntegratorStep=\"true\"" : "");
+    }
+    put_kind(w, "CoSimulation",
+             new &&can_end(w->d->model) ? " canHandleVariableCommunicationStepSize=\"true\" "
+                                          "mightReturnEarlyFromDoStep=\"true\""
+                                        : " canHandleVariableCommunicationStepSize=\"true\"");
 }
 
 static void put_units(writer *w)
@@ -180,6 +201,12 @@ static const char *describe(const se3di_fmi_variable *v)
         return "what the element is set to";
     case SE3DI_FMI_OUTPUT:
         return "channel of the model";
+    case SE3DI_FMI_STATE:
+        return "joint coordinate, its rate, or state of the model";
+    case SE3DI_FMI_DERIVATIVE:
+        return "derivative of a state";
+    case SE3DI_FMI_INDICATOR:
+        return "changes its sign at an event or at the end of a stop";
     default:
         return "parameter of the model";
     }
@@ -192,8 +219,11 @@ static void put_role(writer *w, const se3di_fmi_variable *v)
                                         " causality=\"input\" variability=\"continuous\"",
                                         " causality=\"parameter\" variability=\"fixed\"",
                                         " causality=\"calculatedParameter\" variability=\"fixed\"",
-                                        " causality=\"output\" variability=\"continuous\""};
-    put(w, "%s", roles[v->role]);
+                                        " causality=\"output\" variability=\"continuous\"",
+                                        " causality=\"local\" variability=\"continuous\"",
+                                        " causality=\"local\" variability=\"continuous\"",
+                                        " causality=\"local\" variability=\"continuous\""};
+    put(w, "%s", v->jumps ? " causality=\"input\" variability=\"discrete\"" : roles[v->role]);
 }
 
 static void put_variable(writer *w, size_t k)
@@ -213,43 +243,99 @@ static void put_variable(writer *w, size_t k)
     }
     if (v->role == SE3DI_FMI_INPUT || v->role == SE3DI_FMI_PARAMETER) {
         put_number(w, "start", v->start);
+    } else if (v->role == SE3DI_FMI_STATE) {
+        put_number(w, "nominal", v->nominal);
+    } else if (v->role == SE3DI_FMI_DERIVATIVE) {
+        put(w, " derivative=\"%zu\"", w->d->variables->state + v->element + (new ? 0 : 1));
     }
     put(w, new ? "/>\n" : "/></ScalarVariable>\n");
 }
 
-static void put_unknown(writer *w, bool is_output, size_t k)
+/* ---- structure ------------------------------------------------------------------------------*/
+
+/* What is calculated: after which sections of the standard. */
+typedef enum section { OUTPUTS, DERIVATIVES, INITIAL, INDICATORS } section;
+
+static bool belongs(se3di_fmi_role role, section which)
 {
-    if (w->d->version == 3) {
-        put(w, "    <%s valueReference=\"%zu\"/>\n", is_output ? "Output" : "InitialUnknown", k);
-    } else {
-        put(w, "      <Unknown index=\"%zu\"/>\n", k + 1);
+    return role == SE3DI_FMI_OUTPUT       ? which == OUTPUTS || which == INITIAL
+           : role == SE3DI_FMI_DERIVATIVE ? which == DERIVATIVES || which == INITIAL
+           : role == SE3DI_FMI_INDICATOR
+               ? which == INDICATORS
+               : which == INITIAL && (role == SE3DI_FMI_CALCULATED || role == SE3DI_FMI_STATE);
+}
+
+/* The number of variable k. */
+static void put_place(writer *w, size_t k, bool *is_first)
+{
+    put(w, "%s%zu", *is_first ? "" : " ", k + (w->d->version == 3 ? 0 : 1));
+    *is_first = false;
+}
+
+/* Outputs that follow from the motion depend on no effort or load; without states to be told they
+ * are left to depend on everything. */
+static bool follows_from_motion(const writer *w, const se3di_fmi_variable *v)
+{
+    return v->role == SE3DI_FMI_OUTPUT && w->d->variables->states > 0 &&
+           se3di_channel_is_of_motion(&w->d->model->outputs[v->output].channels[v->channel]);
+}
+
+/* What an unknown depends on, as far as it is not everything. */
+static void put_dependencies(writer *w, section which, size_t k)
+{
+    const se3di_fmi_variables *all = w->d->variables;
+    const se3di_fmi_variable *v = &all->list[k];
+    bool is_first = true;
+    if (which == DERIVATIVES && !all->projects && v->component > 0) {
+        put(w, " dependencies=\"");
+        put_place(w, all->state + v->component - 1, &is_first);
+        put(w, "\" dependenciesKind=\"constant\"");
+    } else if (which == OUTPUTS && follows_from_motion(w, v)) {
+        put(w, " dependencies=\"");
+        for (size_t i = 0; i < all->count; ++i) {
+            const se3di_fmi_variable *known = &all->list[i];
+            if (known->role == SE3DI_FMI_TIME || known->role == SE3DI_FMI_STATE || known->jumps) {
+                put_place(w, i, &is_first);
+            }
+        }
+        put(w, "\"");
     }
 }
 
-/* The outputs, or all that is calculated when the initialization ends. */
-static void put_unknowns(writer *w, bool outputs)
+/* 2.0 has them in lists, 3.0 by their names. */
+static void put_unknowns(writer *w, section which)
 {
+    static const char *const lists[] = {"Outputs", "Derivatives", "InitialUnknowns"};
+    static const char *const names[] = {"Output", "ContinuousStateDerivative", "InitialUnknown",
+                                        "EventIndicator"};
     const se3di_fmi_variables *v = w->d->variables;
-    const char *section = outputs ? "Outputs" : "InitialUnknowns";
+    const bool new = w->d->version == 3;
     bool is_open = false;
-    for (size_t k = 0; k < v->count; ++k) {
-        if (v->list[k].role == SE3DI_FMI_OUTPUT ||
-            (!outputs && v->list[k].role == SE3DI_FMI_CALCULATED)) {
-            if (!is_open && w->d->version == 2) {
-                put(w, "    <%s>\n", section);
-            }
-            is_open = true;
-            put_unknown(w, outputs, k);
+    for (size_t k = 0; k < v->count && (new || which != INDICATORS); ++k) {
+        if (!belongs(v->list[k].role, which)) {
+            continue;
         }
+        if (!is_open && !new) {
+            put(w, "    <%s>\n", lists[which]);
+        }
+        is_open = true;
+        if (new) {
+            put(w, "    <%s valueReference=\"%zu\"", names[which], k);
+        } else {
+            put(w, "      <Unknown index=\"%zu\"", k + 1);
+        }
+        put_dependencies(w, which, k);
+        put(w, "/>\n");
     }
-    if (is_open && w->d->version == 2) {
-        put(w, "    </%s>\n", section);
+    if (is_open && !new) {
+        put(w, "    </%s>\n", lists[which]);
     }
 }
 
 static void put_all(writer *w)
 {
     put_head(w);
+    put_kinds(w);
     put_units(w);
     put_log(w);
     put_experiment(w);
@@ -258,8 +344,9 @@ static void put_all(writer *w)
         put_variable(w, k);
     }
     put(w, "  </ModelVariables>\n  <ModelStructure>\n");
-    put_unknowns(w, true);
-    put_unknowns(w, false);
+    for (section which = OUTPUTS; which <= INDICATORS; ++which) {
+        put_unknowns(w, which);
+    }
     put(w, "  </ModelStructure>\n</fmiModelDescription>\n");
 }
 

@@ -10,6 +10,7 @@
 #include "io/document/document.h"
 #include "io/fmi/description.h"
 #include "io/fmi/recipe.h"
+#include "io/fmi/states.h"
 #include "io/fmi/variables.h"
 #include "io/fmi/zip.h"
 
@@ -250,6 +251,8 @@ static se3d_status add_model(packer *k)
 
 static void count(se3di_fmi_package *p, const se3di_fmi_variables *variables)
 {
+    p->states = variables->states;
+    memcpy(p->reason, variables->reason, sizeof p->reason);
     for (size_t k = 0; k < variables->count; ++k) {
         const se3di_fmi_role role = variables->list[k].role;
         p->inputs += role == SE3DI_FMI_INPUT;

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "io/fmi/variables.h"
 #include "se3d/io.h"
 
 typedef struct se3di_fmi_package {
@@ -14,6 +15,8 @@ typedef struct se3di_fmi_package {
     const char *object;                 /* path of the shared object */
     int version;                        /* of the standard: 2 or 3 */
     size_t inputs, parameters, outputs; /* how many there are; filled */
+    size_t states;                      /* of model exchange; filled. 0: none, as `reason` says */
+    char reason[SE3DI_FMI_REASON_SIZE];
 } se3di_fmi_package;
 
 /* Write the archive to a file that is open for writing.

@@ -8,7 +8,7 @@
  * knows beside it. When it is put back, elements get their values first: a value that changes ends
  * the step under way, which the snapshot has. Of a driver with a rate they also have where its
  * coordinate was when the rate was set: it goes on from there. */
-#include "io/fmi/unit.h"
+#include "io/fmi/exchange.h"
 
 #include <float.h>
 #include <math.h>
@@ -25,36 +25,12 @@
 #include "io/document/document.h"
 #include "io/fmi/before.h"
 #include "io/fmi/recipe.h"
+#include "io/fmi/states.h"
 
 enum { TEXT_SIZE = 1600, PATH_SIZE = 4096 };
 #define STEP_MIN 1e-15 /* s */
 
-struct se3di_fmi_unit {
-    se3di_iopool pool;
-    se3di_fmi_recipe recipe;
-    const char *path; /* of the model */
-    se3di_fmi_tell tell;
-    void *ctx;
-    se3d_model *model;
-    se3d_solver *solver; /* NULL: not started */
-    se3d_solver_stats stats;
-    se3di_sample sample; /* answers at the present state; of `model` */
-    se3di_fmi_variables variables;
-    double *values;   /* of inputs and parameters: [variables.count], where the caller */
-    bool *given;      /* has set them */
-    double *places;   /* pairs for each: when a rate was set, and the integral of it then */
-    bool model_stale; /* a parameter has changed, or the start is wanted again */
-    bool state_stale; /* an input has changed at the present time */
-    bool shows_all;   /* some output needs accelerations or multipliers */
-    se3di_fmi_mode mode;
-    size_t analysis;
-    double start, stop, tolerance; /* NaN: as in the file, none, as in the file */
-    double time;
-    char token[SE3DI_FMI_TOKEN_SIZE];
-};
-
-SE3DI_IO_FORMAT(2, 3)
-static bool fail(se3di_fmi_unit *u, const char *format, ...)
+bool se3di_fmi_fail(se3di_fmi_unit *u, const char *format, ...)
 {
     char text[TEXT_SIZE];
     va_list arguments;
@@ -62,28 +38,28 @@ static bool fail(se3di_fmi_unit *u, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     if (u->tell) {
-        u->tell(u->ctx, SE3D_LOG_ERROR, text);
+        u->tell(u->ctx, u->is_discarded ? SE3D_LOG_WARNING : SE3D_LOG_ERROR, text);
     }
     return false;
 }
 
 static bool fail_memory(se3di_fmi_unit *u)
 {
-    return fail(u, "out of memory");
+    return se3di_fmi_fail(u, "out of memory");
 }
 
 /* With the system's message, or the text of the status. */
-static bool fail_system(se3di_fmi_unit *u, const char *what, se3d_status status)
+bool se3di_fmi_fail_system(se3di_fmi_unit *u, const char *what, se3d_status status)
 {
     const char *why = u->model ? se3d_system_get_error(u->model->system) : "";
-    return fail(u, "%s: %s", what, why[0] ? why : se3d_status_get_text(status));
+    return se3di_fmi_fail(u, "%s: %s", what, why[0] ? why : se3d_status_get_text(status));
 }
 
 /* What the system tells; its failures are told by those who meet them. */
 static void forward(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     const se3di_fmi_unit *u = ctx;
-    if (kind != SE3D_LOG_FAILURE && u->tell) {
+    if (kind != SE3D_LOG_FAILURE && u->tell && !u->is_quiet) {
         u->tell(u->ctx, level, message);
     }
 }
@@ -98,13 +74,13 @@ static bool read_recipe(se3di_fmi_unit *u, const char *folder)
     const int used = snprintf(path, sizeof path, "%s/%s", folder, SE3DI_FMI_RECIPE_FILE);
     FILE *file = used > 0 && (size_t)used < sizeof path ? fopen(path, "rb") : NULL;
     if (!file) {
-        return fail(u, "%.1000s: cannot be opened; the unit needs its resources", path);
+        return se3di_fmi_fail(u, "%.1000s: cannot be opened; the unit needs its resources", path);
     }
     const se3d_status status = se3di_document_read(&u->pool, file, &text, &length);
     fclose(file);
     if (status < 0 || strlen(text) != length ||
         !se3di_fmi_recipe_read(&u->recipe, text, &u->pool)) {
-        return fail(u, "%.1000s: is not what the resources of this unit have", path);
+        return se3di_fmi_fail(u, "%.1000s: is not what the resources of this unit have", path);
     }
     const size_t size = strlen(folder) + strlen(u->recipe.model) + 2;
     char *model = se3di_iopool_alloc(&u->pool, size);
@@ -120,6 +96,7 @@ static bool read_recipe(se3di_fmi_unit *u, const char *folder)
 
 static void drop_model(se3di_fmi_unit *u)
 {
+    se3di_fmi_exchange_drop(u);
     if (u->model) {
         se3di_sample_destroy(&u->sample);
     }
@@ -173,7 +150,7 @@ static se3d_model *read_model(se3di_fmi_unit *u)
     if (!make_options(u, &pool, &options)) {
         fail_memory(u);
     } else if (SE3D_FAILED(se3d_model_read_file(u->path, &options, &model, &error))) {
-        fail(u, "%s", error.message);
+        se3di_fmi_fail(u, "%s", error.message);
     }
     se3di_iopool_destroy(&pool);
     return model;
@@ -194,7 +171,7 @@ static void take_model(se3di_fmi_unit *u, se3d_model *model)
 }
 
 /* The value of a variable that is not an output. */
-static double value_of(const se3di_fmi_unit *u, size_t k)
+double se3di_fmi_value_of(const se3di_fmi_unit *u, size_t k)
 {
     return u->given[k] ? u->values[k] : u->variables.list[k].start;
 }
@@ -214,8 +191,10 @@ static bool renew_model(se3di_fmi_unit *u)
     if (!alike) {
         se3di_fmi_variables_destroy(&variables);
         se3d_model_destroy(model);
-        return status < 0 ? fail(u, "%s", problem)
-                          : fail(u, "with these parameters the model has other variables than the "
+        return status < 0
+                   ? se3di_fmi_fail(u, "%s", problem)
+                   : se3di_fmi_fail(u,
+                                    "with these parameters the model has other variables than the "
                                     "description of the unit lists");
     }
     se3di_fmi_variables_destroy(&u->variables);
@@ -229,7 +208,7 @@ static bool renew_model(se3di_fmi_unit *u)
 
 static se3d_status apply_input(const se3di_fmi_unit *u, size_t k)
 {
-    return se3di_fmi_apply_input(u->model, &u->variables.list[k], value_of(u, k));
+    return se3di_fmi_apply_input(u->model, &u->variables.list[k], se3di_fmi_value_of(u, k));
 }
 
 /* The function of an input that is a rate; null: it is none. */
@@ -257,7 +236,7 @@ static se3d_status note_place(se3di_fmi_unit *u, size_t k)
 static se3d_status put_place(const se3di_fmi_unit *u, size_t k)
 {
     return se3di_fmi_put_place(u->model, rate_of(u, k), u->places[2 * k], u->places[2 * k + 1],
-                               value_of(u, k));
+                               se3di_fmi_value_of(u, k));
 }
 
 /* All inputs that were ever set. */
@@ -268,7 +247,7 @@ static bool apply_inputs(se3di_fmi_unit *u)
             se3d_status status = u->given[k] ? apply_input(u, k) : SE3D_OK;
             status = status < 0 ? status : note_place(u, k);
             if (status < 0) {
-                return fail_system(u, u->variables.list[k].name, status);
+                return se3di_fmi_fail_system(u, u->variables.list[k].name, status);
             }
         }
     }
@@ -284,7 +263,7 @@ static bool fail_run(se3di_fmi_unit *u, se3d_status status, const char *type)
     se3d_system_get_time(u->model->system, &now);
     snprintf(what, sizeof what, "the %.40s analysis failed at t = %.9g s", type, now);
     u->mode = SE3DI_FMI_FAILED;
-    return fail_system(u, what, status);
+    return se3di_fmi_fail_system(u, what, status);
 }
 
 /* The analyses before the one of the unit. */
@@ -319,7 +298,9 @@ static bool make_solver(se3di_fmi_unit *u)
     se3d_solver_destroy(u->solver);
     u->solver = NULL;
     se3d_status status = se3d_solver_create(u->model->system, &def, &u->solver);
-    status = status < 0 ? status : se3di_events_create(u->model, u->solver, NULL, NULL);
+    if (status >= 0 && !u->exchange) { /* else the caller looks for events */
+        status = se3di_events_create(u->model, u->solver, NULL, NULL);
+    }
     return status < 0 ? fail_run(u, status, entry->analysis.type) : true;
 }
 
@@ -349,10 +330,13 @@ static bool run_to(se3di_fmi_unit *u, double time)
 }
 
 /* The state at the start, or with the inputs as they are now. */
-static bool refresh(se3di_fmi_unit *u)
+bool se3di_fmi_refresh(se3di_fmi_unit *u)
 {
     if (u->model_stale && !renew_model(u)) {
         return false;
+    }
+    if (u->solver && u->exchange && u->exchange->coordinates) {
+        return se3di_fmi_exchange_update(u);
     }
     if (u->solver) {
         return !u->state_stale || run_to(u, u->time);
@@ -365,7 +349,7 @@ static bool refresh(se3di_fmi_unit *u)
     if (status < 0) {
         return fail_run(u, status, "first");
     }
-    return make_solver(u) && run_to(u, u->time);
+    return make_solver(u) && run_to(u, u->time) && (!u->exchange || se3di_fmi_exchange_begin(u));
 }
 
 /* ---- life -----------------------------------------------------------------------------------*/
@@ -393,15 +377,16 @@ static bool read_all(se3di_fmi_unit *u, const char *folder, const char *token)
         se3di_fmi_variables_create(model, &u->variables, problem, sizeof problem);
     take_model(u, model);
     if (status < 0) {
-        return fail(u, "%s", problem);
+        return se3di_fmi_fail(u, "%s", problem);
     }
     se3di_fmi_find_analysis(model, &u->analysis);
     se3di_fmi_make_token(model, &u->variables, u->token);
     if (token && strcmp(token, u->token) != 0) {
-        return fail(u,
-                    "the description has %.60s, the resources of the unit are of %s: they do not "
-                    "belong together",
-                    token, u->token);
+        return se3di_fmi_fail(
+            u,
+            "the description has %.60s, the resources of the unit are of %s: they do not "
+            "belong together",
+            token, u->token);
     }
     return begin_values(u);
 }
@@ -415,8 +400,8 @@ static void forget(se3di_fmi_unit *u)
     u->state_stale = false;
 }
 
-se3di_fmi_unit *se3di_fmi_unit_create(const char *folder, const char *token, se3di_fmi_tell tell,
-                                      void *ctx)
+se3di_fmi_unit *se3di_fmi_unit_create(const char *folder, const char *token, bool exchanges,
+                                      se3di_fmi_tell tell, void *ctx)
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, NULL);
@@ -429,7 +414,7 @@ se3di_fmi_unit *se3di_fmi_unit_create(const char *folder, const char *token, se3
     u->tell = tell;
     u->ctx = ctx;
     forget(u);
-    if (!read_all(u, folder, token)) {
+    if (!read_all(u, folder, token) || (exchanges && !se3di_fmi_exchange_create(u))) {
         se3di_fmi_unit_destroy(u);
         return NULL;
     }
@@ -457,27 +442,33 @@ double se3di_fmi_unit_get_time(const se3di_fmi_unit *unit)
     return unit->time;
 }
 
-static bool is_in(se3di_fmi_unit *u, unsigned modes, const char *call)
+bool se3di_fmi_is_in(se3di_fmi_unit *u, unsigned modes, const char *call)
 {
-    static const char *const names[SE3DI_FMI_MODES] = {
-        "before the initialization", "in the initialization",  "between steps", "after the end",
-        "after a failed step",       "after it was terminated"};
-    return modes >> u->mode & 1U || fail(u, "%s is not allowed %s", call, names[u->mode]);
+    static const char *const names[SE3DI_FMI_MODES] = {"before the initialization",
+                                                       "in the initialization",
+                                                       "between steps",
+                                                       "after the end",
+                                                       "in an event",
+                                                       "while time goes on",
+                                                       "after a failed step",
+                                                       "after it was terminated"};
+    u->is_discarded = false;
+    return modes >> u->mode & 1U || se3di_fmi_fail(u, "%s is not allowed %s", call, names[u->mode]);
 }
 
 bool se3di_fmi_unit_begin(se3di_fmi_unit *unit, double start, double stop, double tolerance)
 {
-    if (!is_in(unit, 1U << SE3DI_FMI_INSTANTIATED, "setting up the experiment")) {
+    if (!se3di_fmi_is_in(unit, 1U << SE3DI_FMI_INSTANTIATED, "setting up the experiment")) {
         return false;
     }
     if (isinf(start) || isinf(stop) || (!isnan(stop) && !isnan(start) && !(stop >= start))) {
-        return fail(unit,
-                    "the experiment is from %g s to %g s, the end must not be before the "
-                    "start, and both finite",
-                    start, stop);
+        return se3di_fmi_fail(unit,
+                              "the experiment is from %g s to %g s, the end must not be before the "
+                              "start, and both finite",
+                              start, stop);
     }
     if (!isnan(tolerance) && !(tolerance > 0.0 && tolerance <= DBL_MAX)) {
-        return fail(unit, "the tolerance is %g, must be finite and > 0", tolerance);
+        return se3di_fmi_fail(unit, "the tolerance is %g, must be finite and > 0", tolerance);
     }
     unit->start = start;
     unit->stop = stop;
@@ -488,7 +479,7 @@ bool se3di_fmi_unit_begin(se3di_fmi_unit *unit, double start, double stop, doubl
 
 bool se3di_fmi_unit_enter(se3di_fmi_unit *unit)
 {
-    if (!is_in(unit, 1U << SE3DI_FMI_INSTANTIATED, "entering the initialization")) {
+    if (!se3di_fmi_is_in(unit, 1U << SE3DI_FMI_INSTANTIATED, "entering the initialization")) {
         return false;
     }
     unit->mode = SE3DI_FMI_INITIALIZING;
@@ -497,11 +488,11 @@ bool se3di_fmi_unit_enter(se3di_fmi_unit *unit)
 
 bool se3di_fmi_unit_start(se3di_fmi_unit *unit)
 {
-    if (!is_in(unit, 1U << SE3DI_FMI_INITIALIZING, "ending the initialization")) {
+    if (!se3di_fmi_is_in(unit, 1U << SE3DI_FMI_INITIALIZING, "ending the initialization")) {
         return false;
     }
-    unit->mode = SE3DI_FMI_STEPPING;
-    if (!refresh(unit)) {
+    unit->mode = unit->exchange ? SE3DI_FMI_EVENT : SE3DI_FMI_STEPPING;
+    if (!se3di_fmi_refresh(unit)) {
         unit->mode = SE3DI_FMI_FAILED;
         return false;
     }
@@ -510,9 +501,10 @@ bool se3di_fmi_unit_start(se3di_fmi_unit *unit)
 
 bool se3di_fmi_unit_terminate(se3di_fmi_unit *unit)
 {
-    const unsigned modes =
-        1U << SE3DI_FMI_STEPPING | 1U << SE3DI_FMI_ENDED | 1U << SE3DI_FMI_FAILED;
-    if (!is_in(unit, modes, "terminating")) {
+    const unsigned modes = 1U << SE3DI_FMI_STEPPING | 1U << SE3DI_FMI_ENDED |
+                           1U << SE3DI_FMI_EVENT | 1U << SE3DI_FMI_CONTINUOUS |
+                           1U << SE3DI_FMI_FAILED;
+    if (!se3di_fmi_is_in(unit, modes, "terminating")) {
         return false;
     }
     unit->mode = SE3DI_FMI_TERMINATED;
@@ -534,24 +526,30 @@ bool se3di_fmi_unit_reset(se3di_fmi_unit *unit)
 
 /* ---- variables ------------------------------------------------------------------------------*/
 
-static bool get_output(se3di_fmi_unit *u, const se3di_fmi_variable *v, double *value)
+static bool get_output(se3di_fmi_unit *u, size_t reference, double *value)
 {
+    const se3di_fmi_variable *v = &u->variables.list[reference];
     const unsigned modes = ~(1U << SE3DI_FMI_INSTANTIATED);
     double numbers[4];
-    if (!is_in(u, modes, "getting an output")) {
+    if (!se3di_fmi_is_in(u, modes, "getting an output")) {
         return false;
     }
-    const bool runs = u->mode == SE3DI_FMI_INITIALIZING || u->mode == SE3DI_FMI_STEPPING;
-    if (runs && !refresh(u)) {
+    const unsigned runs = 1U << SE3DI_FMI_INITIALIZING | 1U << SE3DI_FMI_STEPPING |
+                          1U << SE3DI_FMI_EVENT | 1U << SE3DI_FMI_CONTINUOUS;
+    if ((runs >> u->mode & 1U) && !se3di_fmi_refresh(u)) {
         return false;
     }
     if (!u->solver) {
-        return fail(u, "%s: there is no state that it could be of", v->name);
+        return se3di_fmi_fail(u, "%s: there is no state that it could be of", v->name);
+    }
+    if (v->role != SE3DI_FMI_OUTPUT) {
+        return u->exchange ? se3di_fmi_exchange_get(u, v, reference, value)
+                           : se3di_fmi_fail(u, "%s is for model exchange", v->name);
     }
     const se3d_status status =
         se3di_channel_eval(&u->model->outputs[v->output].channels[v->channel], &u->sample, numbers);
     if (status < 0) {
-        return fail_system(u, v->name, status);
+        return se3di_fmi_fail_system(u, v->name, status);
     }
     *value = numbers[v->component];
     return true;
@@ -560,23 +558,24 @@ static bool get_output(se3di_fmi_unit *u, const se3di_fmi_variable *v, double *v
 static bool check_reference(se3di_fmi_unit *u, size_t reference)
 {
     return reference < u->variables.count ||
-           fail(u, "the value reference %zu is unknown: there are 0 to %zu", reference,
-                u->variables.count - 1);
+           se3di_fmi_fail(u, "the value reference %zu is unknown: there are 0 to %zu", reference,
+                          u->variables.count - 1);
 }
 
 bool se3di_fmi_unit_get(se3di_fmi_unit *unit, size_t reference, double *value)
 {
+    unit->is_discarded = false;
     if (!check_reference(unit, reference)) {
         return false;
     }
     const se3di_fmi_variable *v = &unit->variables.list[reference];
-    if (v->role == SE3DI_FMI_OUTPUT) {
-        return get_output(unit, v, value);
+    if (v->role >= SE3DI_FMI_OUTPUT) {
+        return get_output(unit, reference, value);
     }
     if (v->role == SE3DI_FMI_CALCULATED && unit->model_stale && !renew_model(unit)) {
         return false;
     }
-    *value = v->role == SE3DI_FMI_TIME ? unit->time : value_of(unit, reference);
+    *value = v->role == SE3DI_FMI_TIME ? unit->time : se3di_fmi_value_of(unit, reference);
     return true;
 }
 
@@ -588,23 +587,26 @@ static bool check_set(se3di_fmi_unit *u, size_t reference, double value)
     }
     const se3di_fmi_variable *v = &u->variables.list[reference];
     if (v->role != SE3DI_FMI_INPUT && v->role != SE3DI_FMI_PARAMETER) {
-        return fail(u, "%s cannot be set: it is %s", v->name,
-                    v->role == SE3DI_FMI_OUTPUT ? "an output"
-                    : v->role == SE3DI_FMI_TIME ? "the time"
-                                                : "calculated from other parameters");
+        return se3di_fmi_fail(u, "%s cannot be set: it is %s", v->name,
+                              v->role == SE3DI_FMI_OUTPUT  ? "an output"
+                              : v->role > SE3DI_FMI_OUTPUT ? "of the integration"
+                              : v->role == SE3DI_FMI_TIME  ? "the time"
+                                                           : "calculated from other parameters");
     }
     if (!isfinite(value)) {
-        return fail(u, "%s is set to %g, must be finite", v->name, value);
+        return se3di_fmi_fail(u, "%s is set to %g, must be finite", v->name, value);
     }
-    return v->role == SE3DI_FMI_PARAMETER
-               ? is_in(u, before, "setting a parameter")
-               : is_in(u, before | 1U << SE3DI_FMI_STEPPING, "setting an input");
+    if (v->role == SE3DI_FMI_PARAMETER) {
+        return se3di_fmi_is_in(u, before, "setting a parameter");
+    }
+    const unsigned steps = before | 1U << SE3DI_FMI_STEPPING | 1U << SE3DI_FMI_EVENT;
+    return se3di_fmi_is_in(u, v->jumps ? steps : steps | 1U << SE3DI_FMI_CONTINUOUS,
+                           "setting an input");
 }
 
-/* A number that was checked. */
-static bool set_one(se3di_fmi_unit *u, size_t k, double value)
+bool se3di_fmi_unit_force(se3di_fmi_unit *u, size_t k, double value)
 {
-    const double old = value_of(u, k);
+    const double old = se3di_fmi_value_of(u, k);
     const bool same = u->given[k] && memcmp(&old, &value, sizeof old) == 0;
     if (same) {
         return true;
@@ -622,7 +624,10 @@ static bool set_one(se3di_fmi_unit *u, size_t k, double value)
     se3d_status status = apply_input(u, k);
     status = status < 0 ? status : note_place(u, k);
     u->state_stale = true;
-    return status >= 0 || fail_system(u, u->variables.list[k].name, status);
+    if (u->exchange) {
+        u->exchange->is_stale = true;
+    }
+    return status >= 0 || se3di_fmi_fail_system(u, u->variables.list[k].name, status);
 }
 
 bool se3di_fmi_unit_set(se3di_fmi_unit *unit, const uint32_t *references, size_t count,
@@ -634,7 +639,7 @@ bool se3di_fmi_unit_set(se3di_fmi_unit *unit, const uint32_t *references, size_t
         }
     }
     for (size_t k = 0; k < count; ++k) {
-        if (!set_one(unit, references[k], values[k])) {
+        if (!se3di_fmi_unit_force(unit, references[k], values[k])) {
             return false;
         }
     }
@@ -645,37 +650,41 @@ bool se3di_fmi_unit_set(se3di_fmi_unit *unit, const uint32_t *references, size_t
 
 bool se3di_fmi_unit_step(se3di_fmi_unit *unit, double time, double h)
 {
-    if (!is_in(unit, 1U << SE3DI_FMI_STEPPING, "a step")) {
+    if (!se3di_fmi_is_in(unit, 1U << SE3DI_FMI_STEPPING, "a step")) {
         return false;
     }
     if (!isfinite(time) || !(h >= STEP_MIN) || !isfinite(time + h)) {
-        return fail(unit, "the step is from %g s by %g s, must be finite and at least %g s", time,
-                    h, STEP_MIN);
+        return se3di_fmi_fail(unit,
+                              "the step is from %g s by %g s, must be finite and at least %g s",
+                              time, h, STEP_MIN);
     }
     const double slack = 1e-9 * fmax(h, 1e-3 * fabs(time));
     if (!(fabs(time - unit->time) <= slack)) {
-        return fail(unit, "the step begins at t = %.17g s, but the unit is at t = %.17g s", time,
-                    unit->time);
+        return se3di_fmi_fail(unit,
+                              "the step begins at t = %.17g s, but the unit is at t = %.17g s",
+                              time, unit->time);
     }
     const double late = 1e-6 * h; /* of callers that add up steps */
     if (!isnan(unit->stop) && time + h > unit->stop + slack + late) {
-        return fail(unit, "the step goes to t = %.17g s, beyond the end of the experiment, %.17g s",
-                    time + h, unit->stop);
+        return se3di_fmi_fail(
+            unit, "the step goes to t = %.17g s, beyond the end of the experiment, %.17g s",
+            time + h, unit->stop);
     }
     if (!(time + h > unit->time)) {
-        return fail(unit, "the step of %g s is too short to be seen at t = %.17g s", h, time);
+        return se3di_fmi_fail(unit, "the step of %g s is too short to be seen at t = %.17g s", h,
+                              time);
     }
-    return refresh(unit) && (unit->mode != SE3DI_FMI_STEPPING || run_to(unit, time + h));
+    return se3di_fmi_refresh(unit) && (unit->mode != SE3DI_FMI_STEPPING || run_to(unit, time + h));
 }
 
 /* ---- states ---------------------------------------------------------------------------------*/
 
-static const uint64_t state_mark = UINT64_C(0x31756d6664336573); /* "se3dfmu1" */
+static const uint64_t state_mark = UINT64_C(0x32756d6664336573); /* "se3dfmu2" */
 
 /* What a state has beside system and solver. */
 typedef struct image {
     uint64_t mark, token;
-    int32_t mode, started, stale;
+    int32_t mode, started, stale, exchanges;
     double numbers[4]; /* start, stop, tolerance, time */
     size_t count, snapshot, solver;
 } image;
@@ -687,6 +696,7 @@ static void code_image(se3di_coder *c, image *i)
     se3di_code_int32(c, &i->mode);
     se3di_code_flag(c, &i->started);
     se3di_code_flag(c, &i->stale);
+    se3di_code_flag(c, &i->exchanges);
     se3di_code_numbers(c, i->numbers, 4);
     se3di_code_size(c, &i->count);
     se3di_code_size(c, &i->snapshot);
@@ -718,6 +728,7 @@ static se3d_status write_state(se3di_fmi_unit *u, const se3d_snapshot *snapshot,
                .mode = (int32_t)u->mode,
                .started = u->solver && !u->model_stale,
                .stale = u->state_stale,
+               .exchanges = u->exchange != NULL,
                .numbers = {u->start, u->stop, u->tolerance, u->time},
                .count = u->variables.count};
     se3di_coder c = {.out = bytes, .size = bytes ? *size : SIZE_MAX};
@@ -728,6 +739,10 @@ static se3d_status write_state(se3di_fmi_unit *u, const se3d_snapshot *snapshot,
     }
     code_image(&c, &i);
     code_values(&c, i.count, u->values, u->places, u->given);
+    if (u->exchange) {
+        se3di_code_numbers(&c, u->exchange->x, u->variables.states);
+        se3di_code_numbers(&c, u->exchange->signs, u->variables.indicators + u->variables.stops);
+    }
     uint64_t sum = bytes && c.at <= *size ? se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at) : 0;
     se3di_code_word(&c, &sum);
     const size_t whole = c.at + i.snapshot + i.solver;
@@ -748,11 +763,12 @@ static se3d_status write_state(se3di_fmi_unit *u, const se3d_snapshot *snapshot,
 bool se3di_fmi_unit_write(se3di_fmi_unit *unit, unsigned char *bytes, size_t *size)
 {
     se3d_snapshot *snapshot = NULL;
+    const se3d_snapshot *base = unit->exchange ? unit->exchange->base : NULL;
     se3d_status status =
-        unit->solver ? se3d_snapshot_create(unit->model->system, &snapshot) : SE3D_OK;
-    status = status < 0 ? status : write_state(unit, snapshot, bytes, size);
+        unit->solver && !base ? se3d_snapshot_create(unit->model->system, &snapshot) : SE3D_OK;
+    status = status < 0 ? status : write_state(unit, base ? base : snapshot, bytes, size);
     se3d_snapshot_destroy(snapshot);
-    return status < 0 ? fail_system(unit, "the state cannot be saved", status) : true;
+    return status < 0 ? se3di_fmi_fail_system(unit, "the state cannot be saved", status) : true;
 }
 
 /* Whether the parameters of a state are not those that the model has. */
@@ -775,7 +791,7 @@ static bool restore(se3di_fmi_unit *u, const image *i, const double *places,
     memcpy(u->places, places, 2 * i->count * sizeof *places);
     for (size_t k = 0; k < i->count; ++k) {
         if (rate_of(u, k).index1 && put_place(u, k) < 0) {
-            return fail(u, "%s cannot be put back", u->variables.list[k].name);
+            return se3di_fmi_fail(u, "%s cannot be put back", u->variables.list[k].name);
         }
     }
     if (!make_solver(u)) {
@@ -783,12 +799,15 @@ static bool restore(se3di_fmi_unit *u, const image *i, const double *places,
     }
     se3d_status status = se3d_snapshot_read(system, bytes, i->snapshot, &snapshot);
     status = status < 0 ? status : se3d_snapshot_restore(snapshot, system);
-    se3d_snapshot_destroy(snapshot);
     status = status < 0 ? status : se3d_solver_read(u->solver, bytes + i->snapshot, i->solver);
+    if (status >= 0 && u->exchange) {
+        return se3di_fmi_exchange_resume(u, snapshot, places + 2 * i->count);
+    }
+    se3d_snapshot_destroy(snapshot);
     se3d_solver_get_stats(u->solver, &u->stats);
     se3di_sample_renew(&u->sample, &u->stats);
     u->state_stale = i->stale != 0;
-    return status < 0 ? fail_system(u, "the state cannot be put back", status) : true;
+    return status < 0 ? se3di_fmi_fail_system(u, "the state cannot be put back", status) : true;
 }
 
 /* Inputs that a state does not have are as in the model. */
@@ -801,7 +820,7 @@ static bool put_values(se3di_fmi_unit *u, const double *values, const bool *give
         u->values[k] = values[k];
         if (!renew && was_given && !given[k] && u->variables.list[k].role == SE3DI_FMI_INPUT &&
             apply_input(u, k) < 0) {
-            return fail(u, "%s cannot be put back", u->variables.list[k].name);
+            return se3di_fmi_fail(u, "%s cannot be put back", u->variables.list[k].name);
         }
     }
     return (!renew || renew_model(u)) && apply_inputs(u);
@@ -834,17 +853,21 @@ bool se3di_fmi_unit_read(se3di_fmi_unit *unit, const unsigned char *bytes, size_
     se3di_iopool pool;
     code_image(&c, &i);
     if (c.failed || i.mark != state_mark || i.token != hash_of_token(unit) ||
-        i.count != unit->variables.count || i.mode < 0 || i.mode >= SE3DI_FMI_MODES) {
-        return fail(unit, "these bytes are not a state of this unit");
+        i.count != unit->variables.count || i.mode < 0 || i.mode >= SE3DI_FMI_MODES ||
+        (i.exchanges != 0) != (unit->exchange != NULL)) {
+        return se3di_fmi_fail(unit, "these bytes are not a state of this unit");
     }
+    const size_t more = unit->exchange ? se3di_fmi_exchange_count(unit) : 0;
     se3di_iopool_init(&pool, NULL);
-    double *values = se3di_iopool_array(&pool, i.count, 3 * sizeof *values); /* and the places */
+    /* and the places, and those of the exchange */
+    double *values = se3di_iopool_array(&pool, 3 * i.count + more, sizeof *values);
     bool *given = se3di_iopool_array(&pool, i.count, sizeof *given);
     bool good = values && given;
     if (!good) {
         fail_memory(unit);
     } else {
         code_values(&c, i.count, values, values + i.count, given);
+        se3di_code_numbers(&c, values + 3 * i.count, more);
         const uint64_t sum = c.at <= size ? se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at) : 0;
         uint64_t written = 0;
         se3di_code_word(&c, &written);
@@ -852,7 +875,7 @@ bool se3di_fmi_unit_read(se3di_fmi_unit *unit, const unsigned char *bytes, size_
         const size_t rest = c.at <= size ? size - c.at : 0;
         good = !c.failed && i.snapshot <= rest && i.solver == rest - i.snapshot;
         good = good ? take_state(unit, &i, values, given, bytes + c.at)
-                    : fail(unit, "these bytes are not a whole state of this unit");
+                    : se3di_fmi_fail(unit, "these bytes are not a whole state of this unit");
     }
     se3di_iopool_destroy(&pool);
     return good;

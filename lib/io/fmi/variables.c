@@ -42,21 +42,21 @@ double se3di_fmi_get_start(const se3d_model *model, size_t index)
     return time;
 }
 
-static se3d_status refuse(const collector *c, const char *name, const char *what)
+static se3d_status refuse(char *problem, size_t size, const char *name, const char *what)
 {
-    snprintf(c->problem, c->problem_size, "%.200s%s", name, what);
+    snprintf(problem, size, "%.200s%s", name, what);
     return SE3D_ERR_UNSUPPORTED;
 }
 
-/* Add a variable; one of that name may be there, if it is an output that is there twice. */
-static se3d_status add(collector *c, const se3di_fmi_variable *made)
+se3d_status se3di_fmi_variables_add(se3di_fmi_variables *variables, const se3di_fmi_variable *made,
+                                    char *problem, size_t problem_size)
 {
-    se3di_fmi_variables *v = c->v;
+    se3di_fmi_variables *v = variables;
     size_t index = 0;
     if (se3di_ionames_find(&v->names, made->name, &index)) {
         const bool same = made->role == SE3DI_FMI_OUTPUT && v->list[index].role == SE3DI_FMI_OUTPUT;
         return same ? SE3D_OK
-                    : refuse(c, made->name,
+                    : refuse(problem, problem_size, made->name,
                              ": two variables of the unit would have this name; rename an element "
                              "or a parameter");
     }
@@ -70,6 +70,11 @@ static se3d_status add(collector *c, const se3di_fmi_variable *made)
     v->list[v->count] = *made;
     v->list[v->count].name = name;
     return se3di_ionames_add(&v->names, &v->pool, name, v->count++) ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
+static se3d_status add(collector *c, const se3di_fmi_variable *made)
+{
+    return se3di_fmi_variables_add(c->v, made, c->problem, c->problem_size);
 }
 
 /* The unit of what an element is set to. */
@@ -109,6 +114,7 @@ static se3d_status add_inputs(collector *c)
                                              .start = e->value[i],
                                              .dimension = dimension_of(model, e),
                                              .has_unit = true,
+                                             .jumps = e->kind == SE3DI_ELEMENT_DRIVER,
                                              .element = k,
                                              .component = i});
             if (status < 0) {
@@ -215,24 +221,6 @@ se3d_status se3di_fmi_variables_list(se3d_model *model, se3di_fmi_variables *var
     status = status < 0 ? status : add_inputs(&c);
     status = status < 0 ? status : add_parameters(&c);
     return status < 0 ? status : add_outputs(&c);
-}
-
-se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *variables,
-                                       char *problem, size_t problem_size)
-{
-    const collector c = {model, variables, problem, problem_size};
-    size_t index = 0;
-    memset(variables, 0, sizeof *variables);
-    se3di_iopool_init(&variables->pool, &model->pool.allocator);
-    if (!se3di_fmi_find_analysis(model, &index)) {
-        return refuse(&c, model->file,
-                      ": the model has no analysis in which time passes; a unit needs dynamics, "
-                      "kinematics or inverse_dynamics");
-    }
-    if (model->particles) {
-        return refuse(&c, model->file, ": the model has particles, which a unit cannot have");
-    }
-    return se3di_fmi_variables_list(model, variables, problem, problem_size);
 }
 
 static se3d_status apply_load(const se3d_model *model, const se3di_fmi_variable *input, double to)
