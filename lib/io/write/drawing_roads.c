@@ -147,16 +147,16 @@ static double eval_height(const se3d_model *model, se3d_function f, double time,
 /* z at the time of the strip; NaN: there is no road. */
 static double get_height(const strip *s, const double at[2])
 {
-    double height = 0.0;
+    double height[4]; /* and its derivatives */
     if (s->owner->road.index1 == 0) {
         return 0.0;
     }
     if (s->owner->height.index1 > 0) {
         return eval_height(s->l->model, s->owner->height, s->time, at);
     }
-    return se3d_road_get_height(s->l->model->system, s->owner->road, at[0], at[1], &height) < 0
+    return se3d_road_get_height(s->l->model->system, s->owner->road, at[0], at[1], height) < 0
                ? (double)NAN
-               : height;
+               : height[0];
 }
 
 /* Heights along axis `a` at `fine` places, each at COARSE places across; and how they differ:
