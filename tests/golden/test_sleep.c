@@ -171,6 +171,65 @@ static void a_snapshot_knows_what_sleeps(void)
     scene_end(&p.s);
 }
 
+/* The ball hangs on a rod above the stack, is pulled ever harder, and falls when the rod breaks. */
+static double drop(pile *p, int sleep)
+{
+    se3d_joint_def rod = se3d_joint_def_default();
+    se3d_load_def load = se3d_load_def_default();
+    se3d_constraint made;
+    se3d_force force;
+    *p = pile_up(sleep, 0.9);
+    rod.body_i = scene_ground(&p->s);
+    rod.body_j = p->box[HIGH + 1];
+    rod.point_i[2] = 2.0;
+    rod.distance = 1.1;
+    rod.break_force = 0.6;
+    CHECK(se3d_joint_create_distance(p->s.system, &rod, &made) == SE3D_OK);
+    CHECK(se3d_function_create_expression(p->s.system, "-0.25*t", &load.function[2]) == SE3D_OK);
+    load.body = p->box[HIGH + 1];
+    CHECK(se3d_force_create_load(p->s.system, &load, &force) == SE3D_OK);
+    return (0.6 - 0.02 * G) / 0.25;
+}
+
+static void a_joint_that_breaks_wakes_what_its_load_falls_on(void)
+{
+    pile p, q;
+    double most = 0.0, v[3], w[3];
+    se3d_event_record record;
+    se3d_snapshot *snapshot = NULL;
+    const double when = drop(&p, 1); /* 1.615 s; it falls by 0.3 m */
+    CHECK_NEAR(drop(&q, 0), when, 0.0);
+    scene_run(&p.s, 1.6);
+    scene_run(&q.s, 1.6);
+    CHECK(count_still(&p) == HIGH + 1);
+    for (int k = 0; k < 300; ++k) { /* what breaks wakes all: those that are not hit sleep again */
+        const double t = 1.6 + STEP * (k + 1);
+        if (k == 100) {
+            CHECK(se3d_snapshot_create(p.s.system, &snapshot) == SE3D_OK);
+        }
+        scene_run(&p.s, t);
+        scene_run(&q.s, t);
+        CHECK(se3d_body_get_velocity(p.s.system, p.box[HIGH - 1], v) == SE3D_OK);
+        CHECK(se3d_body_get_velocity(q.s.system, q.box[HIGH - 1], w) == SE3D_OK);
+        most = fmax(most, fabs(v[2]));
+        CHECK_NEAR(v[2], w[2], 1e-3 + 0.02 * fabs(w[2]));
+    }
+    CHECK(se3d_solver_count_event_records(p.s.solver) == 1);
+    CHECK(se3d_solver_get_event_record(p.s.solver, 0, &record) == SE3D_OK);
+    CHECK_NEAR(record.time, when, 1.5 * STEP);
+    CHECK(most > 0.02);
+    CHECK(!(speed(&p, HIGH) > 0.0));
+    const uint64_t hash = se3d_system_hash(p.s.system);
+    CHECK(se3d_snapshot_restore(snapshot, p.s.system) == SE3D_OK);
+    for (int k = 100; k < 300; ++k) {
+        scene_run(&p.s, 1.6 + STEP * (k + 1));
+    }
+    CHECK(se3d_system_hash(p.s.system) == hash);
+    se3d_snapshot_destroy(snapshot);
+    scene_end(&p.s);
+    scene_end(&q.s);
+}
+
 int main(void)
 {
     RUN(what_rests_sleeps_and_is_where_it_is_without);
@@ -178,5 +237,6 @@ int main(void)
     RUN(what_is_set_wakes);
     RUN(what_loads_may_move_stays_awake);
     RUN(a_snapshot_knows_what_sleeps);
+    RUN(a_joint_that_breaks_wakes_what_its_load_falls_on);
     return check_finish();
 }
