@@ -22,25 +22,22 @@ if ! command -v npm >/dev/null 2>&1; then
     echo 'SKIPPED: no npm: no page was tested' >&2
     finish
 fi
+# Pages are opened at the end, in one browser: words of tests/viewer/page.js, one a line.
 opens() {
-    if command -v chromium >/dev/null 2>&1 && command -v node >/dev/null 2>&1; then
-        expect "$1 in Chromium" 0 node "$source/tests/viewer/page.js" "$2" "$3" "$4"
-        grep ' grains: ' "$dir/out" || true
-    else
-        echo "SKIPPED: no chromium or no node: the page of $1 was not opened" >&2
-    fi
+    printf '%s\n' "$@" -- >>"$dir/jobs"
 }
 expect 'a model is run first' 0 sh -c 'cd "$1" && "$0" view "$2" -q' "$program" "$dir" \
     "$source/examples/models/tsda_mass.yaml"
 holds 'its page is there' [ -s "$dir/results/tsda_mass/scene.html" ]
+brief=
 for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     model=${pair%:*}
     "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model"
     expect "$model" 0 "$program" view "$dir/$model"
     has "$dir/$model/scene.html" 'Copyright © 2010-20'
     [ "$(wc -c <"$dir/$model/scene.html")" -lt 1000000 ] || fail "$model is too large"
-    [ "$model" = pendulum ] || opens "$model" "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
-    [ "$model" = pendulum ] || [ -n "${SE3D_LONG:-}" ] || export SE3D_BRIEF=1 # keys and mouse once
+    [ "$model" = pendulum ] || opens $brief "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
+    [ "$model" = pendulum ] || [ -n "${SE3D_LONG:-}" ] || brief=brief # keys and mouse once
 done
 # 20 bodies over 10 s, more rows than a scene has samples: still exact, still small.
 {
@@ -58,23 +55,24 @@ size=$(wc -c <"$dir/twenty/scene.html")
 echo "20 bodies over 10 s: $size bytes"
 checks=$((checks + 1))
 [ "$size" -lt 1500000 ] || fail "20 bodies: $size bytes"
-opens '20 bodies' "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
+opens $brief "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
 # 10,000 grains, or 1,200 if there is not much time: some come late, some leave early.
 many=1200
 [ -z "${SE3D_LONG:-}" ] || many=10000
 "$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains"
 opens_grains() {
-    expect "$1" 0 "$program" view -q "$dir/grains"
-    opens "$1" "$dir/grains/scene.html" "$dir/grains/grains.csv" grains
+    expect "$1 grains" 0 "$program" view -q "$dir/grains" -o "$dir/$1.html"
+    cp "$dir/grains/grains.csv" "$dir/$1.csv"
+    opens $brief "$dir/$1.html" "$dir/$1.csv" grains
 }
-opens_grains 'few grains'
+opens_grains few
 awk -v many=$many 'BEGIN {
     print "time,id,radius,x,y,z,vx,vy,vz,wx,wy,wz"
     for (s = 0; s < 5; ++s) for (k = 0; k < many; ++k)
         if (!(s == 1 && k < 3) && !(s == 4 && k > many - 10))
             printf "%.17g,%d,0.006,%.17g,%.17g,%.17g,0,0,0,0,0,0\n", 0.15 * s, k + 7, 0.012 * (k % 25) + 0.01 * s, 0.012 * (int(k / 25) % 20), 0.012 * int(k / 500) - 0.002 * s
 }' >"$dir/grains/grains.csv"
-opens_grains 'very many grains'
+opens_grains many
 # Shapes of modes are in the page, and move in it.
 cat >"$dir/modes.yaml" <<'END_OF_YAML'
 se3d: 1
@@ -94,15 +92,21 @@ expect 'a run of modes' 0 "$program" run -q "$dir/modes.yaml" -o "$dir/modes"
 expect 'modes' 0 "$program" view -q "$dir/modes"
 has "$dir/modes/scene.html" '{"names":["mode","real","imag","frequency","damping","a.x",'
 if [ -n "${SE3D_LONG:-}" ]; then
-    opens 'modes' "$dir/modes/scene.html" modes "$dir/modes/modes.csv"
+    opens "$dir/modes/scene.html" modes "$dir/modes/modes.csv"
 fi
 # Of a suspension every joint is seen, of a hopper a third of the beads.
 for pair in suspension:joints hopper:beads; do
     model=${pair%:*}
     "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model" --duration 0.2
     expect "$model" 0 "$program" view -q "$dir/$model"
-    opens "$model" "$dir/$model/scene.html" "${pair#*:}" none
+    opens $brief "$dir/$model/scene.html" "${pair#*:}"
 done
+# Two runs in one page.
+expect 'another run' 0 "$program" run -q "$source/examples/models/tsda_mass.yaml" --set bodies.block.mass=3 -o "$dir/other"
+expect 'no second scene' 1 "$program" view -q "$dir/tsda_mass" --with "$dir/none"
+has "$dir/err" 'none/scene.glb: cannot be read'
+expect 'two runs' 0 "$program" view -q "$dir/tsda_mass" --with "$dir/other" -o "$dir/two.html"
+opens $brief "$dir/two.html" second "$dir/other/tsda_mass.csv" block
 # Khronos' own validator has nothing against the scenes.
 expect 'a kerb' 0 "$program" run -q "$source/examples/fsae/kerb.yaml" -o "$dir/kerb" --duration 0.1
 holds 'no scene of the kerb' [ -s "$dir/kerb/scene.glb" ]
@@ -124,7 +128,14 @@ else
     echo 'SKIPPED: no gltf-validator from npm: the scenes were not validated' >&2
 fi
 expect 'a scene alone' 0 sh -c 'mkdir "$2" && cp "$1/scene.glb" "$2" && "$0" view -q "$2"' "$program" "$dir/pendulum" "$dir/alone"
-opens 'a scene alone' "$dir/alone/scene.html" none none
+opens $brief "$dir/alone/scene.html" none
+if command -v chromium >/dev/null 2>&1 && command -v node >/dev/null 2>&1; then
+    tr '\n' '\0' <"$dir/jobs" >"$dir/words"
+    expect 'in Chromium' 0 xargs -0 -x node "$source/tests/viewer/page.js" <"$dir/words"
+    grep ' grains: ' "$dir/out" || true
+else
+    echo 'SKIPPED: no chromium or no node: the pages were not opened' >&2
+fi
 echo 'time,bar.position.x' >"$dir/alone/empty.csv"
 expect 'a CSV file without rows' 1 "$program" view "$dir/alone"
 has "$dir/err" 'has no rows'

@@ -8,10 +8,13 @@
 //     node page.js PAGE modes CSV                 shapes of the modes in CSV, of two bodies on springs
 //     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
 //     node page.js PAGE playground                the playground: edits, runs, plots, asks nobody
-// With SE3D_BRIEF in the environment without keys and mouse.
+//     node page.js PAGE second CSV BODY           two runs: BODY of the other one is where CSV says, as a ghost and beside
+// Several of these, with `--` between them, are opened one after the other in one browser. With the word `brief` before
+// PAGE without keys and mouse.
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), { spawn } = require("child_process");
-const [page, csv, body, picture] = process.argv.slice(2);
+const jobs = process.argv.slice(2).join("\n").split(/(?:^|\n)--(?:\n|$)/).filter((words) => words).map((words) => words.split("\n"));
+let page, csv, body, picture, brief;
 const profile = fs.mkdtempSync(path.join(os.tmpdir(), "se3d-"));
 const chromium = spawn(process.env.SE3D_CHROMIUM || "chromium", ["--headless", "--no-sandbox", "--disable-gpu",
   "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -151,13 +154,13 @@ const checkPicks = async () => {
   await evaluate("se3d.set({colour: '', labels: false, picked: null})");
 };
 const checkJoints = async () => {
-  for (const [width, height, dark] of process.env.SE3D_BRIEF ? [[480, 720, true]] : [[800, 450, false], [480, 720, true]]) {
+  for (const [width, height, dark] of brief ? [[480, 720, true]] : [[800, 450, false], [480, 720, true]]) {
     await call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
     await evaluate(`se3d.set({dark: ${dark}})`);
     await wait(300);
     check(!(await evaluate("se3d.clipped()")), `at ${width} x ${height} all is in the picture`);
     const least = Math.round(8 * Math.min(width, height) / 450);
-    for (const part of process.env.SE3D_BRIEF ? [0.3] : [0, 0.3, 0.62]) {
+    for (const part of brief ? [0.3] : [0, 0.3, 0.62]) {
       const seen = await evaluate(`se3d.seen(se3d.start + ${part} * (se3d.end - se3d.start))`);
       check(seen.length > 0, "there are joints");
       for (const [name, points] of seen) check(points >= least, `at ${width} x ${height}, ${part} of the motion: ${points} points of ${name}`);
@@ -167,7 +170,7 @@ const checkJoints = async () => {
   }
 };
 const checkBeads = async () => {
-  for (const part of process.env.SE3D_BRIEF ? [0.2] : [0, 0.2, 0.7]) {
+  for (const part of brief ? [0.2] : [0, 0.2, 0.7]) {
     const { there, seen } = await evaluate(`se3d.seenGrains(se3d.start + ${part} * (se3d.end - se3d.start))`);
     console.log(`${seen} of ${there} grains: seen`);
     check(there > 100 && 3 * seen >= there, `${seen} of ${there} grains are seen`);
@@ -377,11 +380,26 @@ const start = async () => {
   check(ready, "the page starts");
 };
 
-(async () => {
-  const { targetInfos } = await call("Target.getTargets");
-  const attached = await call("Target.attachToTarget", { targetId: targetInfos.find((t) => t.type === "page").targetId, flatten: true });
-  session = attached.sessionId;
-  for (const domain of ["Page", "Runtime", "Log", "Network"]) await call(domain + ".enable");
+// The other run moves as its own results say; beside, it is not where the first one is.
+const checkSecond = async ({ names, rows }, name) => {
+  const column = names.indexOf(name + ".position.x"), where = () => evaluate(`se3d.second(${JSON.stringify(name)})`), pictures = new Set();
+  for (const part of [0.2, 0.7]) {
+    const row = rows[Math.round(part * (rows.length - 1))];
+    await evaluate(`se3d.show(${row[0]})`);
+    check(apart(await where(), row.slice(column, column + 3)) < 1e-4, `the other run at t = ${row[0]}: ${await where()}`);
+  }
+  const [ghost, own] = [await where(), await evaluate(`se3d.position(${JSON.stringify(name)})`)];
+  check(apart(ghost, own) > 1e-3, "it is another one");
+  for (const state of ["beside", "off", "ghost"]) {
+    pictures.add(await evaluate("se3d.picture(se3d.state.time)"));
+    await key("g");
+    check((await evaluate("se3d.state.second")) === state, `g: ${state}`);
+    await evaluate("se3d.show(se3d.state.time)");
+    if (state === "beside") check(apart(await where(), ghost) > 0.03 && !(await evaluate("se3d.clipped()")), "it stands beside, in the picture");
+  }
+  check(pictures.size === 3, "as a ghost, beside and without it are three pictures");
+};
+const run = async () => {
   await call("Page.navigate", { url: page.startsWith("http:") ? page : "file://" + path.resolve(page) });
   await start();
   if (csv === "joints") {
@@ -392,6 +410,9 @@ const start = async () => {
     await checkLive(body);
   } else if (csv === "playground") {
     await checkPlayground();
+  } else if (csv === "second") {
+    await checkSecond(read(body), picture);
+    picture = undefined;
   } else if (csv === "beads") {
     await checkBeads();
   } else if (body === "grains") {
@@ -401,7 +422,7 @@ const start = async () => {
     await checkMotion(results);
     await checkSeen();
     await checkReactions(results);
-    if (!process.env.SE3D_BRIEF) {
+    if (!brief) {
       await checkKeys();
       await checkMouse();
       await checkPicks();
@@ -413,6 +434,23 @@ const start = async () => {
     fs.writeFileSync(picture, Buffer.from(shot.data, "base64"));
   }
   check(problems.length === 0, "no error on the console: " + problems.join("; "));
+};
+
+(async () => {
+  const { targetInfos } = await call("Target.getTargets");
+  const attached = await call("Target.attachToTarget", { targetId: targetInfos.find((t) => t.type === "page").targetId, flatten: true });
+  session = attached.sessionId;
+  for (const domain of ["Page", "Runtime", "Log", "Network"]) await call(domain + ".enable");
+  for (const words of jobs) {
+    brief = words[0] === "brief";
+    [page, csv, body, picture] = words.slice(brief ? 1 : 0);
+    const before = failures;
+    await call("Page.navigate", { url: "about:blank" });
+    await call("Emulation.clearDeviceMetricsOverride");
+    problems.length = 0;
+    await run();
+    if (failures > before) console.error(`that was ${page} ${csv}`);
+  }
 })().catch((e) => { console.error(e); ++failures; }).finally(() => {
   chromium.on("exit", async () => {
     end();

@@ -57,7 +57,7 @@ static const char **value_target(options *o, const char *name)
                  {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint},
                  {"--match", &o->match},       {"--kind", &o->kind},
                  {"--port", &o->port},         {"--title", &o->title},
-                 {"--hide", &o->hide}};
+                 {"--with", &o->with},         {"--hide", &o->hide}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;

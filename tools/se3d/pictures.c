@@ -64,7 +64,7 @@ static int make_scene(se3d_scene *scene, const char *folder, const char *path, i
     int code = EXIT_DONE;
     path_cut(path, ".glb", without, sizeof without);
     if (strlen(without) == strlen(path)) {
-        code = view_write("run", folder, path);
+        code = view_write("run", folder, NULL, path);
     } else if (!scene || SE3D_FAILED(se3d_scene_write(scene, path, &error))) {
         fprintf(stderr, "se3d run: %s\n", scene ? error.message : "out of memory");
         code = EXIT_FAILED;

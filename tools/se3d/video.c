@@ -306,7 +306,7 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     }
     snprintf(f->page, sizeof f->page, "%s/page.html", f->folder);
     snprintf(f->made, sizeof f->made, "%s/film.mp4", f->folder);
-    int good = view_write("video", results, f->page) == EXIT_DONE;
+    int good = view_write("video", results, NULL, f->page) == EXIT_DONE;
     if (good) {
         good = (devtools_open(&f->browser, chromium, f->folder, f->page) ||
                 fail("Chromium does not answer: ", chromium)) &&

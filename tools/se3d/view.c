@@ -107,6 +107,8 @@ typedef struct page {
     page_parts parts;
     char *glb;
     size_t glb_size;
+    char *other; /* the scene of another run; NULL: none */
+    size_t other_size;
     table results;                   /* empty: there are none */
     char particles[PATH_SIZE + 300]; /* file of snapshots; "": none */
     char modes[PATH_SIZE + 300];     /* "": none */
@@ -146,6 +148,10 @@ static int put_page(FILE *file, const page *p)
     int good = page_put_begin(file, &p->parts);
     fputs("<script type=\"text/plain\" id=\"glb\">", file);
     base64_put(file, p->glb, p->glb_size);
+    fputs("</script>\n<script type=\"text/plain\" id=\"other\">", file);
+    if (p->other) {
+        base64_put(file, p->other, p->other_size);
+    }
     fputs("</script>\n<script type=\"application/json\" id=\"results\">", file);
     good = good && put_table(file, &p->results);
     fputs("</script>\n<script type=\"application/json\" id=\"grains\">", file);
@@ -175,7 +181,22 @@ static int write_page(const page *p, const char *path)
     return EXIT_DONE;
 }
 
-int view_write(const char *command, const char *folder, const char *path)
+/* The scene of a folder. @return NULL, after a message: there is none. */
+static char *read_scene(const char *command, const char *folder, size_t *size)
+{
+    char name[PATH_SIZE + 300];
+    snprintf(name, sizeof name, "%.4000s/scene.glb", folder);
+    char *glb = page_read_whole(name, size);
+    if (glb && *size >= 28) {
+        return glb;
+    }
+    fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command, name,
+            folder);
+    free(glb);
+    return NULL;
+}
+
+int view_write(const char *command, const char *folder, const char *other, const char *path)
 {
     char name[PATH_SIZE + 300];
     page *p = calloc(1, sizeof *p);
@@ -183,11 +204,10 @@ int view_write(const char *command, const char *folder, const char *path)
     if (!p) {
         return EXIT_FAILED;
     }
-    snprintf(name, sizeof name, "%.4000s/scene.glb", folder);
-    p->glb = page_read_whole(name, &p->glb_size);
-    if (!p->glb || p->glb_size < 28) {
-        fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command,
-                name, folder);
+    p->glb = read_scene(command, folder, &p->glb_size);
+    p->other = p->glb && other ? read_scene(command, other, &p->other_size) : NULL;
+    if (!p->glb || (other && !p->other)) {
+        code = EXIT_FAILED;
     } else if (!find_results(folder, CHANNELS, name, sizeof name) ||
                table_read(&p->results, command, name)) {
         if (!find_results(folder, PARTICLES, p->particles, sizeof p->particles)) {
@@ -202,6 +222,7 @@ int view_write(const char *command, const char *folder, const char *path)
         page_end(&p->parts);
     }
     free(p->glb);
+    free(p->other);
     free(p);
     return code;
 }
@@ -221,7 +242,7 @@ static int command_view(int count, char *const *words)
         return code;
     }
     snprintf(path, sizeof path, "%.4000s/scene.html", folder);
-    code = view_write("view", folder, o.directory ? o.directory : path);
+    code = view_write("view", folder, o.with, o.directory ? o.directory : path);
     if (code == EXIT_DONE && !o.quiet) {
         printf("wrote %s\n", o.directory ? o.directory : path);
     }
@@ -240,13 +261,16 @@ const command_entry view_entry = {
             "results/<model>. Keys: space plays, arrows step, + "
             "and - change the speed, b follows a body, f shows frames, r reactions, t "
             "traces, d is for dark; drag turns, shift-drag moves, the wheel zooms.",
-    .options = (const command_option[]){{"--output", "-o", "FILE.html",
-                                         "where to (default: DIR/scene.html)"},
-                                        COMMAND_OPTION_QUIET,
-                                        {0}},
+    .options =
+        (const command_option[]){
+            {"--output", "-o", "FILE.html", "where to (default: DIR/scene.html)"},
+            {"--with", NULL, "DIR", "results of another run, as a ghost or beside (key g)"},
+            COMMAND_OPTION_QUIET,
+            {0}},
     .examples = (const command_example[]){{"view results/pendulum", "results/pendulum/scene.html"},
                                           {"view pendulum.yaml", "run, then show"},
                                           {"view results/pendulum -o page.html", "another file"},
+                                          {"view results/soft --with results/stiff", "two runs"},
                                           {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",
 };

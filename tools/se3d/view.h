@@ -4,7 +4,7 @@
 #define SE3D_TOOL_VIEW_H
 
 /* Write the page of a folder of results. @return the exit code, after a message if it failed. */
-int view_write(const char *command, const char *folder, const char *path);
+int view_write(const char *command, const char *folder, const char *other, const char *path);
 
 /* Read "AZIMUTH,ELEVATION" [degrees]; NULL: `view` stays. @return false after a message. */
 int view_read_angles(const char *command, const char *text, double view[2]);

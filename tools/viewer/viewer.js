@@ -4,10 +4,10 @@
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 let se3dRenderer = null, se3dSlow = 0; // one for all that is shown in this page; how slow pictures are
-// Shows a scene: `glb` with its motion, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
+// Shows a scene: `glb` with its motion, `other` (null: none) that of another run, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
 // file {names, rows} or null. With `live`
 // ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
-const se3dView = async ({ glb, results, packed, modes, live }) => {
+const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const $ = (id) => document.getElementById(id);
   const decode = se3dDecode;
   const closing = new AbortController();
@@ -54,8 +54,26 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     });
     action = mixer.clipAction(clip).play();
   }
+  // Another run: at the same place as a ghost, or beside with colours of its own.
+  const second = other ? await new THREE.GLTFLoader().parseAsync(other, "") : null;
+  let secondAction = null, secondRoot = null, secondBodies = new Map();
+  if (second) {
+    const all = await second.parser.getDependencies("node"), clip2 = second.animations[0], names = second.parser.json.nodes;
+    secondRoot = all[second.parser.json.scenes[0].nodes[0]];
+    secondRoot.quaternion.set(0, 0, 0, 1);
+    const pale = new THREE.MeshStandardMaterial({ color: 0x8896a4, transparent: true, opacity: 0.35, depthWrite: false, side: THREE.DoubleSide });
+    all.forEach((o, k) => {
+      if (o.userData.body !== undefined) secondBodies.set(names[k].name, o);
+      if (names[k].name === "grid" || names[k].name === "road") o.visible = false;
+      if (o.isMesh) { o.material.side = THREE.DoubleSide; Object.assign(o.userData, { own: o.material, pale }); }
+    });
+    if (clip2) {
+      clip2.tracks.forEach((track, k) => { track.name = all[second.parser.json.animations[0].channels[k].target.node].uuid + track.name.slice(track.name.lastIndexOf(".")); });
+      secondAction = { action: new THREE.AnimationMixer(secondRoot).clipAction(clip2).play(), first: clip2.tracks[0].times[0], last: clip2.duration };
+    }
+  }
   const grainTimes = packed && packed.times || [];
-  let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1));
+  let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1), secondAction ? secondAction.last : -Infinity);
   const qa = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
   const locate = (list, count, t) => {
     let low = 0, high = count - 1;
@@ -130,6 +148,9 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     if (!action) return;
     action.time = t;
     mixer.update(0);
+    if (!secondAction) return;
+    secondAction.action.time = Math.min(secondAction.last, Math.max(secondAction.first, t));
+    secondAction.action.getMixer().update(0);
   };
 
   // Results beside the motion.
@@ -153,6 +174,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6));
   const sun = new THREE.DirectionalLight(0xffffff, 2.2);
   scene.add(sun, sun.target);
+  if (secondRoot) scene.add(secondRoot);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
   camera.up.set(0, 0, 1);
   const renderer = se3dRenderer || (se3dRenderer = new THREE.WebGLRenderer({ canvas: $("view"), antialias: true, preserveDrawingBuffer: true }));
@@ -288,7 +310,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   if (packed && packed.box) { if (packed.box[0] !== null) { low.min(va.fromArray(packed.box)); high.max(va.fromArray(packed.box, 3)); } }
   else if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
   if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
-  const center = low.clone().add(high).multiplyScalar(0.5);
+  const center = low.clone().add(high).multiplyScalar(0.5), edge = high.clone();
   const size = Math.max(1e-6, high.distanceTo(low));
   // three.js's own controls move the camera; here in angles about what it looks at.
   const controls = new THREE.OrbitControls(camera, renderer.domElement);
@@ -399,7 +421,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     }
   };
 
-  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0 };
+  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0, second: "ghost" };
   reach = 0.08 * size;
   const axes = bodies.map((b) => { const a = new THREE.AxesHelper(0.15 * size); a.visible = false; b.add(a); return a; });
   // Reactions: arrows at the nodes named as joints.
@@ -614,6 +636,18 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       renderer.clippingPlanes = plane ? [plane] : [];
       if (grains) grains.cut = plane;
     }
+    if ("second" in change && secondRoot) {
+      // Beside: in the direction in which it is shorter.
+      const beside = state.second === "beside", way = edge.x - low.x < edge.y - low.y ? "x" : "y";
+      secondRoot.visible = state.second !== "off";
+      secondRoot.position.set(0, 0, 0);
+      high.copy(edge);
+      if (beside) { secondRoot.position[way] = 1.15 * (edge[way] - low[way]) + 4 * pin; high[way] += secondRoot.position[way]; }
+      secondRoot.traverse((o) => { if (o.isMesh) o.material = beside ? o.userData.own : o.userData.pale; });
+      center.copy(low).add(high).multiplyScalar(0.5);
+      if (!state.zoomed) { orbit.aim(center); fit(); }
+      $("second").textContent = state.second;
+    }
     if ("mode" in change) {
       if (shape) displace(shape, 0, 0);
       shape = shapes[state.mode - 1] || null;
@@ -627,6 +661,9 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
   $("mode").add(new Option("none", "0"));
   shapes.forEach((s, k) => $("mode").add(new Option(`${k + 1}: ` + (s.imag > 0 ? `${s.frequency.toPrecision(4)} Hz, damping ${s.damping.toPrecision(3)}` : `s = ${s.real.toPrecision(3)} 1/s`), String(k + 1))));
   $("mode").parentElement.style.display = shapes.length ? "" : "none";
+  $("second").style.display = secondRoot ? "" : "none";
+  const turnSecond = () => { set({ second: { ghost: "beside", beside: "off", off: "ghost" }[state.second] }); draw(); };
+  $("second").onclick = turnSecond;
   $("mode").onchange = () => { set({ mode: Number($("mode").value), phase: 0, playing: true }); draw(); };
   bodies.forEach((b, k) => { if (k > 0) $("follow").add(new Option(b.name, String(k))); });
   plots.quantities.forEach((q) => $("channel").add(new Option(q.name, q.name)));
@@ -648,6 +685,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     if (state.follow > 0) part.set("follow", bodies[state.follow].name);
     if (state.colour) part.set("colour", state.colour);
     if (state.mode) part.set("mode", String(state.mode));
+    if (secondRoot) part.set("second", state.second);
     if (state.picked) part.set("picked", state.picked.element !== undefined ? elements[state.picked.element].name : bodies[state.picked.body].name);
     location.hash = part.toString();
     return location.href;
@@ -666,6 +704,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     const follow = bodies.findIndex((b) => b.name === part.get("follow"));
     if (follow > 0) change.follow = follow;
     if (Number(part.get("mode")) > 0 && Number(part.get("mode")) <= shapes.length) change.mode = Math.floor(Number(part.get("mode")));
+    if (["ghost", "beside", "off"].includes(part.get("second"))) change.second = part.get("second");
     if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
     const element = elements.findIndex((e) => e.name === part.get("picked")), body = bodies.findIndex((b) => b.name === part.get("picked"));
     if (element >= 0) change.picked = { element }; else if (body >= 0) change.picked = { body };
@@ -690,6 +729,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
       "+": () => set({ speed: Math.min(8, state.speed * 2) }), "-": () => set({ speed: Math.max(0.125, state.speed / 2) }),
       f: () => set({ frames: !state.frames }), r: () => set({ reactions: !state.reactions }), t: () => set({ traces: !state.traces }),
       d: () => set({ dark: !state.dark }), x: () => set({ solid: !state.solid }), l: () => set({ labels: !state.labels }),
+      g: () => secondRoot && turnSecond(),
       c: () => set({ cut: (state.cut + 1) % 4 }), "?": () => set({ help: !state.help }), h: () => set({ help: !state.help }),
       Escape: () => set({ help: false, picked: null }), 0: () => { orbit.aim(center); state.zoomed = false; fit(); },
       b: () => { set({ follow: state.follow < 0 ? Math.min(1, bodies.length - 1) : state.follow + 1 < bodies.length ? state.follow + 1 : -1 }); },
@@ -724,7 +764,8 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     orbit.azimuth = around.reduce((a, b) => (b[0] < a[0] ? b : a))[1];
     fit();
   }
-  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, ...recall() });
+  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost" });
+  set(recall());
   see();
   // Live: whether there is another picture than the last one.
   let fresh = true, last = "";
@@ -900,6 +941,7 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
     // Mode k from 1 at a phase, in turns.
     mode: (k, turns) => { set({ mode: k, phase: turns, playing: false }); draw(); },
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
+    second: (name) => secondBodies.get(name).getWorldPosition(new THREE.Vector3()).toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
   };
   return { feed, close, share, hold: (what) => { held = what; } };
@@ -907,6 +949,6 @@ const se3dView = async ({ glb, results, packed, modes, live }) => {
 if (document.getElementById("glb")) {
   Promise.resolve(window.se3dReady).then(() => {
     const text = (id) => document.getElementById(id).textContent, results = JSON.parse(text("results"));
-    return se3dView({ glb: se3dDecode(text("glb").trim()), results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
+    return se3dView({ glb: se3dDecode(text("glb").trim()), other: text("other") ? se3dDecode(text("other")) : null, results: { ...results, values: new Float32Array(se3dDecode(results.data)) }, packed: JSON.parse(text("grains")), modes: JSON.parse(text("modes")), live: null });
   }).catch((e) => { window.se3dProblem = String(e.message); throw e; });
 }
