@@ -12,6 +12,7 @@
 #include "particles/clump.h"
 #include "particles/draw.h"
 #include "particles/piece.h"
+#include "particles/share.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -41,6 +42,9 @@ static size_t gather(se3di_particles *set, const se3di_source *source)
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_particle *g = &set->particles[k];
         double d[3], away = -HUGE_VAL;
+        if (se3di_share_is_ghost(set, k)) {
+            continue; /* its owner looks */
+        }
         for (int a = 0; a < 3; ++a) {
             d[a] = g->x[a] - 0.5 * (source->region.lower[a] + source->region.upper[a]);
         }
@@ -67,6 +71,15 @@ static int has_room(const se3di_particles *set, const double x[3], double radius
             return 0;
         }
     }
+    for (size_t k = 0; se3di_share_is_spread(set) && k < set->share->fresh_count; ++k) {
+        const double *other = set->share->fresh[k];
+        double d[3];
+        se3di_sub(other, x, d);
+        se3di_particles_wrap(set, d);
+        if (se3di_dot(d, d) < (other[3] + radius) * (other[3] + radius)) {
+            return 0;
+        }
+    }
     for (size_t k = 0; k < set->wall_count; ++k) {
         double image[3];
         se3di_particles_image(set, &set->walls[k], x, radius, image);
@@ -90,13 +103,20 @@ static int is_free(const se3di_particles *set, const se3di_piece *piece, size_t 
     return 1;
 }
 
-static int find_place(const se3di_particles *set, se3di_source *source, size_t near,
-                      se3di_piece *piece)
+/* In all processes. */
+static int is_free_for_all(se3di_particles *set, const se3di_piece *piece, size_t near)
+{
+    double taken = !is_free(set, piece, near);
+    se3di_share_largest(set, 1, &taken);
+    return !(taken > 0.0);
+}
+
+static int find_place(se3di_particles *set, se3di_source *source, size_t near, se3di_piece *piece)
 {
     for (int try = 0; try < TRIES; ++try) {
         se3di_region_draw(&source->region, piece->radius, &source->seed, piece->x);
         if (se3di_region_holds(&source->region, piece->x, piece->radius) &&
-            is_free(set, piece, near)) {
+            is_free_for_all(set, piece, near)) {
             return 1;
         }
     }
@@ -168,10 +188,14 @@ static se3d_status insert(se3di_particles *set, se3di_source *source, double h)
         source->next = 0.0;
         source->waiting = 0;
         ++source->inserted;
+        const int spread = se3di_share_is_spread(set);
+        if (spread) {
+            set->share->insert(set);
+        }
         if (set->capacity != capacity) { /* order[] is a new one */
             capacity = set->capacity;
             near = gather(set, source);
-        } else {
+        } else if (!spread) {
             for (size_t k = spheres; k > 0; --k) {
                 set->order[near++] = (uint32_t)(set->count - k);
             }

@@ -209,9 +209,10 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
     set->spins[k] = (se3di_spin){.material = (uint16_t)material, .id = id};
     memcpy(set->spins[k].w, w ? w : rest, sizeof set->spins[k].w);
     set->index_of[id] = (uint32_t)k;
+    const int first = id == 0 && !(se3di_share_is_spread(set) && set->share->ids > 0);
     for (int a = 0; a < 3; ++a) {
-        set->home_low[a] = id == 0 ? x[a] : fmin(set->home_low[a], x[a]);
-        set->home_high[a] = id == 0 ? x[a] : fmax(set->home_high[a], x[a]);
+        set->home_low[a] = first ? x[a] : fmin(set->home_low[a], x[a]);
+        set->home_high[a] = first ? x[a] : fmax(set->home_high[a], x[a]);
     }
     set->force_valid = 0;
     return id;

@@ -16,8 +16,11 @@ typedef struct se3di_share {
     uint32_t owned;                  /* own particles have the ids below this, ghosts the others */
     const uint32_t *number;          /* [id] their ids in the whole */
     uint64_t total;                  /* own particles of all processes */
+    size_t ids;                      /* of the whole so far */
     double *sums;                    /* [slabs most * walls * 6 * SE3DI_EXACT_PARTS] */
     double steps[SE3DI_EXACT_PARTS]; /* 3/2 2^52 times what the parts are multiples of */
+    double (*fresh)[4]; /* [fresh_count] places and radii of what sources have inserted */
+    size_t fresh_count; /* since lists were made; all processes know of it */
     void *ctx;
     /* A run begins: lists are made anew, and what is not carried is refused; *why says what. */
     se3d_status (*spread)(se3di_particles *set, const char **why);
@@ -27,9 +30,13 @@ typedef struct se3di_share {
     void (*migrate)(se3di_particles *set);
     /* Ghosts as far as `reach` from the places of the own ones, and the history. */
     void (*border)(se3di_particles *set, double reach);
+    /* Of the particle that a source has just appended, which is taken out again: it is its owner's
+     * when lists are made. */
+    void (*insert)(se3di_particles *set);
     void (*renew)(se3di_particles *set); /* places and velocities of ghosts */
-    void (*largest)(se3di_particles *set, size_t count, double *values); /* of all processes */
-    void (*add)(se3di_particles *set, size_t count, double *values);     /* without rounding */
+    void (*largest)(const se3di_particles *set, size_t count,
+                    double *values);                                       /* of all processes */
+    void (*add)(const se3di_particles *set, size_t count, double *values); /* without rounding */
     /* The worst status of all, and what it is about. */
     se3d_status (*agree)(se3di_particles *set, se3d_status status);
     void (*give_up)(se3di_particles *set, const char *why); /* ends all processes */
@@ -61,7 +68,7 @@ static inline size_t se3di_share_total(const se3di_particles *set)
 }
 
 /* The largest values of all processes; NaN if one is NaN. */
-static inline void se3di_share_largest(se3di_particles *set, size_t count, double *values)
+static inline void se3di_share_largest(const se3di_particles *set, size_t count, double *values)
 {
     if (se3di_share_is_spread(set)) {
         set->share->largest(set, count, values);

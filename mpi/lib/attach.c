@@ -33,6 +33,8 @@ static void destroy(team *t)
     free(t->touches);
     free(t->table);
     free(t->removed);
+    free(t->arrivals);
+    free(t->share.fresh);
     free(t->share.sums);
     free(t);
 }
@@ -71,6 +73,7 @@ static team *create(int rank, int size)
                              .gather = team_gather,
                              .migrate = team_migrate,
                              .border = team_border,
+                             .insert = team_insert,
                              .renew = team_renew,
                              .largest = team_largest,
                              .add = team_add,

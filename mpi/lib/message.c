@@ -125,7 +125,7 @@ void team_collect(team *t, const bytes *own)
     t->stats.waited += MPI_Wtime() - begun;
 }
 
-void team_largest(se3di_particles *set, size_t count, double *values)
+void team_largest(const se3di_particles *set, size_t count, double *values)
 {
     team *t = team_of(set);
     const double begun = MPI_Wtime();
@@ -136,7 +136,7 @@ void team_largest(se3di_particles *set, size_t count, double *values)
     t->stats.waited += MPI_Wtime() - begun;
 }
 
-void team_add(se3di_particles *set, size_t count, double *values)
+void team_add(const se3di_particles *set, size_t count, double *values)
 {
     team *t = team_of(set);
     const double begun = MPI_Wtime();

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "particles/list.h"
+#include "particles/wall.h"
 #include "team.h"
 
 /* What a message to one process consists of. */
@@ -189,11 +190,38 @@ static void unpack(se3di_particles *set)
     reserve(set, set->count);
 }
 
+void team_insert(se3di_particles *set)
+{
+    team *t = team_of(set);
+    const size_t k = set->count - 1;
+    mover m = {(uint32_t)t->share.ids++, 0, set->particles[k], set->spins[k]};
+    set->count = set->id_count = k;
+    se3di_particles_come_home(set, m.particle.x);
+    team_reserve(t, &t->share.fresh, &t->fresh_capacity, t->share.fresh_count + 1,
+                 sizeof *t->share.fresh);
+    double *fresh = t->share.fresh[t->share.fresh_count++];
+    memcpy(fresh, m.particle.x, sizeof m.particle.x);
+    fresh[3] = m.particle.radius;
+    if (boxes_find(&t->boxes, m.particle.x) == t->rank) {
+        team_reserve(t, &t->arrivals, &t->arrival_capacity, t->arrival_count + 1,
+                     sizeof *t->arrivals);
+        t->arrivals[t->arrival_count++] = m;
+    }
+}
+
+static void pack_arrivals(team *t, parcels *p)
+{
+    bytes_put(t, &p->movers[t->rank], t->arrivals, t->arrival_count * sizeof *t->arrivals);
+    t->arrival_count = t->share.fresh_count = 0;
+}
+
 void team_migrate(se3di_particles *set)
 {
     team *t = team_of(set);
     parcels p = make_parcels(t);
+    t->peer_count = 0;
     pack_movers(set, &p);
+    pack_arrivals(t, &p);
     pack_histories(set, &p);
     pack_touches(set, &p);
     join(t, &p);

@@ -62,7 +62,9 @@ typedef struct team {
     size_t table_size;
     int32_t from_whole; /* all have all: nothing need be sent */
     int32_t reserved;
-    size_t ids; /* of the whole */
+    size_t ids;      /* of the whole */
+    mover *arrivals; /* of `fresh`, those that are this process's */
+    size_t arrival_count, arrival_capacity, fresh_capacity;
     uint64_t lost, lost_of[SE3D_PARTICLES_TAGS];
     uint64_t *removed; /* [sinks] as the last three, when the run began */
     size_t sum_capacity, removed_capacity;
@@ -78,14 +80,15 @@ void bytes_put(const team *t, bytes *to, const void *data, size_t size);
 void team_exchange(team *t); /* team.to -> team.came */
 /* What all have, one after the other. */
 void team_collect(team *t, const bytes *own);
-void team_largest(se3di_particles *set, size_t count, double *values);
-void team_add(se3di_particles *set, size_t count, double *values);
+void team_largest(const se3di_particles *set, size_t count, double *values);
+void team_add(const se3di_particles *set, size_t count, double *values);
 void team_add_counts(team *t, uint64_t *counts, int count);
 se3d_status team_agree(se3di_particles *set, se3d_status status);
 void team_renew(se3di_particles *set);
 
 /* migrate.c */
 void team_migrate(se3di_particles *set);
+void team_insert(se3di_particles *set);
 void team_border(se3di_particles *set, double reach);
 
 /* whole.c */

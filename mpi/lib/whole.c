@@ -33,7 +33,6 @@ typedef struct whole {
 static const char *refusal(const se3di_particles *set)
 {
     return set->clump_count > 0 || set->template_count > 0 ? "cannot be clumps"
-           : set->source_count > 0                         ? "cannot have sources"
            : set->flow_count > 0                           ? "cannot be counted by flows"
            : set->cell.count > 0                           ? "cannot be in a cell that strains"
            : set->law == SE3DI_LAW_CALLBACK ? "cannot have a law of contact of the user's own"
@@ -162,13 +161,14 @@ static void restore_loads(se3di_particles *set, se3di_load *loads)
 static void number_all(se3di_particles *set)
 {
     team *t = team_of(set);
-    t->ids = set->id_count;
-    team_reserve(t, &t->number, &t->number_capacity, t->ids + 1, sizeof *t->number);
-    for (size_t id = 0; id < t->ids; ++id) {
+    t->share.ids = set->id_count;
+    team_reserve(t, &t->number, &t->number_capacity, t->share.ids + 1, sizeof *t->number);
+    for (size_t id = 0; id < t->share.ids; ++id) {
         t->number[id] = (uint32_t)id;
     }
     t->share.number = t->number;
     t->share.owned = SE3DI_NO_INDEX;
+    t->share.fresh_count = t->arrival_count = 0;
     t->share.total = set->count;
 }
 
@@ -371,16 +371,16 @@ static void fill_particles(se3di_particles *set, const whole *w)
     set->list_valid = 0;
     set->count = set->id_count = set->carry_count = set->mesh_old_count = 0;
     if (se3di_particles_reserve(set, count) < 0 ||
-        se3di_particles_grow(set, &set->index_of, &set->index_capacity, t->ids) < 0) {
+        se3di_particles_grow(set, &set->index_of, &set->index_capacity, t->share.ids) < 0) {
         team_fail(t, "particles", "memory is missing");
     }
-    if (t->ids > 0) {
-        memset(set->index_of, 0xff, t->ids * sizeof *set->index_of); /* SE3DI_NO_INDEX */
+    if (t->share.ids > 0) {
+        memset(set->index_of, 0xff, t->share.ids * sizeof *set->index_of); /* SE3DI_NO_INDEX */
     }
     for (size_t k = 0; k < count; ++k) {
         set->index_of[w->particles[k].mover.number] = (uint32_t)k;
     }
-    for (size_t id = 0; id < t->ids; ++id) {
+    for (size_t id = 0; id < t->share.ids; ++id) {
         const uint32_t from = set->index_of[id];
         if (from != SE3DI_NO_INDEX) {
             const size_t k = set->count++;
@@ -390,7 +390,7 @@ static void fill_particles(se3di_particles *set, const whole *w)
             set->index_of[id] = (uint32_t)k;
         }
     }
-    set->id_count = t->ids;
+    set->id_count = t->share.ids;
 }
 
 static int compare_histories(const void *a, const void *b)
