@@ -20,7 +20,7 @@ def theta(t):
 
 
 def start():
-    """Euler parameters of the bar at t = 0: its x along the bar, its z along -x of the ground."""
+    """Euler parameters of the bar at t = 0: its x along the bar, its z along x of the ground."""
     a = theta(0.0)[0]
     x, z = (0.0, math.sin(a), -math.cos(a)), (1.0, 0.0, 0.0)
     y = (z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0])
@@ -104,7 +104,7 @@ def mistakes():
         model = matlab()
         model["constraints"][0].update(values)
         return model
-    refused("must be DP1, DP2, D or CD", change(type="cons_dp3"))
+    refused("must be DP1, DP2, D, CD or a joint", change(type="cons_dp3"))
     refused("no body 7", change(body1=7))
     refused("one body and itself", change(body2=1))
     refused("c must be 3 numbers", change(c=[1, 0]))
@@ -161,7 +161,65 @@ def forces():
         tool.near("the torque against forces", abs(table["drive.torque.x"][n]), abs(needed), 1e-6)
 
 
+def markers(flipped):
+    """The same pendulum on a joint of two markers, which the function drives; the second may look the other way."""
+    r, p = start()
+    J = [MASS / 6 * WIDTH ** 2] + 2 * [MASS / 12 * ((2 * L) ** 2 + WIDTH ** 2)]
+    z, sign = (-1, "-") if flipped else (1, "")
+    model = {"name": "markers", "gravity": [0, 0, -9.81],
+             "bodies": [{"name": "bar", "id": 1, "mass": MASS, "CG": [0, 0, 0], "MOI": J, "q0": r + p, "qd0": [0] * 7,
+                         "points": [[0, 0, 0]]}],
+             "constraints": [{"name": "Rev", "id": 1, "type": "Revolute", "body1": 0, "body2": 1,
+                              "marker1": [{"P": [0, 0, 0], "Q": [1, 0, 0], "R": [0, 0, -1]}],
+                              "marker2": [{"P": [-L, 0, 0], "Q": [-L, 0, z], "R": [0, 0, 0]}],
+                              "fun": sign + "pi()/4*cos(2*t)"}],
+             "forces": [{"name": "push", "type": "PointForce", "body1": 1, "sP1": [L, 0, 0], "frame": "GRF",
+                         "funX": "0", "funY": "3*t", "funZ": "0"}],
+             "simulation": [{"Type": "Dynamics", "tend": 2, "outputSteps": 8}]}
+    text, notes = tool.convert(write("markers.mdl", model))
+    tool.check(not notes, f"markers: notes are {notes}")
+    tool.check("duration: 2" in text and "every: 0.25" in text, f"markers: {text}")
+    analysis = ("analysis: {type: inverse_dynamics, duration: 2, step: 0.25}\n"
+                "output: [{file: results.csv, every: 0.25, channels: [bar.position, Rev_driver.effort]}]\n")
+    table = tool.run("me751_markers", tool.replace_analysis(text, analysis))
+    about = MASS * L ** 2 + MASS / 12 * ((2 * L) ** 2 + WIDTH ** 2)
+    for k, t in enumerate(table["time"]):
+        a, _, acc = theta(t)
+        tool.near("y of markers", table["bar.position.y"][k], L * math.sin(a), 1e-9)
+        tool.near("z of markers", table["bar.position.z"][k], -L * math.cos(a), 1e-9)
+        needed = about * acc + MASS * 9.81 * L * math.sin(a) - 2 * L * math.cos(a) * 3 * t
+        tool.near("the effort", table["Rev_driver.effort"][k], needed, 1e-6)
+    return model
+
+
+def joints():
+    """Joints of each kind, and what is wrong with markers."""
+    model = markers(False)
+    for kind, made in (("Spherical", "spherical"), ("Translational", "prismatic"), ("cylindrical", "cylindrical"),
+                       ("Fixed", "fixed")):
+        for one in (model["constraints"][0],):
+            one.update(type=kind, fun="None")
+        text, _ = tool.convert(write("kinds.mdl", model))
+        tool.check(f"type: {made}," in text, f"{kind}: {text}")
+    model["constraints"][0].update(type="Spherical", fun="t")
+    _, notes = tool.convert(write("kinds.mdl", model), code=1)
+    tool.check(["one of several" in n["message"] for n in notes] == [True], f"a driven ball: {notes}")
+    model["constraints"][0].update(type="Revolute", fun="q(1)")
+    _, notes = tool.convert(write("kinds.mdl", model), code=1)
+    tool.check(["nothing drives" in n["message"] for n in notes] == [True], f"a strange function: {notes}")
+    model["constraints"][0].update(fun="None")
+    model["bodies"][0]["CG"] = [0, 1, 0]
+    _, notes = tool.convert(write("kinds.mdl", model), code=1)
+    tool.check(["centre of mass" in n["message"] for n in notes] == [True], f"a centre: {notes}")
+    model["constraints"][0]["marker2"] = {"P": [0, 0, 0], "Q": [1, 0, 0], "R": [2, 0, 0]}
+    refused("three points not in one line", model)
+    del model["constraints"][0]["marker2"]
+    refused("no `marker2` of P, Q and R", model)
+
+
 def main():
+    markers(True)
+    joints()
     pendulum("matlab.mdl", matlab())
     pendulum("python.adm", python())
     mistakes()

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Models of the course ME751 (Wisconsin), whose programs, each called simEngine3D, read bodies and
- * primitive constraints from a file in JSON. There is no document of it, and each program has its
- * own names for the same members: all are known here that stand in one of the tables below. d runs
- * from the point of body i to that of body j, and D has the square of the distance, as ours. */
+/* Models of the course ME751 (Wisconsin), whose programs, each called simEngine3D, read bodies,
+ * primitive constraints and joints of markers from a file in JSON. There is no document of it, and
+ * each program has its own names for the same members: all are known here that stand in one of the
+ * tables below. d runs from the point of body i to that of body j, and D has the square of the
+ * distance, as ours. */
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ typedef struct member {
 
 static const member id_names = {{"id"}};
 static const member mass_names = {{"mass", "m"}};
-static const member inertia_names = {{"jbar", "j", "inertia"}};
+static const member inertia_names = {{"jbar", "j", "inertia", "moi"}};
 static const member state_names = {{"q0", "q", "qxyze0e1e2e3"}};
 static const member rate_names = {{"qd0", "qd", "qdot"}};
 static const member position_names = {{"r", "r0", "position"}};
@@ -29,10 +30,11 @@ static const member turn_names = {{"p", "p0", "eulerparameters"}};
 static const member turn_rate_names = {{"pd", "dp", "pdot"}};
 static const member fixed_names = {{"ground", "isground", "fixed"}};
 static const member body_names[2] = {{{"body1", "bodyi", "i"}}, {{"body2", "bodyj", "j"}}};
-static const member direction_names[2] = {{{"aibar", "ai", "abari", "a1", "a1bar"}},
-                                          {{"ajbar", "aj", "abarj", "a2", "a2bar"}}};
-static const member point_names[2] = {{{"spibar", "si", "sbari", "s1", "sibar", "spi", "s1bar"}},
-                                      {{"sqjbar", "sj", "sbarj", "s2", "sjbar", "sqj", "s2bar"}}};
+static const member direction_names[2] = {{{"aibar", "ai", "abari", "a1", "a1bar", "ap1"}},
+                                          {{"ajbar", "aj", "abarj", "a2", "a2bar", "ap2"}}};
+static const member point_names[2] = {
+    {{"spibar", "si", "sbari", "s1", "sibar", "spi", "s1bar", "sp1"}},
+    {{"sqjbar", "sj", "sbarj", "s2", "sjbar", "sqj", "s2bar", "sp2"}}};
 static const member c_names = {{"c"}};
 static const member value_names = {{"fun", "f", "function"}};
 static const member stiffness_names = {{"k", "stiffness", "spring"}};
@@ -41,13 +43,20 @@ static const member length_names = {{"l0", "lzero", "freelength", "restlength"}}
 static const member angle_names = {{"theta0", "thetazero", "freeangle", "restangle"}};
 static const member actuator_names = {{"h", "actuator", "fun", "function"}};
 static const member one_body_names = {{"body", "body1", "bodyi", "body2", "bodyj"}};
-static const member one_point_names = {{"sbar", "s", "spibar", "si", "sbari", "point", "location"}};
+static const member one_point_names = {
+    {"sbar", "s", "spibar", "si", "sbari", "point", "location", "sp1"}};
 static const member load_names = {{"force", "f", "value", "fun"}};
 static const member torque_names = {{"torque", "t", "value", "fun"}};
 static const member own_torque_names = {{"nbar", "tbar", "torquebar"}};
 static const member frame_names = {{"frame"}};
 static const member reference_names[2] = {{{"bibar", "bi", "fibar", "refi"}},
                                           {{"bjbar", "bj", "fjbar", "refj"}}};
+static const member centre_names = {{"cg", "com"}};
+static const member marker_names[2] = {{{"marker1", "markeri"}}, {{"marker2", "markerj"}}};
+static const member corner_names[3] = {{{"p"}}, {{"q"}}, {{"r"}}};
+static const member component_names[3] = {{{"funx", "fx"}}, {{"funy", "fy"}}, {{"funz", "fz"}}};
+static const member duration_names = {{"tend", "duration", "endtime"}};
+static const member rows_names = {{"outputsteps"}};
 static const member value_rate_names[2] = {{{"df", "fdot", "ft"}}, {{"ddf", "fddot", "ftt"}}};
 
 typedef struct reader {
@@ -231,7 +240,17 @@ static bool read_body(reader *r, const se3di_node *map)
     }
     const char *free_name = se3di_machine_name_body(m, name, "body", map->line);
     se3di_machine_body *body = free_name ? se3di_machine_add_body(m, free_name) : NULL;
-    return body && read_pose(m, map, body) && read_mass(m, map, body);
+    double centre[3] = {0.0, 0.0, 0.0};
+    if (!body || !read_pose(m, map, body) || !read_mass(m, map, body) ||
+        !read_member(m, map, &centre_names, centre, 3)) {
+        return false;
+    }
+    if (se3di_length(centre) > 0.0) {
+        se3di_machine_note_of(m, SE3D_IMPORT_LOST, map->line,
+                              "the centre of mass of `%.80s` is not at its origin, as it is here",
+                              body->name);
+    }
+    return m->status >= 0;
 }
 
 /* ---- constraints ----------------------------------------------------------------------------*/
@@ -255,11 +274,11 @@ static bool find_body(reader *r, const se3di_node *map, const member *wanted, si
            se3di_machine_fail(r->m, node->line, node->column, "there is no body %.60s", id);
 }
 
-/* The text of a function of t as ours: without "@(t)", "lambda t:" and the dots of operators that
- * go element by element. */
+/* The text of a function of t as ours: without "@(t)", "lambda t:", the "()" of pi(), and the dots
+ * of operators that go element by element. */
 static const char *expression_of(se3di_machine *m, const char *text)
 {
-    static const char *const heads[] = {"@(t)", "lambda t:", "np.", "numpy.", "math."};
+    static const char *const heads[] = {"@(t)", "lambda t:", "np.", "numpy.", "math.", "()"};
     char *out = se3di_iopool_array(m->pool, strlen(text) + 1, 1);
     size_t used = 0;
     while (out && *text) {
@@ -362,9 +381,167 @@ static const primitive *find_primitive(se3di_machine *m, const se3di_node *map)
         }
     }
     se3di_machine_fail(m, map->line, map->column,
-                       "the type of a constraint is `%.40s`, must be DP1, DP2, D or CD",
+                       "the type of a constraint is `%.40s`, must be DP1, DP2, D, CD or a joint: "
+                       "Revolute, Spherical, Cylindrical, Translational, Universal or Fixed",
                        type ? type : "");
     return NULL;
+}
+
+/* Note that something is not carried. */
+static bool lose(se3di_machine *m, const se3di_node *node, const char *why)
+{
+    char path[200];
+    se3di_node_format_path(node, path, sizeof path);
+    se3di_machine_note_of(m, SE3D_IMPORT_LOST, node->line, "`%.120s` is not carried: %s", path,
+                          why);
+    return m->status >= 0;
+}
+
+/* ---- joints ---------------------------------------------------------------------------------*/
+
+typedef struct joint_kind {
+    const char *name, *type; /* in letters and digits; as in a model file */
+    bool has_angle, has_displacement;
+} joint_kind;
+
+static const joint_kind *find_joint(const se3di_node *map)
+{
+    static const joint_kind kinds[] = {{"revolute", "revolute", true, false},
+                                       {"revolutejoint", "revolute", true, false},
+                                       {"rj", "revolute", true, false},
+                                       {"spherical", "spherical", false, false},
+                                       {"sphericaljoint", "spherical", false, false},
+                                       {"sj", "spherical", false, false},
+                                       {"cylindrical", "cylindrical", false, false},
+                                       {"cylindricaljoint", "cylindrical", false, false},
+                                       {"cj", "cylindrical", false, false},
+                                       {"translational", "prismatic", false, true},
+                                       {"translationaljoint", "prismatic", false, true},
+                                       {"prismatic", "prismatic", false, true},
+                                       {"tj", "prismatic", false, true},
+                                       {"universal", "universal", false, false},
+                                       {"universaljoint", "universal", false, false},
+                                       {"uj", "universal", false, false},
+                                       {"fixed", "fixed", false, false},
+                                       {"fixedjoint", "fixed", false, false}};
+    const char *type = text_of(se3di_node_get(map, "type"));
+    char plain[KEY_MAX];
+    plain_text(type ? type : "", plain);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
+        if (strcmp(plain, kinds[k].name) == 0) {
+            return &kinds[k];
+        }
+    }
+    return NULL;
+}
+
+/* A marker: P is its origin, Q a point on its z axis, R one in the half of its x-z plane where x is
+ * positive. */
+static bool read_marker(se3di_machine *m, const se3di_node *map, const member *wanted,
+                        se3di_frame *frame)
+{
+    const se3di_node *node = find(map, wanted);
+    double corners[3][3] = {{0.0}};
+    if (node && node->kind == SE3DI_NODE_LIST && node->count == 1) {
+        node = node->first;
+    }
+    if (!node || node->kind != SE3DI_NODE_MAP) {
+        return se3di_machine_fail(m, map->line, map->column, "this has no `%s` of P, Q and R",
+                                  wanted->names[0]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (!find(node, &corner_names[k])) {
+            return se3di_machine_fail(m, node->line, node->column, "this has no member `%s`",
+                                      corner_names[k].names[0]);
+        }
+        if (!read_member(m, node, &corner_names[k], corners[k], 3)) {
+            return false;
+        }
+    }
+    double z[3], x[3];
+    for (int k = 0; k < 3; ++k) {
+        z[k] = corners[1][k] - corners[0][k];
+        x[k] = corners[2][k] - corners[0][k];
+    }
+    memcpy(frame->r, corners[0], sizeof frame->r);
+    return se3di_turn_along_both(z, x, frame->A) || expect(m, node, "three points not in one line");
+}
+
+/* Drive the joint's coordinate by `value`; the angle is that of x of body j before x of body i. */
+static bool put_driver(se3di_machine *m, const se3di_node *map, const char *joint,
+                       const joint_kind *kind, bool turned, const char *value)
+{
+    if (!kind->has_angle && !kind->has_displacement) {
+        return lose(m, map, "its `fun` would drive one of several coordinates");
+    }
+    const char *name =
+        se3di_machine_name(m, se3di_machine_extend(m, joint, "_driver"), "driver", map->line);
+    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_DRIVERS) : NULL;
+    if (!entry) {
+        return false;
+    }
+    se3di_entry_put_text(m, entry, "name", name);
+    se3di_entry_put_text(m, entry, "joint", joint);
+    se3di_entry_put(m, entry, "value",
+                    turned ? se3di_machine_quote(m, se3di_machine_text(m, "-(%s)", value))
+                           : se3di_machine_quote(m, value));
+    return m->status >= 0;
+}
+
+/* The function of a joint, NULL: it has none. */
+static bool take_drive(se3di_machine *m, const se3di_node *map, const char *name,
+                       const char **value)
+{
+    const se3di_node *node = find(map, &value_names);
+    const char *text = text_of(node);
+    *value = NULL;
+    if (!node || (text && (!text[0] || se3di_scan_equal(text, "none")))) {
+        return true;
+    }
+    const char *expression = text ? expression_of(m, text) : NULL;
+    if (expression && compiles(expression)) {
+        *value = expression;
+        return true;
+    }
+    if (m->status >= 0) {
+        se3di_machine_note_of(m, SE3D_IMPORT_LOST, node->line,
+                              "the function `%.100s` of `%.80s` is no expression in t: nothing "
+                              "drives the joint",
+                              text ? text : "", name);
+    }
+    return m->status >= 0;
+}
+
+static bool read_joint(reader *r, const se3di_node *map, const joint_kind *kind)
+{
+    se3di_machine *m = r->m;
+    se3di_machine_joint joint = {.type = kind->type};
+    se3di_frame in[2];
+    const char *value = NULL;
+    joint.name = se3di_machine_name(m, text_of(se3di_node_get(map, "name")), "joint", map->line);
+    if (!joint.name || !find_body(r, map, &body_names[0], &joint.body_i) ||
+        !find_body(r, map, &body_names[1], &joint.body_j) ||
+        !read_marker(m, map, &marker_names[0], &in[0]) ||
+        !read_marker(m, map, &marker_names[1], &in[1]) || !take_drive(m, map, joint.name, &value)) {
+        return false;
+    }
+    if (joint.body_i == joint.body_j) {
+        return se3di_machine_fail(m, map->line, map->column,
+                                  "`%.80s` is between one body and itself", joint.name);
+    }
+    joint.frame_i = se3di_frame_of(&se3di_machine_body_at(m, joint.body_i)->frame, &in[0]);
+    joint.frame_j = se3di_frame_of(&se3di_machine_body_at(m, joint.body_j)->frame, &in[1]);
+    double *A = joint.frame_j.A, along = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        along += joint.frame_i.A[3 * k + 2] * A[3 * k + 2];
+    }
+    const bool turned = along < 0.0 && (kind->has_angle || kind->has_displacement);
+    for (int k = 0; k < 3 && turned; ++k) { /* the axes may point against each other there */
+        A[3 * k + 1] = -A[3 * k + 1];
+        A[3 * k + 2] = -A[3 * k + 2];
+    }
+    return se3di_machine_add_joint(m, &joint) != NULL &&
+           (!value || put_driver(m, map, joint.name, kind, turned && kind->has_angle, value));
 }
 
 static bool put_vector(se3di_machine *m, const se3di_node *map, const member *wanted,
@@ -406,6 +583,10 @@ static bool put_sides(se3di_machine *m, const se3di_node *map, const primitive *
 static bool read_constraint(reader *r, const se3di_node *map)
 {
     se3di_machine *m = r->m;
+    const joint_kind *joint = map->kind == SE3DI_NODE_MAP ? find_joint(map) : NULL;
+    if (joint) {
+        return read_joint(r, map, joint);
+    }
     const primitive *kind = map->kind == SE3DI_NODE_MAP ? find_primitive(m, map) : NULL;
     size_t bodies[2] = {0, 0};
     const char *value = NULL;
@@ -443,16 +624,6 @@ static bool read_constraint(reader *r, const se3di_node *map)
 }
 
 /* ---- forces ---------------------------------------------------------------------------------*/
-
-/* Note that a force is not carried. */
-static bool lose(se3di_machine *m, const se3di_node *node, const char *why)
-{
-    char path[200];
-    se3di_node_format_path(node, path, sizeof path);
-    se3di_machine_note_of(m, SE3D_IMPORT_LOST, node->line, "`%.120s` is not carried: %s", path,
-                          why);
-    return m->status >= 0;
-}
 
 /* A function of t as it is written; *value NULL: none that is an expression. */
 static bool take_function(se3di_machine *m, const se3di_node *node, const char **value)
@@ -580,6 +751,21 @@ static const char *take_components(se3di_machine *m, const se3di_node *node)
     return se3di_machine_text(m, "[%s, %s, %s]", parts[0], parts[1], parts[2]);
 }
 
+/* The same of members of their own. */
+static const char *take_single(se3di_machine *m, const se3di_node *map)
+{
+    const char *parts[3] = {"0", "0", "0"};
+    bool is_any = false;
+    for (int k = 0; k < 3; ++k) {
+        const se3di_node *one = find(map, &component_names[k]);
+        is_any |= one != NULL;
+        if (one && (!take_function(m, one, &parts[k]) || !parts[k])) {
+            return NULL;
+        }
+    }
+    return is_any ? se3di_machine_text(m, "[%s, %s, %s]", parts[0], parts[1], parts[2]) : NULL;
+}
+
 /* A force at a point, or a torque; that of the ground's axes, or with the name of a torque in its
  * body's, or a `frame` that says so, of those. */
 static bool read_load(reader *r, const se3di_node *map, bool turns)
@@ -588,7 +774,7 @@ static bool read_load(reader *r, const se3di_node *map, bool turns)
     const se3di_node *own = turns ? find(map, &own_torque_names) : NULL;
     const se3di_node *node = own ? own : find(map, turns ? &torque_names : &load_names);
     const char *frame = text_of(find(map, &frame_names));
-    const char *value = take_components(m, node);
+    const char *value = node ? take_components(m, node) : take_single(m, map);
     size_t body = 0;
     if (!value || !find(map, &one_body_names)) {
         return m->status >= 0 && lose(m, map, "it needs a body, and three numbers or functions");
@@ -606,7 +792,8 @@ static bool read_load(reader *r, const se3di_node *map, bool turns)
         return false;
     }
     se3di_entry_put(m, entry, "value", value);
-    if (own || (frame && (se3di_scan_equal(frame, "body") || se3di_scan_equal(frame, "local")))) {
+    if (own || (frame && (se3di_scan_equal(frame, "body") || se3di_scan_equal(frame, "local") ||
+                          se3di_scan_equal(frame, "LRF")))) {
         se3di_entry_put(m, entry, "frame", "body");
     }
     return m->status >= 0;
@@ -682,7 +869,8 @@ static void note_others(se3di_machine *m, const se3di_node *root)
         const bool read = kind_of(at->key) != NO_FORCE && at->kind == SE3DI_NODE_LIST;
         const bool known = read || strcmp(at->key, "name") == 0 ||
                            strcmp(at->key, "gravity") == 0 || strcmp(at->key, "bodies") == 0 ||
-                           strcmp(at->key, "constraints") == 0;
+                           strcmp(at->key, "constraints") == 0 ||
+                           strcmp(at->key, "simulation") == 0;
         const bool empty = at->kind == SE3DI_NODE_LIST && at->count == 0;
         const bool acts = strstr(at->key, "orce") || strstr(at->key, "orque") ||
                           strstr(at->key, "SDA") || strstr(at->key, "sda");
@@ -697,6 +885,30 @@ bool se3di_import_is_me751(const se3di_node *root)
 {
     return root->kind == SE3DI_NODE_MAP && se3di_node_get(root, "bodies") &&
            se3di_node_get(root, "constraints") && !se3di_node_get(root, "se3d");
+}
+
+/* How long it runs, and in how many rows; the method is the user's choice. */
+static bool read_simulation(se3di_machine *m, const se3di_node *root)
+{
+    const se3di_node *map = se3di_node_get(root, "simulation");
+    double rows = 0.0;
+    if (map && map->kind == SE3DI_NODE_LIST && map->count == 1) {
+        map = map->first;
+    }
+    if (!map || map->kind != SE3DI_NODE_MAP) {
+        return true;
+    }
+    const se3di_node *duration = find(map, &duration_names);
+    const se3di_node *count = find(map, &rows_names);
+    double end = 0.0;
+    if ((duration && !read_number(m, duration, &end)) || (count && !read_number(m, count, &rows))) {
+        return false;
+    }
+    if (end > 0.0 && end <= 1e9) {
+        m->duration = end;
+        m->step = rows >= 1.0 ? end / rows : 0.0;
+    }
+    return true;
 }
 
 bool se3di_import_me751(se3di_machine *m, const se3di_node *root)
@@ -717,7 +929,7 @@ bool se3di_import_me751(se3di_machine *m, const se3di_node *root)
         return false;
     }
     note_others(m, root);
-    return read_all(&r, root, "bodies", read_body) &&
+    return read_simulation(m, root) && read_all(&r, root, "bodies", read_body) &&
            read_all(&r, root, "constraints", read_constraint) && read_forces(&r, root) &&
            m->status >= 0;
 }
