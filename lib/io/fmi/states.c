@@ -427,6 +427,10 @@ se3d_status se3di_fmi_variables_create(se3d_model *model, se3di_fmi_variables *v
                       ": the model has no analysis in which time passes; a unit needs dynamics, "
                       "kinematics or inverse_dynamics");
     }
+    if (model->guest_count > 0) {
+        return refuse(model, problem, problem_size,
+                      ": the model has `fmus`, units do not hold others");
+    }
     if (model->particles) {
         return refuse(model, problem, problem_size,
                       ": the model has particles, which a unit cannot have");

@@ -10,6 +10,7 @@
 #include "io/channel/channel.h"
 #include "io/channel/output.h"
 #include "io/document/amount.h"
+#include "io/model/settable.h"
 
 /* A model and the list that grows. */
 typedef struct collector {
@@ -223,25 +224,10 @@ se3d_status se3di_fmi_variables_list(se3d_model *model, se3di_fmi_variables *var
     return status < 0 ? status : add_outputs(&c);
 }
 
-static se3d_status apply_load(const se3d_model *model, const se3di_fmi_variable *input, double to)
-{
-    const se3d_force force = model->elements[input->element].force;
-    double value[3];
-    const se3d_status status = se3d_force_get_value(model->system, force, value);
-    value[input->component] = to;
-    return status < 0 ? status : se3d_force_set_value(model->system, force, value);
-}
-
 se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_variable *input,
                                   double value)
 {
-    const se3di_element_entry *e = &model->elements[input->element];
-    if (e->kind == SE3DI_ELEMENT_DRIVER) {
-        return e->rate.index1 ? se3d_function_set_constant(model->system, e->rate, value)
-                              : se3d_constraint_set_value(model->system, e->constraint, value);
-    }
-    return e->body.index1 == 0 ? se3d_effort_set(model->system, e->force, value)
-                               : apply_load(model, input, value);
+    return se3di_element_set(model, input->element, input->component, value);
 }
 
 /* Set a rate at a time. */

@@ -473,6 +473,9 @@ static bool prepare(const se3di_session *before, se3di_session *s, char *message
     se3d_status status = se3di_fmi_variables_list(s->model, &s->variables, problem, sizeof problem);
     se3di_sample_init(&s->sample, s->model->system, &s->model->pool.allocator);
     s->is_prepared = true;
+    if (s->model->guest_count > 0) {
+        return say(message, "the model has `fmus`, which `se3d run` alone steps");
+    }
     if (status == SE3D_ERR_NO_MEMORY || !list_sliders(s) || !list_columns(s)) {
         return say_memory(message);
     }

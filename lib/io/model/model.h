@@ -145,6 +145,8 @@ struct se3d_model {
     size_t output_count;
     struct se3di_event_entry *events; /* io/channel/event.h */
     size_t event_count;
+    struct se3di_guest_entry *guests; /* io/channel/guest.h */
+    size_t guest_count;
     se3d_model_picture *pictures;
     size_t picture_count;
     struct se3di_library *library;   /* io/read/include.h: files that it includes */

@@ -95,6 +95,8 @@ static const se3di_key model_keys[] = {
      .text = "one analysis, or several that run one after the other"},
     {"events", SE3DI_KIND_LIST, .object = "event",
      .text = "crossings of levels, looked for in every step"},
+    {"fmus", SE3DI_KIND_LIST, .object = "fmu",
+     .text = "mock-up units of other programs (FMI) that a run steps beside the model"},
     {"output", SE3DI_KIND_LIST, .object = "output", .text = "results files and pictures"},
     {"study", SE3DI_KIND_OBJECT, .object = "study",
      .text = "many runs with other parameters, for `se3d study`"},
@@ -229,6 +231,7 @@ static bool read_model(se3di_reader *reader, se3di_library *library, const se3di
            se3di_read_analyses(reader, root) && se3di_read_contact(reader, root) &&
            se3di_read_particles(reader, root) &&
            (reader->study || se3di_read_outputs(reader, root)) && se3di_read_events(reader, root) &&
+           se3di_read_guests(reader, root) &&
            (reader->study ? se3di_read_measured(reader, reader->study)
                           : se3di_read_study(reader, root));
 }

@@ -39,6 +39,10 @@
     X(wheel)                                                                                       \
     X(analysis)                                                                                    \
     X(event)                                                                                       \
+    X(fmu)                                                                                         \
+    X(fmu_input)                                                                                   \
+    X(fmu_output)                                                                                  \
+    X(fmu_parameter)                                                                               \
     X(modes_input)                                                                                 \
     X(modes_output)                                                                                \
     X(frequencies)                                                                                 \

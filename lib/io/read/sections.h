@@ -27,6 +27,8 @@ bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_particles(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_events(se3di_reader *reader, const se3di_node *root);
+/* Units of other programs, after the elements that they act on. */
+bool se3di_read_guests(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_study(se3di_reader *reader, const se3di_node *root);
 /* What the sources of a study are in the model. */
 bool se3di_read_measured(se3di_reader *reader, const struct se3di_study_entry *study);

@@ -26,8 +26,10 @@
 #include "io/document/document.h"
 #include "io/model/model.h"
 #include "io/run/checkpoint.h"
+#include "io/run/guest.h"
 #include "io/run/run_modes.h"
 #include "io/run/run_particles.h"
+#include "io/run/run_record.h"
 #include "io/run/runner.h"
 #include "io/write/contact_list.h"
 #include "io/write/particle_list.h"
@@ -432,7 +434,7 @@ static bool has_row_at(const se3di_output_file *file, double start, double durat
 /* What the rows at `time` need; the last state of an analysis, where others begin, is whole. */
 static int32_t shown_at(const se3di_runner *r, double start, double duration, double time)
 {
-    bool more = time >= start + duration;
+    bool more = time >= start + duration || se3di_guests_are_due(r->guests, time);
     for (size_t k = 0; k < r->file_count && !more; ++k) {
         more = r->files[k].solves && has_row_at(&r->files[k], start, duration, time);
     }
@@ -556,6 +558,21 @@ static void save(se3di_runner *r, double start, double reached, se3d_status last
     r->saved = clock_now();
 }
 
+/* At a communication point: units go on, and what they say acts from here. */
+static se3d_status meet_guests(se3di_runner *r, double time, se3d_status last)
+{
+    char problem[SE3DI_GUEST_PROBLEM];
+    if (last < 0 || last == SE3D_INFO_EVENT || !se3di_guests_are_due(r->guests, time)) {
+        return last;
+    }
+    begin_rows(r);
+    const se3d_status status = se3di_guests_meet(r->guests, &r->sample, time, problem);
+    if (status < 0) {
+        return fail(r, status, problem);
+    }
+    return se3d_solver_run(r->solver, time);
+}
+
 static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_entry *entry,
                             const se3di_place *place)
 {
@@ -565,9 +582,13 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
     double time = start;
     double reached = place->reached;
     while (next_time(r, start, duration, &time) && !r->stopped) {
-        time = merge_times(r, start, duration, time);
+        time = se3di_guests_limit(r->guests, merge_times(r, start, duration, time));
         last = r->model->particles ? se3di_tagged_advance(r->model, &entry->solver, r->solver, time)
                                    : run_to(r, start, duration, time);
+        last = meet_guests(r, time, last);
+        if (last < 0 && r->guests && se3di_guests_have_failed(r->guests)) {
+            return last;
+        }
         if (last < 0 && last != SE3D_ERR_INTERRUPTED) {
             return fail_analysis(r, entry, last, time);
         }
@@ -594,72 +615,6 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
         save(r, start, reached, last);
     }
     return last < 0 ? fail_analysis(r, entry, last, time) : last;
-}
-
-static const char *copy_text(se3di_runner *r, const char *text)
-{
-    const char *copy = se3di_iopool_copy(&r->run->pool, text, strlen(text));
-    return copy ? copy : "";
-}
-
-static const char *name_of_body(se3di_runner *r, se3d_body body)
-{
-    const char *name = "";
-    if (SE3D_FAILED(se3d_body_get_name(r->model->system, body, &name))) {
-        return "";
-    }
-    return copy_text(r, name[0] ? name : "without a name");
-}
-
-static const char *copy_left_out(se3di_runner *r)
-{
-    char rows[600] = "";
-    se3d_system_describe_left_out(r->model->system, rows, sizeof rows);
-    return copy_text(r, rows);
-}
-
-/* How the start was changed, and which equations do not count. */
-static void record_start(se3di_runner *r, se3d_run_analysis *done)
-{
-    se3d_start_change change;
-    memset(&change, 0, sizeof change);
-    if (r->solver) {
-        se3d_solver_get_start_change(r->solver, &change);
-    }
-    const double numbers[8] = {change.position,      change.rotation,
-                               change.velocity,      change.angular_velocity,
-                               change.most_position, change.most_rotation,
-                               change.most_velocity, change.most_angular_velocity};
-    memcpy(done->start_change, numbers, sizeof numbers);
-    done->left_out = copy_left_out(r);
-    done->moved = name_of_body(r, change.moved);
-    done->deflected = name_of_body(r, change.deflected);
-}
-
-/* What the solver did, for the summary. */
-static void record(se3di_runner *r, const se3di_analysis_entry *entry, se3d_run_analysis *done)
-{
-    const char *method = "";
-    const char *left = "";
-    done->left_at = (double)NAN;
-    se3d_system_get_time(r->model->system, &r->time);
-    done->end = r->time;
-    done->cpu_time = cpu_time(r);
-    if (r->solver) {
-        se3d_solver_get_stats(r->solver, &done->stats);
-        se3d_solver_get_formulation(r->solver, &done->formulation);
-        if (entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS) {
-            se3d_solver_get_method(r->solver, &method);
-            se3d_solver_get_switch(r->solver, &done->left_at, &left);
-            se3d_solver_get_tolerance(r->solver, &done->reached);
-            se3d_solver_get_step(r->solver, &done->step);
-            const double asked = entry->solver.tolerance > 0.0 ? entry->solver.tolerance : 1e-6;
-            done->tolerance = done->reached > 0.0 ? asked : 0.0;
-        }
-    }
-    done->method = copy_text(r, method ? method : "");
-    done->left = copy_text(r, left);
-    record_start(r, done);
 }
 
 /* The files of the modes, and the state at which they are. */
@@ -714,6 +669,14 @@ static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *e
     if (status < 0) {
         return fail_analysis(r, entry, status, start);
     }
+    if (r->model->guest_count > 0 && se3di_analysis_has_motion(entry)) {
+        char problem[SE3DI_GUEST_PROBLEM];
+        status = se3di_guests_open(r->model, start, start + entry->analysis.duration, &r->guests,
+                                   problem);
+        if (status < 0) {
+            return fail(r, status, problem);
+        }
+    }
     if (r->resume) {
         status = se3di_checkpoint_restore(r, place);
         r->cpu_before = place->cpu;
@@ -738,7 +701,7 @@ static se3d_status run_analysis(se3di_runner *r, size_t index)
     r->run->events.collected = r->resume ? r->run->events.collected : 0;
     r->begin = clock();
     r->cpu_before = 0.0;
-    done->type = copy_text(r, entry->analysis.type);
+    done->type = se3di_run_copy_text(r, entry->analysis.type);
     done->formulation = se3d_formulation_get_name(SE3D_FORMULATION_ROMEGA);
     done->method = "";
     done->start = place.start;
@@ -752,8 +715,10 @@ static se3d_status run_analysis(se3di_runner *r, size_t index)
                                    : run_rows(r, index, entry, &place);
     }
     status = collect_events(r, index, status);
-    record(r, entry, done);
+    se3di_run_record(r, entry, cpu_time(r), done);
     done->status = (int32_t)status;
+    se3di_guests_close(r->guests);
+    r->guests = NULL;
     se3d_solver_destroy(r->solver);
     r->solver = NULL;
     return status;
@@ -927,6 +892,10 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     }
     if (model->running || se3d_system_is_busy(model->system)) {
         return fail(&r, SE3D_ERR_STATE, "the model is being run");
+    }
+    if (model->guest_count > 0 && (used.checkpoint > 0.0 || used.resume)) {
+        return fail(&r, SE3D_ERR_STATE,
+                    "a run with `fmus` has no checkpoints: the state of the units is not in them");
     }
     r.run = create_run(model);
     if (!r.run) {

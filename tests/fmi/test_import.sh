@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# A mock-up unit as a force on a model: a spring that is a unit of its own, against the closed form, whose error goes down
+# with the communication step; and what is refused.
+set -u
+if [ -z "${SE3D_CHECK_FMU:-}" ]; then
+    echo 'this build has no mock-up units'
+    exit 0
+fi
+. "${SE3D_SOURCE_DIR:-.}/tests/support/cli.sh"
+. "$source/tests/support/fmi.sh"
+case ${ASAN_OPTIONS:-}${UBSAN_OPTIONS:-} in ?*) exit 0 ;; esac # the object has none of the sanitizer
+
+cat >"$dir/spring.yaml" <<'END_OF_YAML'
+se3d: 1
+gravity: [0, 0, 0]
+parameters: {k: 50}
+bodies: [{name: end, mass: 1, inertia: [1, 1, 1]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: end, at: [0, 0, 0], axis: [1, 0, 0]}]
+drivers: [{name: place, joint: rail, value: 0}]
+forces: [{name: spring, type: tsda, body_i: ground, body_j: end, point_i: [-1, 0, 0], k: k, l0: 1}]
+analysis: {type: dynamics, duration: 10}
+output: [{file: a.csv, every: 1, channels: [{push: -1*spring.force}]}]
+END_OF_YAML
+for fmi in 2 3; do
+    expect "the unit, FMI $fmi" 0 "$program" fmu "$dir/spring.yaml" --fmi $fmi -o "$dir/spring.$fmi.fmu"
+    unpack "$dir/spring.$fmi.fmu" "$dir/spring.$fmi"
+done
+
+# host FMI STEP: a mass of 1 kg on the spring of 100 N/m
+host() {
+    cat <<END_OF_YAML
+se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: block, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, 0]}]
+forces: [{name: push, type: effort, joint: rail, value: 0}]
+fmus:
+  - {name: spring, file: spring.$1, step: $2, inputs: [{variable: place.input, channel: rail.displacement}],
+     outputs: [{variable: push, element: push}], parameters: [{variable: parameters.k, value: 100}]}
+analysis: {type: dynamics, duration: 0.5}
+output: [{file: a.csv, every: 0.05, channels: [rail.displacement, push.effort, energy.balance]}]
+END_OF_YAML
+}
+
+# error: the largest difference from sin(10 t) / 10, and of the audit of energy
+error() {
+    awk -F, 'NR > 1 { e = $2 - sin(10 * $1) / 10; e = e < 0 ? -e : e; if (e > m) m = e
+        b = $4 - 0.5; if (b < -1e-9 || b > 1e-9) bad = 1 } END { printf "%.9f %d\n", m, bad }' "$dir/$1/a.csv"
+}
+for fmi in 2 3; do
+    for step in 0.002 0.001; do
+        host $fmi $step >"$dir/host.yaml"
+        expect "the spring, FMI $fmi" 0 "$program" run -q "$dir/host.yaml" -o "$dir/run.$fmi.$step"
+    done
+    error "run.$fmi.0.002" >"$dir/coarse"
+    error "run.$fmi.0.001" >"$dir/fine"
+    holds "errors $(cat "$dir/coarse") and $(cat "$dir/fine")" awk '
+        NR == 1 { a = $1; w = $2 } NR == 2 { exit !($1 < 2.5e-3 && $1 > 1e-5 && a / $1 > 1.8 && a / $1 < 2.2 && !w && !$2) }' \
+        "$dir/coarse" "$dir/fine"
+done
+
+# What is wrong is said with the name of the unit.
+wrong() {
+    host 2 0.01 | sed "$1" >"$dir/wrong.yaml"
+    expect "$2" "$3" "$program" run -q "$dir/wrong.yaml" -o "$dir/wrong.run"
+    says "$2"
+}
+wrong 's/place.input/nothing/' 'fmu `spring`: it has no variable `nothing`' 1
+wrong 's/variable: push,/variable: place.input,/' 'must be output Real' 1
+wrong 's/file: spring.2/file: nowhere/' 'nowhere/modelDescription.xml' 1
+wrong 's/element: push/element: pull/' 'there is no such element' 2
+wrong 's/element: push/element: rail/' 'has no such number' 2
+wrong 's/channel: rail.displacement/channel: rail.length/' 'rail.length' 2
+wrong 's/step: 0.01/step: 0/' 'step' 2
+expect 'checkpoints' 1 "$program" run -q "$dir/host.yaml" --checkpoint 1 -o "$dir/kept.run"
+says 'has no checkpoints'
+expect 'a unit of it' 2 "$program" fmu "$dir/host.yaml" -o "$dir/no.fmu"
+says 'units do not hold others'
+mv "$dir/spring.2/binaries" "$dir/spring.2/none"
+wrong 's/x/x/' 'no shared object that this machine can load' 1
+finish
