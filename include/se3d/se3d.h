@@ -29,6 +29,7 @@
 #include "se3d/base.h"
 #include "se3d/batch.h"
 #include "se3d/body.h"
+#include "se3d/bond.h"
 #include "se3d/cell.h"
 #include "se3d/check.h"
 #include "se3d/clump.h"

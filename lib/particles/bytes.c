@@ -5,6 +5,7 @@
  * every program that makes the same model. */
 #include "particles/bytes.h"
 
+#include "particles/bond.h"
 #include "particles/chain.h"
 #include "particles/clump.h"
 #include "particles/list.h"
@@ -19,7 +20,7 @@
 typedef struct lengths {
     size_t stuffs, walls, particles, ids, slabs;
     size_t list, near, faces, blocks, mesh, mesh_old, carry;
-    size_t templates, clumps;
+    size_t templates, clumps, bonds, bond_ends, bond_groups;
     int32_t has_rolls; /* beside the blocks */
 } lengths;
 
@@ -40,6 +41,9 @@ static lengths measure(const se3di_particles *set)
                      .carry = valid ? 0 : set->carry_count,
                      .templates = set->template_count,
                      .clumps = set->clump_count,
+                     .bonds = set->bond_count,
+                     .bond_ends = set->bond_end_count,
+                     .bond_groups = set->bond_group_count,
                      .has_rolls = valid && set->block_count > 0 && set->rolls};
 }
 
@@ -60,6 +64,9 @@ static void code_lengths(se3di_coder *c, lengths *n)
     se3di_code_flag(c, &n->has_rolls);
     se3di_code_count(c, &n->templates, 0.0);
     se3di_code_count(c, &n->clumps, 17.0);
+    se3di_code_count(c, &n->bonds, 50.0);
+    se3di_code_count(c, &n->bond_ends, 8.0);
+    se3di_code_count(c, &n->bond_groups, 6.0);
 }
 
 static void code_record(se3di_coder *c, se3di_particles *set)
@@ -225,6 +232,65 @@ static void code_clumps(se3di_coder *c, se3di_particles *set)
     }
 }
 
+/* What became of groups of bonds; what they are like is told by their definitions. */
+static void code_bond_groups(se3di_coder *c, se3di_particles *set)
+{
+    se3di_code_flag(c, &set->bonds_changed);
+    for (size_t k = 0; k < set->bond_group_count; ++k) {
+        se3di_bond_group *group = &set->bond_groups[k];
+        se3di_code_word(c, &group->made);
+        se3di_code_word(c, &group->torn);
+        se3di_code_word(c, &group->sheared);
+        se3di_code_word(c, &group->lost);
+        se3di_code_numbers(c, &group->dissipated, 1);
+        se3di_code_numbers(c, &group->released, 1);
+    }
+}
+
+static void code_bond_ends(se3di_coder *c, se3di_particles *set)
+{
+    for (size_t k = 0; k < set->bond_end_count; ++k) {
+        se3di_bond_end *end = &set->bond_ends[k];
+        uint32_t names[2] = {end->id, end->wall};
+        se3di_code_indices(c, names, 2);
+        se3di_code_numbers(c, end->point, 3);
+        se3di_code_numbers(c, end->q, 4);
+        if (c->in) {
+            const int wall = names[0] == SE3DI_NO_INDEX && names[1] < set->wall_count;
+            end->id = names[0];
+            end->wall = names[1];
+            end->shape = wall ? set->walls[names[1]].handle : (se3di_handle){0, 0};
+        }
+    }
+}
+
+static void code_bonds(se3di_coder *c, se3di_particles *set)
+{
+    code_bond_ends(c, set);
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        se3di_bond *bond = &set->bonds[k];
+        se3di_code_indices(c, bond->end, 2);
+        se3di_code_uint32(c, &bond->group);
+        se3di_code_numbers(c, &bond->length, 1);
+        se3di_code_numbers(c, &bond->radius, 1);
+        se3di_code_numbers(c, bond->stiffness, 4);
+        se3di_code_numbers(c, bond->damping, 4);
+        se3di_code_numbers(c, bond->axes[0], 9);
+        se3di_code_numbers(c, bond->axes[1], 9);
+        se3di_code_numbers(c, bond->place, 3);
+        se3di_code_numbers(c, bond->force, 3);
+        se3di_code_numbers(c, bond->drag, 3);
+        for (int n = 0; n < 2; ++n) {
+            se3di_code_numbers(c, bond->torque[n], 3);
+            se3di_code_numbers(c, bond->brake[n], 3);
+        }
+        se3di_code_numbers(c, bond->stress, 2);
+        se3di_code_numbers(c, &bond->energy, 1);
+        se3di_code_numbers(c, &bond->dissipated, 1);
+        bond->fate = SE3DI_BOND_HOLDS;
+    }
+}
+
 /* Forces, and how far each may move. */
 static void code_loads(se3di_coder *c, se3di_particles *set)
 {
@@ -339,6 +405,7 @@ static void code_arrays(se3di_coder *c, se3di_particles *set, const lengths *n)
 {
     code_particles(c, set);
     code_clumps(c, set);
+    code_bonds(c, set);
     se3di_code_indices(c, set->index_of, n->ids);
     if (set->list_valid) {
         code_lists(c, set, n);
@@ -366,6 +433,7 @@ static void write_set(se3di_coder *c, const se3di_particles *set)
     code_flow(c, &same);
     code_passed(c, &same);
     code_cell(c, &same);
+    code_bond_groups(c, &same);
     for (size_t k = 0; k < n.walls; ++k) {
         code_wall(c, &same.walls[k]);
     }
@@ -393,6 +461,7 @@ static void empty(se3di_particles *set)
     set->count = set->id_count = set->list_count = set->near_count = set->face_count = 0;
     set->mesh_count = set->mesh_old_count = set->carry_count = set->stuff_count = 0;
     set->wall_count = set->clump_count = 0;
+    set->bond_count = set->bond_end_count = 0;
     set->block_count = set->slab_count = 0;
     set->list_valid = set->force_valid = set->carry_rolling = 0;
     set->topology_version = 0;
@@ -501,6 +570,9 @@ static se3d_status make_room(se3di_particles *set, const lengths *n)
     set->mesh_old_count = n->mesh_old;
     set->carry_count = n->carry;
     set->clump_count = n->clumps;
+    SE3DI_TRY(se3di_bonds_reserve(set, n->bonds > n->bond_ends ? n->bonds : n->bond_ends));
+    set->bond_count = n->bonds;
+    set->bond_end_count = n->bond_ends;
     return SE3D_OK;
 }
 
@@ -510,6 +582,7 @@ static int fit(const se3di_particles *set, const lengths *n)
     const int here = set->list_valid;
     return n->slabs <= SE3DI_PARTICLE_SLABS_MAX && n->particles <= n->ids &&
            n->clumps <= n->particles && (n->clumps == 0 || n->templates > 0) &&
+           n->bonds < UINT32_MAX / 4 && n->bond_ends < UINT32_MAX / 4 &&
            n->ids < SE3DI_CARRY_WALL && n->list < UINT32_MAX && n->blocks < UINT32_MAX &&
            (here ? n->mesh_old + n->carry == 0
                  : n->slabs + n->list + n->near + n->faces + n->blocks + n->mesh == 0);
@@ -522,13 +595,15 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     code_lengths(c, &n);
     SE3DI_TRY(read_stuffs(c, model, set, n.stuffs));
     SE3DI_TRY(se3di_particles_sync(set, model));
-    if (set->wall_count != n.walls || set->template_count != n.templates) {
+    if (set->wall_count != n.walls || set->template_count != n.templates ||
+        set->bond_group_count != n.bond_groups) {
         return SE3D_ERR_STATE;
     }
     code_record(c, set);
     code_flow(c, set);
     code_passed(c, set);
     code_cell(c, set);
+    code_bond_groups(c, set);
     SE3DI_TRY(read_walls(c, set));
     if (c->failed || !fit(set, &n)) {
         return SE3D_ERR_INVALID_ARGUMENT;

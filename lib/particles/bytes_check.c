@@ -4,6 +4,7 @@
  * particle. What no run would write, but does no harm, passes. */
 #include "particles/bytes.h"
 
+#include "particles/bond.h"
 #include "particles/clump.h"
 #include "particles/wall.h"
 
@@ -301,9 +302,41 @@ static int are_clumps(se3di_particles *set)
     return se3di_clumps_index(set);
 }
 
+static int is_bond(const se3di_particles *set, const se3di_bond *bond)
+{
+    const double sizes[] = {bond->length, bond->radius, bond->energy, bond->dissipated};
+    return are_finite(sizes, 4) && bond->length > 0.0 && bond->radius > 0.0 &&
+           are_finite(bond->stiffness, 4) && are_finite(bond->damping, 4) &&
+           are_finite(bond->axes[0], 18) && are_finite(bond->force, 3) &&
+           are_finite(bond->drag, 3) && are_finite(bond->torque[0], 6) &&
+           are_finite(bond->brake[0], 6) && bond->group < set->bond_group_count &&
+           bond->end[0] < set->bond_end_count && bond->end[1] < set->bond_end_count &&
+           bond->end[0] != bond->end[1] && set->bond_ends[bond->end[0]].id != SE3DI_NO_INDEX;
+}
+
+static int are_bonds(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->bond_end_count; ++k) {
+        const se3di_bond_end *end = &set->bond_ends[k];
+        double square = 0.0;
+        for (int a = 0; a < 4; ++a) {
+            square += end->q[a] * end->q[a];
+        }
+        if (!are_finite(end->point, 3) || !(fabs(square - 1.0) < 1e-6)) {
+            return 0;
+        }
+    }
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        if (!is_bond(set, &set->bonds[k])) {
+            return 0;
+        }
+    }
+    return se3di_bonds_index(set);
+}
+
 int se3di_particles_are_sound(se3di_particles *set)
 {
-    return are_numbers(set) && are_particles(set) && are_clumps(set) && are_sources(set) &&
-           are_flows(set) && is_cell(set) && are_walls(set) &&
+    return are_numbers(set) && are_particles(set) && are_clumps(set) && are_bonds(set) &&
+           are_sources(set) && are_flows(set) && is_cell(set) && are_walls(set) &&
            (set->list_valid ? are_lists(set) : is_history(set));
 }

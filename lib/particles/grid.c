@@ -10,6 +10,7 @@
  *                                                                      docs/theory/particles.md */
 
 #include "particles/grid.h"
+#include "particles/bond.h"
 #include "particles/cell.h"
 #include "particles/clump.h"
 #include "particles/flow.h"
@@ -357,6 +358,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
     const int ghost = se3di_share_is_ghost(set, q->i);
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
     const se3di_clump *own = se3di_clump_find(set, q->i);
+    const int bonded = set->bond_count > 0;
     for (uint32_t j = begin; j < end; ++j) {
         const se3di_particle *gj = &set->particles[j];
         double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
@@ -365,7 +367,8 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
         }
         double reach = border + gj->radius + stretch[j];
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach &&
-            !(own && se3di_clump_find(set, j) == own) && !(ghost && se3di_share_is_ghost(set, j))) {
+            !(own && se3di_clump_find(set, j) == own) && !(ghost && se3di_share_is_ghost(set, j)) &&
+            !(bonded && se3di_bonds_part(set, q->i, j))) {
             set->list[set->list_count++] = j;
         }
     }
@@ -575,6 +578,7 @@ se3d_status se3di_particles_rebuild(se3di_particles *set)
         memcpy(wall->old_R, wall->pose.R, sizeof wall->old_R);
     }
     se3di_domain_begin_list(set);
+    set->bonds_changed = 0;
     ++set->rebuilds;
     return se3di_particles_activate(set);
 }

@@ -8,6 +8,8 @@
 #include "particles/kept.h"
 #include "particles/share.h"
 
+#include "particles/bond.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -24,7 +26,7 @@ typedef struct part {
     size_t bytes;
 } part;
 
-enum { PARTS_SLOW = 12, PARTS = 24 };
+enum { PARTS_SLOW = 12, PARTS = 27 };
 
 /* The arrays in use of a set: those that change with the lists, then the others. */
 static void list_parts(const se3di_particles *set, part parts[PARTS])
@@ -58,6 +60,9 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->sources, set->source_count * sizeof *set->sources},
         {set->sinks, set->sink_count * sizeof *set->sinks},
         {set->flows, set->flow_count * sizeof *set->flows},
+        {set->bonds, set->bond_count * sizeof *set->bonds},
+        {set->bond_ends, set->bond_end_count * sizeof *set->bond_ends},
+        {set->bond_groups, set->bond_group_count * sizeof *set->bond_groups},
     };
     _Static_assert(sizeof all == PARTS * sizeof *all, "all of them");
     memcpy(parts, all, sizeof all);
@@ -98,7 +103,10 @@ static size_t room_of(const se3di_particles *set)
            set->roll_memory.bytes +
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
-           set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows;
+           set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
+           set->bond_capacity * sizeof *set->bonds +
+           set->bond_end_capacity * sizeof *set->bond_ends +
+           set->bond_group_capacity * sizeof *set->bond_groups;
 }
 
 static se3d_status reserve(se3di_particles *set)
@@ -207,6 +215,7 @@ void se3di_particles_come_back(se3di_particles *set)
 #undef STAY
     list_parts(set, parts);
     copy_parts(parts, PARTS, set->kept->data, 1);
+    (void)se3di_bonds_index(set);
     if (set->particles) {
         set->particles[set->capacity] = (se3di_particle){.inverse_mass = 1.0}; /* of unused lanes */
     }

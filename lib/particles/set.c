@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Life time and editing of particle sets; nothing here moves a particle. */
+#include "particles/bond.h"
 #include "particles/clump.h"
 #include "particles/kept.h"
 #include "particles/list.h"
@@ -70,6 +71,11 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->sources, set->source_capacity, sizeof *set->sources);
     se3di_free(a, set->sinks, set->sink_capacity, sizeof *set->sinks);
     se3di_free(a, set->flows, set->flow_capacity, sizeof *set->flows);
+    se3di_free(a, set->bonds, set->bond_capacity, sizeof *set->bonds);
+    se3di_free(a, set->bond_ends, set->bond_end_capacity, sizeof *set->bond_ends);
+    se3di_free(a, set->bond_groups, set->bond_group_capacity, sizeof *set->bond_groups);
+    se3di_free(a, set->bond_places, set->bond_place_capacity, sizeof *set->bond_places);
+    se3di_free(a, set->bond_end_of, set->bond_end_of_capacity, sizeof *set->bond_end_of);
     se3d_allocator allocator = set->allocator;
     memset(set, 0, sizeof *set);
     set->allocator = allocator;
@@ -100,6 +106,10 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->clump_of_capacity * sizeof *set->clump_of +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
            set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
+           set->bond_capacity * sizeof *set->bonds +
+           set->bond_end_capacity * sizeof *set->bond_ends +
+           set->bond_group_capacity * sizeof *set->bond_groups +
+           sizeof(uint32_t) * (set->bond_place_capacity + set->bond_end_of_capacity) +
            se3di_particles_kept_memory(set) + sizeof *set;
 }
 
@@ -235,6 +245,7 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
     }
     set->count = to;
     se3di_clumps_filter(set);
+    se3di_bonds_filter(set);
     se3di_particles_remap(set, set->order);
 }
 
@@ -270,6 +281,11 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->sources, from->sources, from->source_capacity, sizeof(se3di_source)},
         {&to->sinks, from->sinks, from->sink_capacity, sizeof(se3di_sink)},
         {&to->flows, from->flows, from->flow_capacity, sizeof(se3di_flow)},
+        {&to->bonds, from->bonds, from->bond_capacity, sizeof(se3di_bond)},
+        {&to->bond_ends, from->bond_ends, from->bond_end_capacity, sizeof(se3di_bond_end)},
+        {&to->bond_groups, from->bond_groups, from->bond_group_capacity, sizeof(se3di_bond_group)},
+        {&to->bond_places, from->bond_places, from->bond_place_capacity, sizeof(uint32_t)},
+        {&to->bond_end_of, from->bond_end_of, from->bond_end_of_capacity, sizeof(uint32_t)},
     };
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < sizeof parts / sizeof parts[0]; ++k) {

@@ -313,6 +313,54 @@ typedef struct se3di_domain {
     double work;
 } se3di_domain;
 
+/* What holds a bond: a sphere, or a point of a wall.                              bond.c */
+typedef struct se3di_bond_end {
+    uint32_t id;           /* of the particle; SE3DI_NO_INDEX: a wall, */
+    uint32_t wall;         /* which is this one of the set, */
+    se3di_handle shape;    /* of this handle, */
+    double point[3];       /* in its frame */
+    double q[4];           /* turn of a free sphere since it got its first bond */
+    uint32_t begin, count; /* of what its bonds do to it, in bond_places */
+} se3di_bond_end;
+
+/* Bonds that were made together, and what became of them. */
+typedef struct se3di_bond_group {
+    int32_t touches;        /* what is bonded touches, too */
+    int32_t middle;         /* stresses are those of the middle, not of the worse end */
+    double tension, shear;  /* strengths [Pa]; 0: it does not break */
+    uint64_t made;          /* so far, */
+    uint64_t torn, sheared; /* of those broken by tension, by shear, */
+    uint64_t lost;          /* and gone with a particle or shape */
+    double dissipated;      /* by those that are gone [J]; those that are there have their own */
+    double released;        /* stored in bonds when they went [J] */
+} se3di_bond_group;
+
+typedef enum se3di_bond_fate {
+    SE3DI_BOND_HOLDS = 0,
+    SE3DI_BOND_TORN = 1,
+    SE3DI_BOND_SHEARED = 2,
+    SE3DI_BOND_LOST = 3
+} se3di_bond_fate;
+
+/* A beam from the centre of one sphere to that of another one, or to a wall. Forces and torques are
+ * on the second end; the first gets the opposite force. */
+typedef struct se3di_bond {
+    uint32_t end[2]; /* of the set's bond_ends */
+    uint32_t group;
+    int32_t fate;        /* se3di_bond_fate; those that do not hold go after the step */
+    double length;       /* without load */
+    double radius;       /* of its section */
+    double stiffness[4]; /* normal, shear [N/m], bending, twisting [N m] */
+    double damping[4];   /* the same [N s/m], [N m s] */
+    double axes[2][9];   /* along the bond and two across it, as rows, fixed in the ends */
+    double place[3];     /* of the second end, beside the first */
+    /* of the last forces */
+    double force[3], torque[2][3]; /* all of them, */
+    double drag[3], brake[2][3];   /* and what of them is damping */
+    double stress[2];              /* tension, shear [Pa] */
+    double energy, dissipated;
+} se3di_bond;
+
 typedef struct se3di_particles_kept se3di_particles_kept;
 
 typedef struct se3di_particles {
@@ -416,6 +464,18 @@ typedef struct se3di_particles {
     se3di_flow *flows;
     size_t flow_count, flow_capacity;
     se3di_domain cell;
+    se3di_bond *bonds; /* that hold, in the order in which they were made */
+    size_t bond_count, bond_capacity;
+    se3di_bond_end *bond_ends;
+    size_t bond_end_count, bond_end_capacity;
+    se3di_bond_group *bond_groups;
+    size_t bond_group_count, bond_group_capacity;
+    uint32_t *bond_places; /* by end: twice the bond, and 1 for its second end */
+    size_t bond_place_capacity;
+    uint32_t *bond_end_of; /* id -> end, SE3DI_NO_INDEX: none; ids beyond it have none */
+    size_t bond_end_of_capacity;
+    int32_t bonds_changed; /* pairs that may touch are others than in the list */
+    int32_t bonds_reserved;
     uint64_t touching;
     int32_t starved;       /* memory was missing in the last evaluation of the forces */
     int32_t failed_placed; /* the overlap was there before any step was made */

@@ -3,6 +3,7 @@
 
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/bond.h"
 #include "particles/cell.h"
 #include "particles/flow.h"
 #include "particles/kept.h"
@@ -36,6 +37,13 @@ static se3d_status check_step(const se3di_particles *set, const se3di_model *mod
     double safe = se3di_particles_safe_step(set, model);
     double limit =
         safe * (model->contact.law == SE3DI_LAW_HOOKE ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
+    const double bonds = se3di_bonds_step(set);
+    if (h > SE3DI_BONDS_STABLE * bonds) {
+        return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
+                               "step = %g s at time %g s is too large, the bonds%s%.80s need at "
+                               "most %g s (automatic: %g s)",
+                               h, set->time, of, name, SE3DI_BONDS_STABLE * bonds, bonds);
+    }
     if (h > limit) {
         return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
                                "step = %g s at time %g s is too large, the contacts%s%.80s need at "
@@ -171,7 +179,7 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
     if (set->step > 0.0 || model->contact.step > 0.0) {
         return set->step > 0.0 ? set->step : model->contact.step;
     }
-    double safe = se3di_particles_safe_step(set, model);
+    double safe = fmin(se3di_particles_safe_step(set, model), se3di_bonds_step(set));
     return isfinite(safe) ? safe : 0.0;
 }
 

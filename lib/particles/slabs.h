@@ -8,4 +8,9 @@
 /* Do something for every slab, on all threads at a time. */
 void se3di_particles_each_slab(se3di_particles *set, void (*work)(se3di_particles *, uint32_t));
 
+/* The same for the parts of `count` things, each by itself. */
+typedef void se3di_range_work(se3di_particles *set, size_t begin, size_t end, double h);
+void se3di_particles_each_range(se3di_particles *set, size_t count, se3di_range_work *work,
+                                double h);
+
 #endif

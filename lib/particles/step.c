@@ -8,6 +8,7 @@
 #include "contact/bodies/encounter.h"
 #include "math/larger.h"
 #include "math/vec3.h"
+#include "particles/bond.h"
 #include "particles/cell.h"
 #include "particles/flow.h"
 #include "particles/grid.h"
@@ -54,8 +55,9 @@ void se3di_particles_free_walls(se3di_particles *set, const se3di_model *model)
 /* Lists that hold every pair that touches. */
 static se3d_status update_lists(se3di_particles *set)
 {
-    const int blocks_hold = set->list_valid && se3di_particles_blocks_hold(set);
-    const int list_holds = set->list_valid && (blocks_hold || se3di_particles_list_holds(set));
+    const int same = set->list_valid && !set->bonds_changed;
+    const int blocks_hold = same && se3di_particles_blocks_hold(set);
+    const int list_holds = same && (blocks_hold || se3di_particles_list_holds(set));
     if (list_holds && se3di_share_is_spread(set)) {
         set->share->renew(set);
     }
@@ -263,6 +265,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     se3di_force_task task = prepare(set, h, &strain);
     se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
+    se3di_bonds_push_walls(set);
     double excess = 0.0;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         excess = se3di_larger(excess, set->slabs[s].overlap);
@@ -401,6 +404,12 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
             hash = se3di_hash_numbers(hash, &p->inverse_mass, 1);
             hash = se3di_hash_numbers(hash, set->spins[k].w, 3);
         }
+    }
+    for (size_t k = 0; k < set->bond_end_count; ++k) {
+        hash = se3di_hash_numbers(hash, set->bond_ends[k].q, 4);
+    }
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        hash = se3di_hash_numbers(hash, &set->bonds[k].dissipated, 1);
     }
     for (size_t k = 0; k < set->clump_count; ++k) {
         hash = se3di_hash_numbers(hash, set->clumps[k].q, 4);

@@ -13,6 +13,7 @@
 #include "base/floats.h"
 #include "base/threads.h"
 #include "math/larger.h"
+#include "particles/bond.h"
 #include "particles/cell.h"
 #include "particles/clump.h"
 #include "particles/mesh.h"
@@ -115,6 +116,7 @@ static void note_motion(se3di_particles *set, const se3di_particle_motion *motio
         if (set->flow_count > 0) {
             se3di_flows_count(set, motion->drift);
         }
+        se3di_bonds_turn(set, motion->drift);
         set->drift = fabs(motion->drift);
         set->pace = sqrt(most.fastest) * set->drift;
         set->worn += sqrt(most.hasty) * set->drift;
@@ -446,8 +448,9 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
                            const se3di_particle_motion *motion)
 {
     static const se3di_particle_motion still = {0, 0.0, 0.0};
-    /* clumps move when all of their spheres are done, cells when their stress is known */
-    const int waits = set->clump_count > 0 || se3di_domain_strains(set);
+    /* clumps move when all of their spheres are done, cells when their stress is known, and bonds
+     * hold spheres of any slabs */
+    const int waits = set->clump_count > 0 || set->bond_count > 0 || se3di_domain_strains(set);
     const sweep w = {set, task, waits ? &still : motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
@@ -460,6 +463,7 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
     }
     if (waits) {
         sum_virial(set);
+        se3di_bonds_forces(set, task->h);
         if (motion->kicks > 0) {
             pass(set, motion);
         }

@@ -3,6 +3,7 @@
  * again when the model was edited; the history of contacts goes along. */
 
 #include "particles/sync.h"
+#include "particles/bond.h"
 #include "particles/list.h"
 #include "particles/mesh.h"
 #include "particles/wall.h"
@@ -211,6 +212,7 @@ static se3d_status replace_walls(se3di_particles *set, const se3di_model *model)
     set->walls = walls;
     set->wall_count = count;
     set->wall_capacity = room;
+    se3di_bonds_find_walls(set);
     return SE3D_OK;
 }
 

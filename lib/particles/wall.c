@@ -6,6 +6,8 @@
 #include "base/floats.h"
 #include "contact/shape/mesh.h"
 #include "math/vec3.h"
+#include "particles/bond.h"
+#include "particles/cell.h"
 #include "particles/memory.h"
 #include "particles/share.h"
 
@@ -148,6 +150,19 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
     }
 }
 
+void se3di_particles_nearest(const se3di_particles *set, double d[3], double v[3])
+{
+    double way[3];
+    se3di_copy(d, way);
+    se3di_particles_wrap(set, d);
+    if (se3di_domain_strains(set)) { /* the image moves with its side of the cell */
+        double jump[3];
+        se3di_sub(d, way, way);
+        se3di_domain_map_eval(&set->cell, &set->cell.field, way, jump);
+        se3di_add(v, jump, v);
+    }
+}
+
 void se3di_particles_come_home(const se3di_particles *set, double x[3])
 {
     if (set->cell.count > 0) {
@@ -225,7 +240,8 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
     const size_t face_begin = set->face_count;
     double x[3];
     se3di_particles_image(set, wall, g->x, reach, x);
-    if (least_distance(wall, x) >= reach) {
+    if (least_distance(wall, x) >= reach ||
+        (set->bond_count > 0 && se3di_bonds_part_wall(set, i, w))) {
         return SE3D_OK;
     }
     if (se3di_wall_is_mesh(wall)) {

@@ -39,6 +39,8 @@ void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, c
                            double reach, double out[3]);
 /* The vector between centres, to the nearest image. */
 void se3di_particles_wrap(const se3di_particles *set, double d[3]);
+/* The same, with the velocity of the one relative to the other: of that image. */
+void se3di_particles_nearest(const se3di_particles *set, double d[3], double v[3]);
 /* Into the period along those axes that have one. */
 void se3di_particles_come_home(const se3di_particles *set, double x[3]);
 

@@ -613,6 +613,89 @@ static se3d_status cells_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+/* Lists of ids that name no two bodies, and shapes that are not there. */
+static void bonds_reject_ends(arguments *a, se3d_particles *p, const se3d_bond_def *def)
+{
+    const uint32_t one[2] = {0, 0}, two[2] = {1, 1}, far[1] = {9};
+    const se3d_shape none = {0, 0};
+    se3d_shape_def ball = se3d_shape_def_default();
+    se3d_shape shape;
+    uint32_t group = 7;
+    size_t added = 7;
+    CHECK(se3d_particles_bond(NULL, def, 1, one, two, &group) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_bond_near(NULL, def, -1, -1, &added, &group) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_bond_shape(NULL, def, none, -1, &added, &group) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond(p, NULL, 1, one, two, &group), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond(p, def, 1, NULL, two, &group), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond(p, def, 1, one, NULL, &group), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond(p, def, 1, one, far, &group), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "particles 0 and 9");
+    REJECTED(se3d_particles_bond(p, def, 1, one, one, &group), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_bond(p, def, 2, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "bonded twice");
+    REJECTED(se3d_particles_bond_near(p, NULL, -1, -1, &added, &group), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond_near(p, def, -2, -1, &added, &group), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_bond_near(p, def, 0, 256, &added, &group), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_bond_shape(p, def, none, -1, &added, &group), SE3D_ERR_STALE_HANDLE);
+    ball.radius = 0.1;
+    ball.group = 2;
+    CHECK(!se3d_shape_create_sphere(a->system, &ball, &shape));
+    REJECTED(se3d_particles_bond_shape(p, NULL, shape, -1, &added, &group), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_bond_shape(p, def, shape, 256, &added, &group),
+             SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_bond_shape(p, def, shape, -1, &added, &group),
+             SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "do not touch it");
+    CHECK(!se3d_shape_destroy(a->system, shape));
+    CHECK(group == 7 && added == 7);
+}
+
+static se3d_status bonds_reject_misuse(arguments *a)
+{
+    const uint32_t one[1] = {0}, two[1] = {1};
+    se3d_material material;
+    se3d_bond_stats stats;
+    se3d_particles_bond_state state;
+    uint32_t group = 7;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_bond_def def = se3d_bond_def_default();
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "young = 0");
+    def.young = 1e6;
+    def.poisson = 0.6;
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    def.poisson = 0.3;
+    def.ratio = 0.0;
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    def.ratio = 1.0;
+    def.damping = 1.5;
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    def.damping = 0.0;
+    def.law = 3;
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    def.law = SE3D_BOND_LAW_PARALLEL;
+    def.normal_stiffness = 1e6;
+    REJECTED(se3d_particles_bond(p, &def, 1, one, two, &group), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "shear_stiffness = 0");
+    def.shear_stiffness = 1e6;
+    bonds_reject_ends(a, p, &def);
+    CHECK(se3d_particles_count_bonds(NULL) == 0 && se3d_particles_count_bonds(p) == 0);
+    CHECK(se3d_particles_count_bond_groups(NULL) == 0 && se3d_particles_count_bond_groups(p) == 0);
+    CHECK(!se3d_particles_bond(p, &def, 1, one, two, &group) && group == 0);
+    REJECTED(se3d_particles_bond(p, &def, 1, two, one, &group), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_count_bonds(p) == 1 && se3d_particles_count_bond_groups(p) == 1);
+    CHECK(se3d_particles_get_bond_stats(NULL, 0, &stats) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_bond_stats(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_bond_stats(p, 1, &stats) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_bond_stats(p, -2, &stats) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_bonds(NULL, 1, &state) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_bonds(p, 1, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_bonds(p, 2, &state) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_bonds(p, 1, &state) && state.i == 0 && state.j == 1);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 static se3d_status clumps_reject_misuse(arguments *a)
 {
     const double nan = (double)NAN, two[6] = {0.0, 0.0, 0.0, 0.1, 0.0, 0.0}, radii[2] = {0.1, 0.1};

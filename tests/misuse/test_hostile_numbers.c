@@ -336,6 +336,32 @@ static const field cell_fields[] = {
     INTEGER(se3d_cell_def, servo),    NUMBERS(se3d_cell_def, stress),
     NUMBERS(se3d_cell_def, rate_max), FIELDS_END};
 
+FILL_IN(se3d_bond_def, bond)
+{
+    const double r[6] = {0.5, 0.5, 0.5, 0.69, 0.5, 0.5}, radius[2] = {0.1, 0.1};
+    CHECK(!se3d_particles_create(w->system, NULL, &w->set));
+    CHECK(!se3d_particles_add(w->set, w->material, 2, r, radius, NULL, NULL, NULL));
+    def->young = def->normal_stiffness = def->shear_stiffness = 1e5;
+    def->poisson = 0.2;
+}
+static se3d_status create_bond(world *w, const void *def)
+{
+    return se3d_particles_bond_near(w->set, def, -1, -1, NULL, NULL);
+}
+static const field bond_fields[] = {INTEGER(se3d_bond_def, law),
+                                    NUMBERS(se3d_bond_def, radius),
+                                    NUMBERS(se3d_bond_def, ratio),
+                                    NUMBERS(se3d_bond_def, young),
+                                    NUMBERS(se3d_bond_def, poisson),
+                                    NUMBERS(se3d_bond_def, normal_stiffness),
+                                    NUMBERS(se3d_bond_def, damping),
+                                    NUMBERS(se3d_bond_def, shear_stiffness),
+                                    NUMBERS(se3d_bond_def, gap),
+                                    NUMBERS(se3d_bond_def, tensile_strength),
+                                    INTEGER(se3d_bond_def, contact),
+                                    NUMBERS(se3d_bond_def, shear_strength),
+                                    FIELDS_END};
+
 static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
 {
     double r[3];
@@ -419,6 +445,7 @@ static const subject subjects[] = {
     {"sink", sink_fields, fill_in_sink, create_sink, 1},
     {"flow", flow_fields, fill_in_flow, create_flow, 1},
     {"cell", cell_fields, fill_in_cell, create_cell, 0},
+    {"bond", bond_fields, fill_in_bond, create_bond, 0},
     {"event", event_fields, fill_in_event, create_event, 0},
     {"function", function_fields, fill_in_function, create_function_create, 0},
 };

@@ -513,6 +513,44 @@ static se3d_status make_cell(workshop *w)
     return status;
 }
 
+/* Two spheres bonded to each other, and one to a plane. */
+static se3d_status make_bonds(workshop *w)
+{
+    const double r[6] = {0.5, 0.5, 0.1, 0.69, 0.5, 0.1}, radius[2] = {0.1, 0.1};
+    const uint32_t first[1] = {0}, second[1] = {1};
+    se3d_particles *set = NULL;
+    se3d_material material = {0, 0};
+    se3d_shape plane = {0, 0};
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_bond_def bond = se3d_bond_def_default();
+    stuff.density = 2500.0;
+    stuff.stiffness = bond.young = 1e4;
+    shape.normal[2] = 1.0;
+    se3d_status status = se3d_particles_create(w->system, NULL, &set);
+    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    shape.material = material;
+    status = status < 0 ? status : se3d_shape_create_plane(w->system, &shape, &plane);
+    status =
+        status < 0 ? status : se3d_particles_add(set, material, 2, r, radius, NULL, NULL, NULL);
+    status = status < 0 ? status : se3d_particles_step(set, 2);
+    status = status < 0 ? status : se3d_particles_bond(set, &bond, 1, first, second, NULL);
+    status = status < 0 ? status : se3d_particles_bond_near(set, &bond, -1, -1, NULL, NULL);
+    status = status < 0 ? status : se3d_particles_bond_shape(set, &bond, plane, -1, NULL, NULL);
+    status = status < 0 ? status : se3d_particles_step(set, 2);
+    if (status >= 0) {
+        CHECK(se3d_particles_count_bonds(set) == 3);
+    }
+    se3d_particles_destroy(set);
+    if (plane.index1 > 0) {
+        CHECK(se3d_shape_destroy(w->system, plane) == SE3D_OK);
+    }
+    if (material.index1 > 0) {
+        CHECK(se3d_material_destroy(w->system, material) == SE3D_OK);
+    }
+    return status;
+}
+
 /* A template of clumps, two of them and a source, and copies of all. */
 static se3d_status make_clumps(workshop *w)
 {
@@ -622,6 +660,7 @@ static const operation_row operations[] = {
     {"source and sink", make_source_and_sink},
     {"clumps", make_clumps},
     {"cell", make_cell},
+    {"bonds", make_bonds},
     {"check", make_check},
     {"coordinates", make_coordinates},
     {"batch", make_batch},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Small worlds of particles that together have all that a set can hold: springs of pairs, walls and
  * meshes, rolling, cohesion, periods, sources, sinks, tags, walls that move and that give way, a
- * cell that strains. */
+ * cell that strains, bonds that break. */
 #ifndef SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 #define SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 
@@ -17,11 +17,12 @@ enum {
     PARTICLES_CLUMPS,
     PARTICLES_FUNNEL,
     PARTICLES_CELL,
+    PARTICLES_BONDS,
     PARTICLES_WORLDS
 };
 
 static const char *const particle_world_names[PARTICLES_WORLDS] = {
-    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel", "cell"};
+    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel", "cell", "bonds"};
 
 static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
 {
@@ -42,6 +43,7 @@ static inline void particle_plane(se3d_system *system, se3d_material material)
     se3d_shape_def def = se3d_shape_def_default();
     se3d_shape shape;
     def.material = material;
+    def.name = "floor";
     CHECK(!se3d_shape_create_plane(system, &def, &shape));
 }
 
@@ -169,6 +171,27 @@ static inline void particle_clumps(se3d_particles *set, se3d_material material)
     CHECK(!se3d_particles_add_sink(set, &sink, NULL));
 }
 
+/* Lumps that hold together and to the floor, until they hit it. */
+static inline void particle_bonds(se3d_system *system, se3d_particles *set)
+{
+    se3d_bond_def def = se3d_bond_def_default();
+    se3d_shape floor;
+    size_t count = 0;
+    def.young = 1e5;
+    def.poisson = 0.2;
+    def.gap = 0.012;
+    def.damping = 0.05;
+    def.tensile_strength = 300.0;
+    def.shear_strength = 200.0;
+    CHECK(!se3d_particles_bond_near(set, &def, 0, 0, &count, NULL) && count > 20);
+    def.law = SE3D_BOND_LAW_PARALLEL;
+    def.normal_stiffness = def.shear_stiffness = 1e7;
+    def.gap = 0.01;
+    def.contact = 1;
+    CHECK(!se3d_shape_find(system, "floor", &floor));
+    CHECK(!se3d_particles_bond_shape(set, &def, floor, -1, &count, NULL) && count > 0);
+}
+
 /* A box that falls onto the particles, and a ram that moves as it is told. */
 static inline void particle_bodies(se3d_system *system, se3d_material material)
 {
@@ -272,6 +295,9 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     if (kind == PARTICLES_CLUMPS) {
         particle_clumps(set, stone);
         particle_passage(set, 0.1);
+    }
+    if (kind == PARTICLES_BONDS) {
+        particle_bonds(system, set);
     }
     if (kind == PARTICLES_BODY) {
         particle_bodies(system, floor);
