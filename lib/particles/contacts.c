@@ -86,11 +86,10 @@ static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
     c.block.j[0] = 1;
     c.particles[1] = set->particles[set->blocks[b].j[lane]];
     c.spins[1] = set->spins[set->blocks[b].j[lane]];
-    double d[3], v[3];
+    double d[3], v[3] = {0.0, 0.0, 0.0};
     se3di_sub(c.particles[0].x, c.particles[1].x, d);
-    se3di_sub(c.particles[0].v, c.particles[1].v, v);
     se3di_particles_nearest(set, d, v);
-    se3di_sub(c.particles[0].v, v, c.particles[1].v);
+    se3di_sub(c.particles[1].v, v, c.particles[1].v);
     double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     double overlap = c.particles[0].radius + c.particles[1].radius - distance;
     if (!(overlap > 0.0 && distance > 0.0)) {

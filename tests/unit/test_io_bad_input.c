@@ -152,6 +152,7 @@ static const bad_input table[] = {
      4,
      0,
      {"flows[1].name: `a` is taken"}},
+#include "bad_bonds.inc"
     {"se3d: 1\nflows: []\n", 2, 0, {"flows: needs `particles`"}},
     {GLASS "output: [{vtk: a.pvd, fields: {lower: [0, 0, 0], upper: [1, 1, 1], width: 1}}]\n",
      4,

@@ -396,6 +396,59 @@ static void cells_are_read_and_strain(void)
     se3d_model_destroy(model);
 }
 
+/* A pair that hangs from a ceiling by one bond, and by itself by another, which breaks. */
+static void bonds_are_read_and_break(void)
+{
+    static const char text[] =
+        "se3d: 1\ngravity: [0, 0, -10]\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e5}]\n"
+        "bodies: [{name: top, fixed: true, shapes: [{name: roof, type: plane, normal: [0, 0, -1], "
+        "material: m}]}]\n"
+        "particles: [{name: two, material: m, radius: 0.1, spacing: 0.2, lower: [-0.1, -0.1, "
+        "-0.4], "
+        "upper: [0.1, 0.1, 0]}]\n"
+        "bonds:\n"
+        "  - {name: held, set: two, shape: roof, gap: 1e-6, law: parallel, normal_stiffness: 1e8, "
+        "shear_stiffness: 1e8, damping: 0.3}\n"
+        "  - {name: weak, pairs: [[1, 0]], law: slender, young: 1e7, radius: 0.05, "
+        "tensile_strength: 1e4}\n"
+        "analysis: {type: dynamics, duration: 0.2}\n"
+        "output:\n"
+        "  - {file: s.csv, every: 0.1, channels: [held.count, held.broken, held.tension, "
+        "held.energy, "
+        "weak.count, weak.broken, weak.torn, weak.sheared, weak.lost, weak.released, "
+        "held.dissipated, held.shear]}\n"
+        "  - {vtk: s.pvd, every: 0.1}\n";
+    const double weight = 1000.0 * 4.0 / 3.0 * 3.14159265358979324 * 1e-3 * 10.0;
+    const double A = 3.14159265358979324 * 1e-2;
+    se3d_status status;
+    se3d_model *model = run_model(text, results_folder(), &status);
+    CHECK(status >= 0);
+    CHECK_NEAR(channel(model, 0), 1.0, 0.0);
+    CHECK_NEAR(channel(model, 1), 0.0, 0.0);
+    CHECK_NEAR(channel(model, 2) / (weight / A), 1.0, 1e-3);
+    CHECK_NEAR(channel(model, 3) / (weight * weight / (2.0 * 1e8 * A)), 1.0, 1e-3);
+    CHECK_NEAR(channel(model, 4), 0.0, 0.0);
+    CHECK_NEAR(channel(model, 5), 1.0, 0.0);
+    CHECK_NEAR(channel(model, 6), 1.0, 0.0);
+    CHECK_NEAR(channel(model, 7), 0.0, 0.0);
+    CHECK_NEAR(channel(model, 8), 0.0, 0.0);
+    CHECK(channel(model, 9) > 0.0 && channel(model, 10) > 0.0);
+    CHECK_NEAR(channel(model, 11), 0.0, 1e-9);
+    char path[512], head[1024] = "";
+    snprintf(path, sizeof path, "%s/s/bonds_00002.vtp", results_folder());
+    FILE *file = fopen(path, "rb");
+    CHECK(file);
+    if (file) {
+        head[fread(head, 1, sizeof head - 1, file)] = '\0';
+        fclose(file);
+    }
+    CHECK_CONTAINS(head, "NumberOfPoints=\"2\"");
+    CHECK_CONTAINS(head, "NumberOfLines=\"1\"");
+    CHECK_CONTAINS(head, "Name=\"tension\"");
+    se3d_model_destroy(model);
+}
+
 #define WITH_SET                                                                                   \
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, "        \
     "radius: "                                                                                     \
@@ -472,6 +525,7 @@ int main(void)
     RUN(chute_counts_what_flows);
     RUN(clumps_are_read_and_written);
     RUN(cells_are_read_and_strain);
+    RUN(bonds_are_read_and_break);
     RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);

@@ -183,6 +183,18 @@ static const quantity_name region_names[] = {{"count", SE3DI_REGION_COUNT},
                                              {"shear", SE3DI_REGION_SHEAR},
                                              {NULL, SE3DI_STEPS}};
 
+static const quantity_name bond_names[] = {{"count", SE3DI_BOND_COUNT},
+                                           {"broken", SE3DI_BOND_BROKEN},
+                                           {"torn", SE3DI_BOND_TORN},
+                                           {"sheared", SE3DI_BOND_SHEARED},
+                                           {"lost", SE3DI_BOND_LOST},
+                                           {"energy", SE3DI_BOND_ENERGY},
+                                           {"dissipated", SE3DI_BOND_DISSIPATED},
+                                           {"released", SE3DI_BOND_RELEASED},
+                                           {"tension", SE3DI_BOND_TENSION},
+                                           {"shear", SE3DI_BOND_SHEAR},
+                                           {NULL, SE3DI_STEPS}};
+
 static const quantity_name flow_names[] = {{"count", SE3DI_FLOW_COUNT},
                                            {"forward", SE3DI_FLOW_FORWARD},
                                            {"backward", SE3DI_FLOW_BACKWARD},
@@ -462,7 +474,7 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
     return true;
 }
 
-/* A set of particles, a sink, a region or a flow; returns whether there is one of that name. */
+/* A set of particles, a sink, a region, a flow, bonds: returns whether one has that name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
     const struct {
@@ -471,7 +483,8 @@ static bool find_flow(const se3d_model *model, const char *head, se3di_channel *
     } kinds[] = {{se3di_tagged_find_set, set_names},
                  {se3di_tagged_find_sink, sink_names},
                  {se3di_tagged_find_region, region_names},
-                 {se3di_tagged_find_flow, flow_names}};
+                 {se3di_tagged_find_flow, flow_names},
+                 {se3di_tagged_find_bond, bond_names}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         const size_t index = kinds[k].find(model->particles, head);
         if (index != SIZE_MAX) {

@@ -134,6 +134,16 @@
     X(FLOW_COUNT_RATE, 1, PASSED, 7, JUMPS, 0, 1, 0, 0)                                            \
     X(FLOW_MASS_RATE, 1, PASSED, 8, JUMPS, 0, 1, 1, 0)                                             \
     X(FLOW_MOMENTUM_RATE, 3, PASSED, 9, JUMPS, 1, 2, 1, 0)                                         \
+    X(BOND_COUNT, 1, BONDS, 0, JUMPS, 0, 0, 0, 0)                                                  \
+    X(BOND_BROKEN, 1, BONDS, 1, JUMPS, 0, 0, 0, 0)                                                 \
+    X(BOND_TORN, 1, BONDS, 2, JUMPS, 0, 0, 0, 0)                                                   \
+    X(BOND_SHEARED, 1, BONDS, 3, JUMPS, 0, 0, 0, 0)                                                \
+    X(BOND_LOST, 1, BONDS, 4, JUMPS, 0, 0, 0, 0)                                                   \
+    X(BOND_ENERGY, 1, BONDS, 5, SOLVED, 2, 2, 1, 0)                                                \
+    X(BOND_DISSIPATED, 1, BONDS, 6, JUMPS, 2, 2, 1, 0)                                             \
+    X(BOND_RELEASED, 1, BONDS, 7, JUMPS, 2, 2, 1, 0)                                               \
+    X(BOND_TENSION, 1, BONDS, 8, SOLVED, -1, 2, 1, 0)                                              \
+    X(BOND_SHEAR, 1, BONDS, 9, SOLVED, -1, 2, 1, 0)                                                \
     X(CELL_LENGTH, 3, CELL, 0, JUMPS, 1, 0, 0, 0)                                                  \
     X(CELL_OFFSET, 1, CELL, 3, JUMPS, 1, 0, 0, 0)                                                  \
     X(CELL_STRAIN, 3, CELL, 4, JUMPS, 0, 0, 0, 0)                                                  \
@@ -190,6 +200,7 @@ typedef enum se3di_question {
     SE3DI_ASK_AVERAGE, /* of a region */
     SE3DI_ASK_PASSED,  /* of a flow */
     SE3DI_ASK_CELL,
+    SE3DI_ASK_BONDS, /* of a group */
     SE3DI_ASK_SOLVER,
     SE3DI_QUESTION_COUNT
 } se3di_question;
@@ -227,7 +238,7 @@ typedef struct se3di_channel {
     se3d_state state;
     const se3d_particles *particles;
     const struct se3di_tagged *tagged; /* of sets and sinks */
-    uint32_t index;                    /* tag of a set, number of a sink, region or flow */
+    uint32_t index;                    /* tag of a set, number of a sink, region, ... */
     se3di_motion motion;               /* of the coordinate of an element */
     double point[3];                   /* of `body`, where a wrench acts */
     se3di_reference reference;         /* of a motion */

@@ -278,6 +278,8 @@ static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sa
         return se3di_tagged_ask_passed(c, numbers);
     case SE3DI_ASK_CELL:
         return se3di_tagged_ask_cell(c, numbers);
+    case SE3DI_ASK_BONDS:
+        return se3di_tagged_ask_bonds(c, numbers);
     case SE3DI_ASK_SOLVER:
         return ask_solver(sample->stats, numbers);
     default:

@@ -5,6 +5,7 @@
 #include "io/channel/channel.h"
 #include "io/model/tagged.h"
 #include "se3d/average.h"
+#include "se3d/bond.h"
 #include "se3d/cell.h"
 #include "se3d/flow.h"
 
@@ -115,6 +116,26 @@ se3d_status se3di_tagged_ask_cell(const se3di_channel *c, double numbers[22])
         for (int k = 0; k < 6; ++k) {
             numbers[12 + k] = cell.stress[order[k]];
         }
+    }
+    return status;
+}
+
+se3d_status se3di_tagged_ask_bonds(const se3di_channel *c, double numbers[10])
+{
+    se3d_bond_stats stats;
+    const se3d_status status =
+        se3d_particles_get_bond_stats(c->particles, (int32_t)c->index, &stats);
+    if (status >= 0) {
+        numbers[0] = (double)stats.count;
+        numbers[1] = (double)(stats.torn + stats.sheared);
+        numbers[2] = (double)stats.torn;
+        numbers[3] = (double)stats.sheared;
+        numbers[4] = (double)stats.lost;
+        numbers[5] = stats.energy;
+        numbers[6] = stats.dissipated;
+        numbers[7] = stats.released;
+        numbers[8] = stats.tension;
+        numbers[9] = stats.shear;
     }
     return status;
 }

@@ -97,5 +97,5 @@ bool se3di_read_field_grid(se3di_reader *reader, const se3di_node *output,
     *out = grid;
     return se3di_read_fields(reader, node, &se3di_object_fields, NULL, "se3d_field_grid", grid) &&
            read_cells(reader, node, grid) && check_corners(reader, node, grid) &&
-           se3di_read_key_set(reader, node, &grid->tag);
+           se3di_read_key_set(reader, node, "set", &grid->tag);
 }

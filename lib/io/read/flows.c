@@ -76,7 +76,7 @@ static bool read_flow(se3di_reader *reader, const se3di_node *node)
     }
     if (!se3di_read_name(reader, name, &text) || !se3di_check_free_name(reader, name, text) ||
         !se3di_read_fields(reader, node, &se3di_object_flow, NULL, "se3d_flow_def", &def) ||
-        !read_rectangle(reader, node, &def) || !se3di_read_key_set(reader, node, &def.tag)) {
+        !read_rectangle(reader, node, &def) || !se3di_read_key_set(reader, node, "set", &def.tag)) {
         return false;
     }
     particles->flows[particles->flow_count++] = text;

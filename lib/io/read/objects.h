@@ -25,6 +25,7 @@
     X(source)                                                                                      \
     X(sink)                                                                                        \
     X(region)                                                                                      \
+    X(bond)                                                                                        \
     X(stage)                                                                                       \
     X(flow)                                                                                        \
     X(body)                                                                                        \

@@ -12,12 +12,14 @@
 
 bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const char *name)
 {
-    static const char words[] = " particles contacts cell energy violation work steps iterations ";
+    static const char words[] =
+        " particles contacts bonds cell energy violation work steps iterations ";
     const se3d_model *model = reader->model;
     if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
         se3di_ionames_find(&model->element_names, name, NULL) ||
         se3di_tagged_find_set(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_sink(model->particles, name) != SIZE_MAX ||
+        se3di_tagged_find_bond(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_flow(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_region(model->particles, name) != SIZE_MAX) {
         return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
@@ -26,9 +28,9 @@ bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const c
     return true;
 }
 
-bool se3di_read_key_set(se3di_reader *reader, const se3di_node *map, int32_t *tag)
+bool se3di_read_key_set(se3di_reader *reader, const se3di_node *map, const char *key, int32_t *tag)
 {
-    const se3di_node *set = se3di_node_get(map, "set");
+    const se3di_node *set = se3di_node_get(map, key);
     const char *name = NULL;
     *tag = -1;
     if (!set) {

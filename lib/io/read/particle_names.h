@@ -8,7 +8,7 @@
 /* Whether nothing else has the name: those of sets, sinks, regions and flows are channels, as those
  * of bodies and elements are. */
 bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const char *name);
-/* The tag of the set that `set` of a map names; -1 without it. */
-bool se3di_read_key_set(se3di_reader *reader, const se3di_node *map, int32_t *tag);
+/* The tag of the set that `key` of a map names; -1 without it. */
+bool se3di_read_key_set(se3di_reader *reader, const se3di_node *map, const char *key, int32_t *tag);
 
 #endif

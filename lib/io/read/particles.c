@@ -13,6 +13,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/bonds.h"
 #include "io/read/cell.h"
 #include "io/read/clumps.h"
 #include "io/read/flows.h"
@@ -465,7 +466,7 @@ static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_
                                          region->upper[a], "xyz"[a], region -> lower[a]);
         }
     }
-    return se3di_read_key_set(reader, node, &region->tag);
+    return se3di_read_key_set(reader, node, "set", &region->tag);
 }
 
 static bool read_regions(se3di_reader *reader, const se3di_node *list)
@@ -511,29 +512,36 @@ static bool check_analyses(se3di_reader *reader)
     return true;
 }
 
-bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
+/* Without particles nothing of theirs is there. */
+static bool check_alone(se3di_reader *reader, const se3di_node *root)
 {
-    se3d_model *model = reader->model;
-    const se3di_node *contact = se3di_node_get(root, "contact");
-    const se3di_node *list = NULL;
-    const se3di_node *sinks = NULL;
-    const se3di_node *boxes = NULL;
-    const se3di_node *flows = NULL;
-    const se3di_node *stages = NULL;
-    if (!se3di_read_list(reader, root, "particles", &list) ||
-        !se3di_read_list(reader, root, "sinks", &sinks) ||
-        !se3di_read_list(reader, root, "regions", &boxes) ||
-        !se3di_read_list(reader, root, "flows", &flows) ||
-        !se3di_read_list(reader, root, "cell", &stages)) {
-        return false;
-    }
-    static const char *const sections[] = {"sinks", "clumps", "regions", "flows", "cell"};
-    for (size_t k = 0; !list && k < sizeof sections / sizeof *sections; ++k) {
+    static const char *const sections[] = {"sinks", "clumps", "regions", "flows", "cell", "bonds"};
+    for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) {
         const se3di_node *section = se3di_node_get(root, sections[k]);
         if (section) {
             return se3di_reader_fail(reader, section,
                                      "needs `particles`, which the model does not have");
         }
+    }
+    return true;
+}
+
+bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
+{
+    se3d_model *model = reader->model;
+    const se3di_node *contact = se3di_node_get(root, "contact");
+    enum { PARTICLES, SINKS, REGIONS, FLOWS, CELL, BONDS, SECTIONS };
+    static const char *const sections[SECTIONS] = {"particles", "sinks", "regions",
+                                                   "flows",     "cell",  "bonds"};
+    const se3di_node *lists[SECTIONS] = {NULL};
+    for (int k = 0; k < SECTIONS; ++k) {
+        if (!se3di_read_list(reader, root, sections[k], &lists[k])) {
+            return false;
+        }
+    }
+    const se3di_node *list = lists[PARTICLES];
+    if (!list && !check_alone(reader, root)) {
+        return false;
     }
     if (!list) {
         return true;
@@ -545,7 +553,7 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     model->particles->moving_walls = model->moving_shapes;
     model->particles->set_count = 1; /* those without a name */
     if (!create_set(reader, contact) || !se3di_read_clumps(reader, root) ||
-        !read_sinks(reader, sinks)) {
+        !read_sinks(reader, lists[SINKS])) {
         return false;
     }
     for (const se3di_node *node = list->first; node; node = node->next) {
@@ -553,6 +561,7 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
             return false;
         }
     }
-    return read_regions(reader, boxes) && se3di_read_flows(reader, flows) &&
-           se3di_read_cell(reader, stages) && check_analyses(reader);
+    return read_regions(reader, lists[REGIONS]) && se3di_read_flows(reader, lists[FLOWS]) &&
+           se3di_read_cell(reader, lists[CELL]) && se3di_read_bonds(reader, lists[BONDS]) &&
+           check_analyses(reader);
 }

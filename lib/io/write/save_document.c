@@ -9,8 +9,8 @@
 
 enum { WIDTH = 100 };
 
-static const char *const sections[] = {"clumps", "particles", "sinks",  "regions", "flows",
-                                       "cell",   "analysis",  "events", "output"};
+static const char *const sections[] = {"clumps", "particles", "sinks",    "regions", "flows",
+                                       "bonds",  "cell",      "analysis", "events",  "output"};
 
 static bool is_bare(const char *text)
 {

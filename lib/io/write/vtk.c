@@ -16,9 +16,10 @@
 #include "io/write/particle_list.h"
 #include "io/write/unit_mesh.h"
 #include "io/write/vtk_file.h"
+#include "se3d/bond.h"
 
-enum { PATH_SIZE = 4096, EXTENSION = 4, PARTS = 4 };
-static const char *const part_names[PARTS] = {"bodies", "grains", "contacts", "fields"};
+enum { PATH_SIZE = 4096, EXTENSION = 4, PARTS = 5 };
+static const char *const part_names[PARTS] = {"bodies", "grains", "contacts", "fields", "bonds"};
 
 typedef struct surface {
     const double *points;
@@ -258,7 +259,7 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
         {SE3DI_VTK_POINTS, "points", vtk->points, n, 3, 3, 0.0, 0.0, false},
         {SE3DI_VTK_POLYS, "connectivity", vtk->triangles, 3 * polys, 1, 1, 0.0, 0.0, true},
         {SE3DI_VTK_POLYS, "offsets", NULL, polys, 1, 1, 3.0, 3.0, true}};
-    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays, NULL};
+    const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays, 0, NULL};
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     move_points(vtk);
     return se3di_vtk_file_write(&file, path);
@@ -290,7 +291,7 @@ static bool write_rows(const char *path, const double *rows, size_t n, size_t wi
         (se3di_vtk_array){SE3DI_VTK_POINTS, "points", rows + place, n, 3, width, 0.0, 0.0, false};
     points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
     points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
-    const se3di_vtk_file file = {n, n, 0, arrays, count + 3, NULL};
+    const se3di_vtk_file file = {n, n, 0, arrays, count + 3, 0, NULL};
     return se3di_vtk_file_write(&file, path);
 }
 
@@ -320,6 +321,73 @@ static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_
     se3di_contact_rows list;
     return se3di_contacts_get_rows(model, sample, pool, &list) >= 0 &&
            write_rows(path, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1, columns);
+}
+
+/* Of bond k: tension, shear, energy, group, ids of both, then the places of its ends. */
+enum { BOND_NUMBERS = 6 };
+
+/* The place of a particle in arrays of all, which are in the order of their ids. */
+static size_t find_id(const uint32_t *ids, size_t count, uint32_t id)
+{
+    size_t low = 0, high = count;
+    while (low + 1 < high) {
+        const size_t middle = (low + high) / 2;
+        *(ids[middle] <= id ? &low : &high) = middle;
+    }
+    return low;
+}
+
+static bool list_bonds(const se3d_particles *set, se3di_iopool *pool, double **numbers,
+                       double **places, size_t *count)
+{
+    const size_t n = se3d_particles_count(set), bonds = se3d_particles_count_bonds(set);
+    uint32_t *ids = se3di_iopool_array(pool, n + 1, sizeof *ids);
+    double *r = se3di_iopool_array(pool, n + 1, 3 * sizeof *r);
+    se3d_particles_bond_state *list = se3di_iopool_array(pool, bonds + 1, sizeof *list);
+    *numbers = se3di_iopool_array(pool, bonds + 1, BOND_NUMBERS * sizeof **numbers);
+    *places = se3di_iopool_array(pool, bonds + 1, 6 * sizeof **places);
+    *count = bonds;
+    if (!ids || !r || !list || !*numbers || !*places || se3d_particles_get_ids(set, n, ids) < 0 ||
+        se3d_particles_get_all(set, n, r, NULL, NULL) < 0 ||
+        se3d_particles_get_bonds(set, bonds, list) < 0) {
+        return false;
+    }
+    for (size_t k = 0; k < bonds; ++k) {
+        const se3d_particles_bond_state *bond = &list[k];
+        const double row[BOND_NUMBERS] = {
+            bond->tension,       bond->shear,     bond->energy,
+            (double)bond->group, (double)bond->i, bond->j == UINT32_MAX ? -1.0 : (double)bond->j};
+        memcpy(*numbers + BOND_NUMBERS * k, row, sizeof row);
+        memcpy(*places + 6 * k, r + 3 * find_id(ids, n, bond->i), 3 * sizeof *r);
+        memcpy(*places + 6 * k + 3, bond->place, 3 * sizeof *r);
+    }
+    return true;
+}
+
+static bool write_bonds(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
+                        const char *path)
+{
+    static const char *const names[BOND_NUMBERS] = {"tension", "shear", "energy",
+                                                    "group",   "first", "second"};
+    double *numbers, *places;
+    size_t n;
+    (void)sample;
+    if (!list_bonds(model->particles->set, pool, &numbers, &places, &n)) {
+        return false;
+    }
+    se3di_vtk_array arrays[BOND_NUMBERS + 3];
+    for (size_t k = 0; k < BOND_NUMBERS; ++k) {
+        arrays[k] = (se3di_vtk_array){SE3DI_VTK_CELL_DATA, names[k], numbers + k, n,    1,
+                                      BOND_NUMBERS,        0.0,      0.0,         k > 2};
+    }
+    arrays[BOND_NUMBERS] =
+        (se3di_vtk_array){SE3DI_VTK_POINTS, "points", places, 2 * n, 3, 3, 0.0, 0.0, false};
+    arrays[BOND_NUMBERS + 1] =
+        (se3di_vtk_array){SE3DI_VTK_LINES, "connectivity", NULL, 2 * n, 1, 1, 0.0, 1.0, true};
+    arrays[BOND_NUMBERS + 2] =
+        (se3di_vtk_array){SE3DI_VTK_LINES, "offsets", NULL, n, 1, 1, 2.0, 2.0, true};
+    const se3di_vtk_file file = {2 * n, 0, 0, arrays, BOND_NUMBERS + 3, n, NULL};
+    return se3di_vtk_file_write(&file, path);
 }
 
 /* Points with memory of their own. @return false: errno says why */
@@ -394,6 +462,7 @@ static bool has_part(const se3di_vtk *vtk, int part)
 {
     const se3d_model *model = vtk->model;
     return part == 0 || (part == 3 && vtk->grid) || (part == 1 && model->particles) ||
+           (part == 4 && model->particles && model->particles->bond_count > 0) ||
            (part == 2 && (model->particles || se3di_node_get(model->root, "contact")));
 }
 
@@ -406,6 +475,8 @@ static bool write_part(se3di_vtk *vtk, se3di_sample *sample, int part, const cha
         return write_points(vtk, sample, path, write_particles);
     case 2:
         return write_points(vtk, sample, path, write_contacts);
+    case 4:
+        return write_points(vtk, sample, path, write_bonds);
     default:
         return write_fields(vtk, path);
     }

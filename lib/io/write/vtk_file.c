@@ -81,13 +81,14 @@ static void put_piece(FILE *file, const se3di_vtk_file *f)
     }
     fprintf(file,
             "<PolyData>\n<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" "
-            "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
-            f->points, f->verts, f->polys);
+            "NumberOfLines=\"%zu\" NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
+            f->points, f->verts, f->lines, f->polys);
 }
 
 static void put_head(FILE *file, const se3di_vtk_file *f)
 {
-    static const char *const names[] = {"PointData", "CellData", "Points", "Verts", "Polys"};
+    static const char *const names[] = {"PointData", "CellData", "Points",
+                                        "Verts",     "Lines",    "Polys"};
     const size_t sections = f->grid ? SE3DI_VTK_CELL_DATA + 1 : SE3DI_VTK_SECTION_COUNT;
     size_t offset = 0;
     size_t k = 0;

@@ -13,8 +13,9 @@ typedef enum se3di_vtk_section {
     SE3DI_VTK_CELL_DATA = 1,
     SE3DI_VTK_POINTS = 2,
     SE3DI_VTK_VERTS = 3,
-    SE3DI_VTK_POLYS = 4,
-    SE3DI_VTK_SECTION_COUNT = 5
+    SE3DI_VTK_LINES = 4,
+    SE3DI_VTK_POLYS = 5,
+    SE3DI_VTK_SECTION_COUNT = 6
 } se3di_vtk_section;
 
 /* values[k * stride + i], i < width; without values: first + k * step. */
@@ -33,9 +34,10 @@ typedef struct se3di_vtk_grid {
 } se3di_vtk_grid;
 
 typedef struct se3di_vtk_file {
-    size_t points, verts, polys;   /* how many */
+    size_t points, verts, polys;   /* how many, */
     const se3di_vtk_array *arrays; /* in the order of their sections */
     size_t array_count;
+    size_t lines;               /* and of these */
     const se3di_vtk_grid *grid; /* of a .vti file, all of whose arrays are cell data; NULL: .vtp */
 } se3di_vtk_file;
 
