@@ -31,6 +31,7 @@
 #define VECTORS     7 /* of unknowns */
 #define ROW_VECTORS 2
 #define TURN_MAX    3.0 /* rad, of a body in a step */
+#define HALVINGS    8   /* of a step in which shapes meet too fast */
 
 static size_t history_count(const se3di_assembly *assembly)
 {
@@ -304,6 +305,34 @@ static se3d_status check_step(se3di_integration *integration, double h)
                : se3di_stops_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error);
 }
 
+static se3d_status take_step(se3di_integration *integration, double t1)
+{
+    se3di_equations *equations = integration->equations;
+    const double t0 = equations->assembly.model->time;
+    SE3DI_TRY(se3di_equations_try_step(equations, t0));
+    SE3DI_TRY(check_step(integration, t1 - t0));
+    SE3DI_TRY(se3di_watch_begin(equations));
+    SE3DI_TRY(advance(integration, t1));
+    return se3di_watch_end(equations);
+}
+
+/* What meets too fast for a step, and would overlap too much or pass through, meets in its halves.
+ */
+static se3d_status take_in_parts(se3di_integration *integration, double t1, int halvings)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    const double middle = 0.5 * (model->time + t1);
+    const double h = t1 - model->time;
+    const se3d_status status = take_step(integration, t1);
+    if (status != SE3D_ERR_STEP_SIZE || halvings == 0) {
+        return status;
+    }
+    SE3DI_TRY(se3di_turns_check(integration->equations, h, TURN_MAX)); /* these are refused */
+    SE3DI_TRY(se3di_stops_check_step(model, SE3DI_PACE_IMPLICIT, h, integration->equations->error));
+    const se3d_status first = take_in_parts(integration, middle, halvings - 1);
+    return first == SE3D_OK ? take_in_parts(integration, t1, halvings - 1) : first;
+}
+
 /* Equal steps of at most `most`. */
 static se3d_status run_steps(se3di_integration *integration, double t_end, double most)
 {
@@ -317,11 +346,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
         if (integration->at_kink) {
             break;
         }
-        status = se3di_equations_try_step(integration->equations, model->time);
-        status = status < 0 ? status : check_step(integration, h);
-        status = status < 0 ? status : se3di_watch_begin(integration->equations);
-        status = status < 0 ? status : advance(integration, t1);
-        status = status < 0 ? status : se3di_watch_end(integration->equations);
+        status = take_in_parts(integration, t1, HALVINGS);
     }
     return status;
 }
