@@ -532,6 +532,15 @@ static se3di_pace_kind pace_of(const se3di_integration *integration)
     return integration->method->is_implicit ? SE3DI_PACE_IMPLICIT : SE3DI_PACE_EXPLICIT;
 }
 
+/* The length was asked for: impacts can be followed with it, or it is an error. */
+static se3d_status check_length(se3di_run *run, double h)
+{
+    const se3di_integration *integration = &run->integration;
+    return integration->method->tag == SE3D_METHOD_CONVEX /* which checks all of its steps */
+               ? SE3D_OK
+               : se3di_contacts_check_step(run->model, pace_of(integration), h, run->error);
+}
+
 /* The next step on the way to t_end: of the length that was asked for, or as contacts need it. */
 static se3d_status choose_step(se3di_run *run, double t_end, double *h)
 {
@@ -540,7 +549,7 @@ static se3d_status choose_step(se3di_run *run, double t_end, double *h)
     double asked = integration->settings.step;
     if (asked > 0.0) {
         *h = rest / se3di_steps_count(rest, asked, t_end);
-        return se3di_contacts_check_step(run->model, pace_of(integration), *h, run->error);
+        return check_length(run, *h);
     }
     *h = se3di_equal_steps_next(integration, integration->settings.step_most, t_end);
     return SE3D_OK;
@@ -782,6 +791,7 @@ static se3d_status run_step(se3di_run *run, double h)
         double end = t_end;
         integration->at_kink = 0;
         h = se3di_kink_step(integration, model->time, h, h, &end);
+        SE3DI_TRY(check_length(run, h));
         const se3d_status status = integration->at_kink
                                        ? pass_kink(run, &integration->kink, t_end - model->time)
                                        : watched_step(run, h, end);
