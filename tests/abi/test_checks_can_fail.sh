@@ -25,6 +25,7 @@ reject() {
 mkdir -p "$work/include/se3d" "$work/lib/base" "$work/lib/math" "$work/lib/io" "$work/tools"
 cp tools/*.py tools/*.sh "$work/tools/"
 cp include/se3d/base.h "$work/include/se3d/"
+baseline_suppressions=$PWD/tests/abi/growth.suppr
 cd "$work" || exit 1
 abi="python3 tools/check_abi.py"
 cc=${CC:-cc}
@@ -164,6 +165,30 @@ reject 'wide.h:2: 103 columns' python3 tools/check_size.py
     echo '}'
 } >lib/math/unset.c
 reject 'uninitialized' sh tools/check_uninitialised.sh lib/math/unset.c
+
+# Growth at the end is fine for the baseline; another type, a member in between and what is gone are not.
+if command -v abidiff >/dev/null; then
+    mkdir -p tests/abi
+    cp "$baseline_suppressions" tests/abi/growth.suppr
+    build() {
+        $cc -g -shared -fPIC -o libgrowth.so growth.c
+    }
+    old='typedef struct se3d_x { unsigned long struct_size; int a; } se3d_x;
+int se3d_f(se3d_x *x, int k); int se3d_f(se3d_x *x, int k) { return x->a + k; }
+int se3d_g(void); int se3d_g(void) { return 1; }'
+    echo "$old" >growth.c
+    build
+    python3 tools/check_baseline.py write libgrowth.so >/dev/null
+    echo "$old" | sed 's/int a;/int a; double b;/' >growth.c
+    echo 'int se3d_h(void); int se3d_h(void) { return 2; }' >>growth.c
+    build
+    python3 tools/check_baseline.py compare libgrowth.so || failed=$((failed + 1))
+    for change in 's/int k/double k/g' 's/int a;/double z; int a;/' 's/int se3d_g.*//'; do
+        echo "$old" | sed "$change" >growth.c
+        build
+        reject 'libgrowth.so:' python3 tools/check_baseline.py compare libgrowth.so
+    done
+fi
 
 echo "$count checks, $failed failed"
 [ "$failed" -eq 0 ]
