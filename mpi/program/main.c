@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "folder.h"
-#include "io/model/model.h"
 #include "se3d/io.h"
 #include "se3d/mpi.h"
 
@@ -234,10 +233,6 @@ static int run_attached(job *j)
 
 static int run_model(job *j)
 {
-    if (j->model->event_count > 0) {
-        (void)fail(j, "events are not looked for by several processes: take `events` out");
-        return EXIT_USAGE;
-    }
     if (!all_agree(choose_folder(j))) {
         return fail(j, "a folder for results cannot be made");
     }

@@ -23,11 +23,6 @@ refuses flows
 } >"$dir/refused.yaml"
 refuses clumps
 
-{ cat "$column" && echo 'events: [{name: calm, channel: particles.energy, value: 1e-3}]'; } >"$dir/refused.yaml"
-share 2 run "$dir/refused.yaml" -o "$dir/refused"
-holds "refused: events" test "$status" -eq 2
-holds "the message says events" grep -q 'events are not looked for' "$dir/err"
-
 share 2 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
 holds "an overlap ends the run" test "$status" -eq 1
 holds "the message names the particles" grep -q 'particle [0-9]* .*overlap' "$dir/err"
