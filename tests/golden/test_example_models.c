@@ -406,6 +406,21 @@ static void rotor_whirls_as_its_imbalance_says(void)
     }
 }
 
+/* Nothing but contact carries the motion: the angles made between 0.3 and 0.6 s, in which 5 teeth
+ * pass, are as the teeth. */
+static void gears_as_meshes_turn_each_other_at_their_ratio(void)
+{
+    example e = run_example("gear_mesh", NULL, NULL, NULL);
+    double turned[2];
+    for (size_t k = 0; k < 2; ++k) {
+        turned[k] =
+            file_number(&e, "gears.csv", 60, 1 + k) - file_number(&e, "gears.csv", 30, 1 + k);
+    }
+    CHECK(turned[0] > 1.8);
+    CHECK_NEAR(turned[1] / turned[0], -18.0 / 27.0, 1e-3);
+    close_example(&e);
+}
+
 int main(void)
 {
     RUN(block_above_the_friction_angle_slides_as_coulomb_says);
@@ -423,5 +438,6 @@ int main(void)
     RUN(suspension_settles_behind_the_kerb);
     RUN(many_swings_end_where_they_began);
     RUN(overconstrained_loop_has_the_same_reactions_by_every_method);
+    RUN(gears_as_meshes_turn_each_other_at_their_ratio);
     return check_finish();
 }
