@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Chrono YAML against closed forms: frames of bodies, functions of motors, springs, loads, gravity."""
 import math
+import subprocess
 
 import tool
 
@@ -286,7 +287,40 @@ def simulation_with_a_model():
                f"notes are {notes}")
 
 
+def touching(material, shape):
+    return (f"contact: {{materials: [{{name: m, {material}}}], shapes: [{{type: BOX, material: m, {shape}}}]}}, "
+            f"visualization: {{shapes: [{{type: SPHERE, radius: 0.1}}]}}")
+
+
+def contacts():
+    """A box slides on the ground until the smaller one of two frictions has stopped it."""
+    hard = "physical_properties: {Youngs_modulus: 1e8, Poisson_ratio: 0.25}, "
+    for law, more in (("hooke", ""), ("hertz_mindlin", hard)):
+        floor = touching(more + "coefficient_of_friction: 0.6, coefficient_of_restitution: 0.3",
+                         "dimensions: [8, 8, 1], location: [0, 0, -0.5]")
+        text = HEAD + "  bodies:\n" + GROUND.replace("fixed: true", "fixed: true, " + floor) + body(
+            "box", [0, 0, 0.05], moments="[0.01, 0.01, 0.01]", more="initial_linear_velocity: [1, 0, 0], " +
+            touching(more + "coefficient_of_friction: 0.4", "dimensions: [0.4, 0.4, 0.1]"))
+        model, notes = convert("contact", text)
+        tool.check(f"law: {law}" in model and "friction: 0.4, restitution: 0.01}" in model, f"contact: {model}")
+        tool.check(all(n["kind"] == "note" for n in notes), f"notes are {notes}")
+        tool.check(model.count("contact: false") == 2, "what is only drawn touches nothing")
+        table = run("contact", model, "type: dynamics, duration: 0.5", ["box.position.x"])
+        tool.near("the way", table["box.position.x"][-1], 1 / (2 * 0.4 * 9.8), 2e-3)
+    _, notes = convert("contact", text.replace("name: m,", "name: n,"), code=1)
+    tool.check(all("is not there" in n["message"] for n in notes if n["kind"] == "lost"), f"notes are {notes}")
+
+
+def machines_without_bodies():
+    path = tool.WORK / "fluid.chrono.yaml"
+    path.write_text(HEAD + "  fluid_properties: {density: 1000}\n")
+    done = subprocess.run([tool.PROGRAM, "import", str(path)], capture_output=True, text=True, check=False)
+    tool.check(done.returncode == 2 and "has no `bodies`" in done.stderr, f"a fluid: {done.stderr}")
+
+
 if __name__ == "__main__":
+    contacts()
+    machines_without_bodies()
     motors_by_function()
     signs_of_motors()
     guides_without_a_joint()

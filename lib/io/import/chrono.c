@@ -62,6 +62,11 @@ static bool read_model(se3di_chrono *c, const se3di_node *model)
     if (!se3di_chrono_bool(c, model, "angle_degrees", &c->degrees) || !read_folder(c, model)) {
         return false;
     }
+    if (!se3di_node_get(model, "bodies")) {
+        return se3di_machine_fail(c->m, model->line, model->column,
+                                  "the model has no `bodies`: those of fluids, beams and vehicles "
+                                  "are not read");
+    }
     for (size_t k = 0; k < sizeof lists / sizeof *lists; ++k) {
         if (!read_all(c, model, lists[k].key, lists[k].read)) {
             return false;

@@ -2,10 +2,12 @@
 /* Chrono: bodies with their shapes. A body has a frame of reference, and in it the frame of its
  * centre of mass, about whose axes the inertia is given. Ours has its origin at the centre and the
  * axes of reference. */
+#include <math.h>
 #include <string.h>
 
 #include "io/import/chrono.h"
 #include "io/import/inertia.h"
+#include "io/import/material.h"
 #include "io/import/mesh.h"
 #include "io/import/scan.h"
 
@@ -110,6 +112,55 @@ static bool read_shape(se3di_chrono *c, const se3di_node *map, se3di_machine_sha
     return m->status >= 0;
 }
 
+/* The material of a contact by its name; its numbers are Chrono's where it says none. */
+static bool take_material(se3di_chrono *c, const se3di_node *contact, const char *name,
+                          se3di_machine_material *out)
+{
+    const se3di_node *at = se3di_chrono_list(c, contact, "materials");
+    for (; at; at = at->next) {
+        const char *own = se3di_chrono_need(c, at, "name");
+        if (!own) {
+            return false;
+        }
+        if (strcmp(own, name) != 0) {
+            continue;
+        }
+        const se3di_node *bulk = se3di_node_get(at, "physical_properties");
+        const se3di_node *spring = se3di_node_get(at, "coefficients");
+        out->name = name;
+        return se3di_chrono_number(c, at, "coefficient_of_friction", &out->friction) &&
+               se3di_chrono_number(c, at, "coefficient_of_restitution", &out->restitution) &&
+               (!bulk || (se3di_chrono_number(c, bulk, "Youngs_modulus", &out->young) &&
+                          se3di_chrono_number(c, bulk, "Young_modulus", &out->young) &&
+                          se3di_chrono_number(c, bulk, "Poisson_ratio", &out->poisson))) &&
+               (!spring || se3di_chrono_number(c, spring, "normal_stiffness", &out->stiffness));
+    }
+    se3di_machine_note_of(c->m, SE3D_IMPORT_LOST, contact->line,
+                          "the contact material `%.80s` is not there", name);
+    return c->m->status >= 0;
+}
+
+/* What a shape touches with; of `visualization`: nothing. */
+static bool read_material(se3di_chrono *c, const se3di_node *parent, const se3di_node *map,
+                          se3di_machine_shape *shape)
+{
+    se3di_machine_material material = {.friction = 0.8, .restitution = 0.01, .poisson = 0.3};
+    const char *name = se3di_chrono_text(c, map, "material");
+    if (c->m->status < 0 || !name) {
+        return c->m->status >= 0;
+    }
+    if (!take_material(c, parent, name, &material)) {
+        return false;
+    }
+    if (!(material.young >= 0.0 && material.young < 1e40)) {
+        material.young = 0.0;
+    }
+    material.poisson = material.poisson >= 0.0 && material.poisson <= 0.49 ? material.poisson : 0.3;
+    material.stiffness = material.stiffness > 0.0 ? material.stiffness : 0.0;
+    shape->material = se3di_machine_material_name(c->m, &material, map->line);
+    return shape->material != NULL;
+}
+
 static bool read_shapes(se3di_chrono *c, const se3di_node *map, const char *key,
                         const se3di_chrono_body *body)
 {
@@ -121,7 +172,7 @@ static bool read_shapes(se3di_chrono *c, const se3di_node *map, const char *key,
         se3di_machine_shape read = {.scale = 1.0, .color = {-1.0, 0.0, 0.0}};
         bool good = false;
         read.frame = se3di_frame_identity();
-        if (!read_shape(c, at, &read, &good)) {
+        if (!read_shape(c, at, &read, &good) || !read_material(c, parent, at, &read)) {
             return false;
         }
         se3di_machine_shape *shape = good ? se3di_machine_add_shape(c->m, body->body) : NULL;
@@ -147,7 +198,20 @@ static bool read_geometry(se3di_chrono *c, const se3di_node *map, const se3di_ch
         se3di_machine_note_of(c->m, SE3D_IMPORT_NOTE, drawn->line,
                               "`model_file` is only drawn: it is left out");
     }
-    return !contact || se3di_chrono_lose(c, map, "contact of", "its shapes touch nothing");
+    if (contact && !read_shapes(c, map, "contact", body)) {
+        return false;
+    }
+    double family = 0.0;
+    if (contact && !se3di_chrono_number(c, contact, "collision_family", &family)) {
+        return false;
+    }
+    if (fabs(family) > 0.0) {
+        se3di_machine_note_of(c->m, SE3D_IMPORT_NOTE, contact->line,
+                              "the collision_family is %g: give the shapes that must not touch a "
+                              "`group` and `mask`",
+                              family);
+    }
+    return c->m->status >= 0;
 }
 
 /* A body of the machine: the ground itself if it is a fixed one of this name. */

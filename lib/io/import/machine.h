@@ -22,6 +22,7 @@ typedef struct se3di_machine_shape {
     double color[3];      /* color[0] < 0: none */
     uint32_t group, mask; /* bits, as in a model file; group 0: not said */
     bool passes;          /* it touches nothing */
+    const char *material; /* NULL: none */
     struct se3di_machine_shape *next;
 } se3di_machine_shape;
 
@@ -95,10 +96,12 @@ typedef struct se3di_machine {
     se3di_pair *parameters, *last_parameter;
     se3di_machine_note *notes, *last_note;
     size_t note_count, lost_count;
-    se3di_ionames body_names, names; /* that are taken */
-    size_t counter;                  /* of names that are made up */
-    double duration;                 /* of the analysis [s] */
-    double step;                     /* of the rows of results [s], 0: none given */
+    struct se3di_machine_material *materials, *last_material; /* material.h */
+    int32_t mixing;                                           /* of two: se3di_mixing */
+    se3di_ionames body_names, names;                          /* that are taken */
+    size_t counter;                                           /* of names that are made up */
+    double duration;                                          /* of the analysis [s] */
+    double step; /* of the rows of results [s], 0: none given */
 } se3di_machine;
 
 /* Fail with "file:line:column: text". @return false. */

@@ -3,6 +3,8 @@
  * 110 characters. */
 #include "io/import/yaml.h"
 
+#include "io/import/material.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -188,7 +190,10 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
     if (shape->color[0] >= 0.0) {
         put_pair(w, indent, "color", se3di_machine_numbers(m, shape->color, 3), false);
     }
-    if (shape->passes) {
+    if (shape->material) {
+        put_pair(w, indent, "material", se3di_machine_quote(m, shape->material), false);
+    }
+    if (shape->passes || (m->materials && !shape->material)) {
         put_pair(w, indent, "contact", "false", false);
     } else if (shape->group > 0) {
         put_pair(w, indent, "group", se3di_machine_text(m, "%u", shape->group), false);
@@ -316,12 +321,113 @@ static void put_head(writer *w)
     }
 }
 
+/* ---- contact ----------------------------------------------------------------------------------*/
+
+static double mix(const se3di_machine *m, double a, double b)
+{
+    return m->mixing == SE3DI_MIXING_LARGEST   ? fmax(a, b)
+           : m->mixing == SE3DI_MIXING_PRODUCT ? a * b
+                                               : fmin(a, b);
+}
+
+/* Whether all of them say how they deform: then they do so as Hertz has it. */
+static bool is_hertzian(const se3di_machine *m)
+{
+    for (const se3di_machine_material *at = m->materials; at; at = at->next) {
+        if (!(at->young > 0.0)) {
+            return false;
+        }
+    }
+    return m->materials != NULL;
+}
+
+static void put_material(writer *w, const se3di_machine_material *one, bool hertzian)
+{
+    static const char indent[] = "     ";
+    se3di_machine *m = w->m;
+    put(w, "  - {");
+    put_pair(w, indent, "name", se3di_machine_quote(m, one->name), true);
+    put_pair(w, indent, "density", "1000", false); /* bodies have their own masses */
+    put_pair(w, indent, "friction", se3di_machine_number(m, one->friction), false);
+    put_pair(w, indent, "restitution", se3di_machine_number(m, one->restitution), false);
+    if (hertzian) {
+        put_pair(w, indent, "young", se3di_machine_number(m, one->young), false);
+        put_pair(w, indent, "poisson", se3di_machine_number(m, one->poisson), false);
+    } else {
+        put_pair(w, indent, "stiffness",
+                 one->stiffness > 0.0 ? se3di_machine_number(m, one->stiffness)
+                                      : "contact_stiffness",
+                 false);
+    }
+    put(w, "}\n");
+}
+
+/* Two materials whose mean would be another than the program's. */
+static void put_mixed(writer *w, const se3di_machine_material *a, const se3di_machine_material *b,
+                      bool *any)
+{
+    static const char indent[] = "       ";
+    se3di_machine *m = w->m;
+    const double friction = mix(m, a->friction, b->friction);
+    const double restitution = fmax(mix(m, a->restitution, b->restitution), 0.01);
+    put(w, *any ? "" : "  pairs:\n");
+    *any = true;
+    put(w, "    - {");
+    put_pair(w, indent, "material_1", se3di_machine_quote(m, a->name), true);
+    put_pair(w, indent, "material_2", se3di_machine_quote(m, b->name), false);
+    put_pair(w, indent, "friction", se3di_machine_number(m, friction), false);
+    put_pair(w, indent, "restitution", se3di_machine_number(m, restitution), false);
+    put(w, "}\n");
+}
+
+static void put_contact(writer *w)
+{
+    const se3di_machine *m = w->m;
+    const bool hertzian = is_hertzian(m);
+    bool any = false;
+    if (!m->materials) {
+        return;
+    }
+    put(w, "\nmaterials:\n");
+    for (const se3di_machine_material *at = m->materials; at; at = at->next) {
+        put_material(w, at, hertzian);
+    }
+    put(w, "\ncontact:\n  law: ");
+    put(w, hertzian ? "hertz_mindlin\n" : "hooke\n");
+    for (const se3di_machine_material *a = m->materials; a; a = a->next) {
+        for (const se3di_machine_material *b = a->next; b; b = b->next) {
+            if (a->friction < b->friction || a->friction > b->friction ||
+                a->restitution < b->restitution || a->restitution > b->restitution) {
+                put_mixed(w, a, b, &any);
+            }
+        }
+    }
+}
+
+/* The stiffness of materials that say none is a number to be changed. */
+static void add_stiffness(se3di_machine *m)
+{
+    bool needed = false;
+    for (const se3di_machine_material *at = m->materials; at; at = at->next) {
+        needed |= !(at->stiffness > 0.0);
+    }
+    if (needed && !is_hertzian(m)) {
+        se3di_machine_note_of(m, SE3D_IMPORT_NOTE, 0,
+                              "contact is of springs: change the parameter contact_stiffness [N/m] "
+                              "if bodies sink in too far, or steps become too small");
+        se3di_machine_parameter(m, "contact_stiffness",
+                                se3di_machine_number(m, se3di_machine_stiffness(m)));
+    }
+}
+
 se3d_status se3di_machine_write(se3di_machine *m, const char **text, size_t *length)
 {
     writer w = {.m = m};
+    add_stiffness(m);
     put_head(&w);
     put_bodies(&w);
     put_sections(&w);
+    put_contact(&w);
     put(&w, "\nanalysis: {type: dynamics, duration: ");
     put(&w, se3di_machine_number(m, m->duration));
     if (m->step > 0.0) {
