@@ -209,8 +209,27 @@ def touching():
     tool.check(done.returncode == 2 and "contype must be a whole number" in done.stderr, done.stderr)
 
 
+def materials():
+    """A ball slides on a plane, with the larger friction of the two, once `contact` is no comment any more."""
+    model, _ = convert("materials.xml", """<mujoco><worldbody><geom type="plane" size="9 9 1" friction="0.2"/>
+      <body name="box" pos="0 0 0.05"><freejoint/><geom type="box" size="0.2 0.2 0.05" friction="0.4 0.01 0"/>
+        <geom type="sphere" size="0.1" mass="0" contype="0" conaffinity="0"/></body>
+      <body name="far" pos="0 3 1"><freejoint/><geom size="0.1" solref="0.02 0.5" friction="0.4"/></body>
+      </worldbody></mujoco>""", code=1)
+    tool.check(model.count("material: ") == 3 and model.count("contact: false") == 1, f"shapes: {model}")
+    e = math.exp(-math.pi * 0.5 / math.sqrt(0.75))
+    tool.check(any(abs(float(r) - e) < 1e-12 for r in re.findall(r"restitution: ([0-9.e-]+)", model)), model)
+    touching_model = re.sub(r"(?m)^# (?=contact:| )", "", model).replace("position: [0, 0, 0.05]",
+                                                                        "position: [0, 0, 0.05]\n    velocity: [1, 0, 0]")
+    table = tool.run("mjcf_materials", tool.replace_analysis(touching_model, (
+        "analysis: {type: dynamics, duration: 0.5}\n"
+        "output: [{file: results.csv, every: 0.05, channels: [box.position]}]\n")))
+    tool.near("the way", table["box.position.x"][-1], 1 / (2 * 0.4 * 9.81), 2e-3)
+
+
 if __name__ == "__main__":
     arm_as_in_urdf()
+    materials()
     masses_of_geoms()
     start_and_range()
     loops_couplings_and_tendons()

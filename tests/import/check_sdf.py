@@ -218,8 +218,20 @@ def lost():
         tool.check(done.returncode == 2 and what in done.stderr and ":3:" in done.stderr, f"{what}: {done.stderr}")
 
 
+def surfaces():
+    """What a surface says of contact is told with its line, and that a model touches itself."""
+    _, notes = one("surface", """<self_collide>true</self_collide><link name='s'><collision name='c'>
+      <geometry><sphere><radius>1</radius></sphere></geometry><surface>
+      <friction><ode><mu>0.3</mu></ode></friction>
+      <bounce><restitution_coefficient>0.6</restitution_coefficient></bounce></surface></collision></link>""")
+    texts = [n["message"] for n in notes]
+    for what in ("friction of 0.3", "restitution of 0.6", "self_collide"):
+        tool.check(any(what in text for text in texts), f"{what}: {texts}")
+
+
 def main():
     arm()
+    surfaces()
     four_bar()
     joint_types()
     placements()

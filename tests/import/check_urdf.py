@@ -197,7 +197,17 @@ def meshes():
     tool.run("urdf_mesh", text + "output: [{file: results.csv, channels: [a.position]}]\n")
 
 
+def gazebo():
+    path = tool.WORK / "gazebo.urdf"
+    path.write_text("<robot name='r'><link name='a'/>\n<gazebo reference='a'>\n<mu1>0.3</mu1>\n"
+                    "<selfCollide>true</selfCollide></gazebo></robot>")
+    _, notes = tool.convert(path)
+    told = [(n["line"], n["message"]) for n in notes if "touch only" in n["message"]]
+    tool.check([line for line, _ in told] == [3, 4] and "mu1 = 0.3" in told[0][1], f"gazebo: {notes}")
+
+
 def main():
+    gazebo()
     robot = xml.parse(tool.SOURCE / "arm.urdf").getroot()
     states = [{"shoulder": (0.0, 0, 0), "elbow.1": (0.0, 0, 0), "slide": (0.0, 0, 0), "grip_a": (0.0, 0, 0)},
               {"shoulder": (0.7, -1.3, 2.1), "elbow.1": (-1.1, 0.9, -3.0), "slide": (0.25, 0.6, -1.4),

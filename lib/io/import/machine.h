@@ -98,10 +98,11 @@ typedef struct se3di_machine {
     size_t note_count, lost_count;
     struct se3di_machine_material *materials, *last_material; /* material.h */
     int32_t mixing;                                           /* of two: se3di_mixing */
-    se3di_ionames body_names, names;                          /* that are taken */
-    size_t counter;                                           /* of names that are made up */
-    double duration;                                          /* of the analysis [s] */
-    double step; /* of the rows of results [s], 0: none given */
+    bool touches_later; /* `contact` is written as a comment, which its reader may take away */
+    se3di_ionames body_names, names; /* that are taken */
+    size_t counter;                  /* of names that are made up */
+    double duration;                 /* of the analysis [s] */
+    double step;                     /* of the rows of results [s], 0: none given */
 } se3di_machine;
 
 /* Fail with "file:line:column: text". @return false. */

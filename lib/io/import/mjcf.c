@@ -2,6 +2,7 @@
 /* MJCF, MuJoCo's format (mujoco.readthedocs.io, XML reference): its settings, defaults and frames.
  * The pose is qpos0: all joints at their `ref`. */
 #include "io/import/mjcf.h"
+#include "io/import/material.h"
 
 #include <string.h>
 
@@ -300,8 +301,9 @@ static void note_others(se3di_mjcf *f)
     if (f->touching > 1) {
         se3di_machine_note_of(
             f->links.m, SE3D_IMPORT_LOST, 0,
-            "contact: geoms of %zu bodies may touch in MuJoCo; here a shape needs "
-            "a material, and the model `contact`; which of them do is in `group` and `mask`",
+            "contact: %zu geoms may touch in MuJoCo; here they have materials, `group` and "
+            "`mask`, and `contact` is a comment at the end: take its signs away to let them "
+            "touch, of springs whose stiffness is a parameter",
             f->touching);
     }
 }
@@ -387,6 +389,8 @@ bool se3di_import_mjcf(se3di_machine *m, se3di_xml *root)
     int count = 0;
     const char *folder = se3di_path_folder(m, m->file);
     m->title = se3di_xml_get(root, "model");
+    m->mixing = SE3DI_MIXING_LARGEST;
+    m->touches_later = true;
     if (!folder || !include_all(&f, root, &count, folder) || !read_settings(&f)) {
         return m->status >= 0 ? se3di_machine_fail_memory(m) : false;
     }

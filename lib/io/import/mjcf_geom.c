@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* MJCF: geoms, which are drawn, and weigh if their body has no mass of its own. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "io/base/elementary.h"
 #include "io/import/inertia.h"
+#include "io/import/material.h"
 #include "io/import/mesh.h"
 #include "io/import/mjcf.h"
 
@@ -232,6 +235,35 @@ void se3di_mjcf_sort_shapes(se3di_mjcf *f)
     }
 }
 
+/* What it touches with. A damping ratio of a spring and damper makes a restitution, one below 1 of
+ * exp(-pi z / sqrt(1 - z^2)); MuJoCo's stiffness goes with the masses and is none of a material. */
+static bool take_material(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
+{
+    se3di_machine_material material = {.friction = 1.0, .poisson = 0.3};
+    double friction[3] = {1.0, 0.005, 0.0001};
+    double solref[2] = {0.02, 1.0};
+    char name[40];
+    int count;
+    if (se3di_mjcf_is(f, e, "contype", "0") && se3di_mjcf_is(f, e, "conaffinity", "0")) {
+        return true;
+    }
+    if (!se3di_mjcf_numbers(f, e, "friction", friction, 3, &count) ||
+        !se3di_mjcf_numbers(f, e, "solref", solref, 2, &count)) {
+        return false;
+    }
+    const double z = solref[1];
+    const double way = -3.14159265358979323846 * z / sqrt(1.0 - z * z);
+    material.friction = friction[0];
+    material.restitution = z >= 0.0 && z < 1.0 && solref[0] > 0.0 ? io_exp(way) : 0.01;
+    snprintf(name, sizeof name, "friction_%.4g", material.friction);
+    for (char *at = name; *at; ++at) {
+        *at = *at == '.' ? '_' : *at;
+    }
+    material.name = name;
+    shape->material = se3di_machine_material_name(f->links.m, &material, e->node->line);
+    return shape->material != NULL;
+}
+
 static void color(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
 {
     double rgba[4];
@@ -266,7 +298,7 @@ bool se3di_mjcf_geom(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e,
     if (weighs && !weigh(f, link, e, &g, &shape)) {
         return false;
     }
-    if (!take_touch(f, e, &shape)) {
+    if (!take_touch(f, e, &shape) || !take_material(f, e, &shape)) {
         return false;
     }
     if (strcmp(g.type, "mesh") == 0 && !take_mesh(f, e, &shape)) {

@@ -9,7 +9,6 @@
 /* Elements that say nothing of the mechanism; others that are not read are noted. */
 static const char *const quiet[] = {"pose",
                                     "static",
-                                    "self_collide",
                                     "visual",
                                     "collision",
                                     "inertial",

@@ -163,6 +163,31 @@ static bool read_shape(se3di_machine *m, const se3di_xml *node, se3di_machine_sh
     return true;
 }
 
+/* What a surface says, with its line. */
+static void note_surface(se3di_machine *m, const se3di_xml *surface, const char *collision)
+{
+    static const struct {
+        const char *path[4];
+        const char *what;
+    } values[] = {{{"friction", "ode", "mu", NULL}, "friction"},
+                  {{"friction", "bullet", "friction", NULL}, "friction"},
+                  {{"bounce", "restitution_coefficient", NULL, NULL}, "restitution"},
+                  {{"contact", "ode", "kp", NULL}, "stiffness"},
+                  {{"contact", "bullet", "kp", NULL}, "stiffness"}};
+    for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
+        const se3di_xml *at = surface;
+        for (int step = 0; at && step < 4 && values[k].path[step]; ++step) {
+            at = se3di_xml_child(at, values[k].path[step]);
+        }
+        if (at) {
+            se3di_machine_note_of(m, SE3D_IMPORT_NOTE, at->line,
+                                  "the collision `%.80s` has a %s of %.40s: shapes touch only if "
+                                  "they get such a `material` and the model `contact`",
+                                  collision, values[k].what, at->text);
+        }
+    }
+}
+
 /* Contact is not carried; which collisions touch only some others is told by their names. */
 static void note_bitmasks(se3di_machine *m, const se3di_xml *node)
 {
@@ -171,6 +196,7 @@ static void note_bitmasks(se3di_machine *m, const se3di_xml *node)
         const se3di_xml *bits =
             se3di_xml_child(se3di_xml_child(surface, "contact"), "collide_bitmask");
         const char *name = se3di_xml_get(at, "name");
+        note_surface(m, surface, name ? name : "");
         if (bits) {
             se3di_machine_note_of(m, SE3D_IMPORT_NOTE, bits->line,
                                   "the collision `%.80s` touches what shares a bit of its "

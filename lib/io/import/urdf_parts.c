@@ -219,6 +219,24 @@ bool se3di_urdf_couple(se3di_machine *m, const se3di_link_joint *joint,
     return m->status >= 0;
 }
 
+/* What Gazebo's own elements say of contact, each with its line. */
+static void note_gazebo(se3di_machine *m, const se3di_xml *gazebo)
+{
+    static const char *const words[] = {"mu1", "mu2",         "mu",          "kp",
+                                        "kd",  "selfCollide", "self_collide"};
+    const char *link = se3di_xml_get(gazebo, "reference");
+    for (const se3di_xml *at = gazebo->first; at; at = at->next) {
+        for (size_t k = 0; k < sizeof words / sizeof *words; ++k) {
+            if (strcmp(at->name, words[k]) == 0) {
+                se3di_machine_note_of(m, SE3D_IMPORT_NOTE, at->line,
+                                      "<gazebo> gives `%.80s` %s = %.40s: shapes touch only if "
+                                      "they get a `material` and the model `contact`",
+                                      link ? link : "all", words[k], at->text);
+            }
+        }
+    }
+}
+
 bool se3di_urdf_others(se3di_machine *m, const se3di_xml *root)
 {
     static const char *const known[] = {"link", "joint", "material"};
@@ -238,6 +256,9 @@ bool se3di_urdf_others(se3di_machine *m, const se3di_xml *root)
             if (!is_first) {
                 break;
             }
+        }
+        if (strcmp(node->name, "gazebo") == 0) {
+            note_gazebo(m, node);
         }
         if (!is_known && is_first) {
             se3di_machine_note_of(m, SE3D_IMPORT_NOTE, node->line,

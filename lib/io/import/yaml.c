@@ -366,12 +366,17 @@ static void put_material(writer *w, const se3di_machine_material *one, bool hert
 static void put_mixed(writer *w, const se3di_machine_material *a, const se3di_machine_material *b,
                       bool *any)
 {
-    static const char indent[] = "       ";
     se3di_machine *m = w->m;
+    const char *indent = m->touches_later ? "#        " : "       ";
     const double friction = mix(m, a->friction, b->friction);
     const double restitution = fmax(mix(m, a->restitution, b->restitution), 0.01);
-    put(w, *any ? "" : "  pairs:\n");
+    const char *sign = m->touches_later ? "# " : "";
+    if (!*any) {
+        put(w, sign);
+        put(w, "  pairs:\n");
+    }
     *any = true;
+    put(w, sign);
     put(w, "    - {");
     put_pair(w, indent, "material_1", se3di_machine_quote(m, a->name), true);
     put_pair(w, indent, "material_2", se3di_machine_quote(m, b->name), false);
@@ -392,7 +397,7 @@ static void put_contact(writer *w)
     for (const se3di_machine_material *at = m->materials; at; at = at->next) {
         put_material(w, at, hertzian);
     }
-    put(w, "\ncontact:\n  law: ");
+    put(w, m->touches_later ? "\n# contact:\n#   law: " : "\ncontact:\n  law: ");
     put(w, hertzian ? "hertz_mindlin\n" : "hooke\n");
     for (const se3di_machine_material *a = m->materials; a; a = a->next) {
         for (const se3di_machine_material *b = a->next; b; b = b->next) {
