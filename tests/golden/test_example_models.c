@@ -244,6 +244,21 @@ static void servo_finds_its_star(void)
 }
 
 /* The cart is where it should be; without anti-windup it overshoots by a third. */
+/* At 1.5 s: the cam and its torque about the crank; the angle of the shaft, whose ratio was 1, 1.5
+ * on the way, and 2; the gripper, which goes with 0.5 m/s until it is 0.0625 m off. */
+static void axes_follow_the_crank_as_they_are_told(void)
+{
+    example e = run_example("electronic_cam", NULL, NULL, NULL);
+    const double lift = 0.04, w = 6.0, angle = 9.0;
+    const double ram = 6.0 * (0.5 * lift * w * w * cos(angle) + 9.81);
+    CHECK_NEAR(channel_of(&e, "guide.displacement", 0), 0.5 * lift * (1.0 - cos(angle)), 1e-9);
+    CHECK_NEAR(channel_of(&e, "cam.effort", 0), ram, 1e-6);
+    CHECK_NEAR(channel_of(&e, "motor.effort", 0), ram * 0.5 * lift * sin(angle), 1e-6);
+    CHECK_NEAR(channel_of(&e, "shaft.angle", 0), w * (0.5 + 0.2 * 1.5 + 0.8 * 2.0), 1e-7);
+    CHECK_NEAR(channel_of(&e, "slide.displacement", 0), 0.1 - 0.0625 * exp(-8.0 * 1.425), 1e-7);
+    close_example(&e);
+}
+
 static void controller_brings_its_cart(void)
 {
     example e = run_example("controller", NULL, NULL, NULL);
@@ -429,6 +444,7 @@ int main(void)
     RUN(governor_finds_its_steady_motion);
     RUN(quarter_car_settles_and_its_tyre_never_pulls);
     RUN(servo_finds_its_star);
+    RUN(axes_follow_the_crank_as_they_are_told);
     RUN(controller_brings_its_cart);
     RUN(rotor_whirls_as_its_imbalance_says);
     RUN(heap_comes_to_rest);

@@ -7,22 +7,14 @@
 #include "io/import/sdf.h"
 
 /* Elements that say nothing of the mechanism; others that are not read are noted. */
-static const char *const quiet[] = {"pose",
-                                    "static",
-                                    "visual",
-                                    "collision",
-                                    "inertial",
-                                    "name",
-                                    "link",
-                                    "joint",
-                                    "frame",
-                                    "model",
-                                    "gravity",
-                                    "allow_auto_disable",
-                                    "enable_wind",
-                                    "must_be_base_link",
-                                    "velocity_decay",
-                                    "kinematic"};
+static const char *const quiet[] = {"pose",           "static",
+                                    "visual",         "collision",
+                                    "inertial",       "name",
+                                    "link",           "joint",
+                                    "frame",          "model",
+                                    "gravity",        "allow_auto_disable",
+                                    "enable_wind",    "must_be_base_link",
+                                    "velocity_decay", "kinematic"};
 
 static bool is_true(const se3di_xml *node)
 {
