@@ -24,26 +24,33 @@ def baseline_of(library):
     return FOLDER / (re.sub(r"\.so.*", "", Path(library).name) + ".abi.xz")
 
 
+def describe(library, path):
+    subprocess.run(["abidw", "--headers-dir", str(ROOT / "include"), "--drop-private-types",
+                    "--no-comp-dir-path", "--no-corpus-path", "--no-show-locs", "--type-id-style",
+                    "hash", library, "--out-file", path], check=True)
+
+
 def write(library):
     """One that was taken of the same library is the same file."""
     with tempfile.NamedTemporaryFile(suffix=".abi") as out:
-        subprocess.run(["abidw", "--headers-dir", str(ROOT / "include"), "--drop-private-types",
-                        "--no-comp-dir-path", "--no-corpus-path", "--no-show-locs",
-                        "--type-id-style", "hash", library, "--out-file", out.name], check=True)
+        describe(library, out.name)
         baseline_of(library).write_bytes(lzma.compress(Path(out.name).read_bytes(), preset=9))
     return []
 
 
 def compare(library):
+    """Both as descriptions: of a library itself abidiff takes what is in headers for private."""
     baseline = baseline_of(library)
     if not baseline.exists():
         return [f"{library}: there is no {baseline.name}"]
-    with tempfile.NamedTemporaryFile(suffix=".abi") as old:
+    with tempfile.NamedTemporaryFile(suffix=".abi") as old, \
+            tempfile.NamedTemporaryFile(suffix=".abi") as new:
         old.write(lzma.decompress(baseline.read_bytes()))
         old.flush()
-        done = subprocess.run(["abidiff", "--no-added-syms", "--headers-dir2", str(ROOT / "include"),
-                               "--drop-private-types", "--suppressions", str(FOLDER / "growth.suppr"),
-                               old.name, library], capture_output=True, text=True, check=False)
+        describe(library, new.name)
+        done = subprocess.run(["abidiff", "--no-added-syms", "--suppressions",
+                               str(FOLDER / "growth.suppr"), old.name, new.name],
+                              capture_output=True, text=True, check=False)
     return [f"{library}:\n{done.stdout}{done.stderr}"] if done.returncode else []
 
 
