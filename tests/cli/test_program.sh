@@ -53,6 +53,8 @@ expect 'fmt of what is no YAML' 2 "$program" fmt "$dir/open.yaml"
 has "$dir/err" 'open.yaml:2:1: syntax error'
 
 expect 'quiet' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" --quiet --duration 0.1
+expect 'every' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" -q --duration 0.1 --every 0.05
+holds 'rows at other times' [ "$(grep -c . "$dir/p2/pendulum.csv")" = 4 ]
 is "$(cat "$dir/out" "$dir/err")" ''
 expect 'the same bits on every run' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" -q
 is "$(cksum <"$dir/p/pendulum.csv")" "$(cksum <"$dir/p3/pendulum.csv")"
@@ -266,6 +268,8 @@ has "$dir/err" ':3:17: joints[0].type: the joint type `hinge` is not supported, 
 has "$dir/err" '       |                 ^'
 has "$dir/err" '4 mistakes'
 has "$dir/out" "\"mistakes\": [{\"file\": \"$dir/worse.yaml\", \"line\": 2, \"column\": 42, \"message\": "
+has "$dir/out" '"path": "bodies[1]", "suggestion": "angular_velocity"}'
+has "$dir/out" '"path": "joints[0].type", "suggestion": "revolute"}'
 printf '\357\273\277se3d: 2\n' >"$dir/worse.yaml"
 expect 'a mark of the byte order' 2 "$program" check "$dir/worse.yaml"
 has "$dir/err" '     1 | se3d: 2'

@@ -144,6 +144,34 @@ static void show(const options *o, const mistakes *m)
     }
 }
 
+/* A member with a part of a text. */
+static void put_part(const char *name, const char *text, size_t length)
+{
+    char part[sizeof((se3d_model_error *)0)->message];
+    snprintf(part, sizeof part, "%.*s", (int)length, text);
+    printf(", \"%s\": ", name);
+    json_put_text(part);
+}
+
+/* What a message "file:line:column: path: what, did you mean `this`?" says, in parts. */
+static void put_parts(const se3d_model_error *e)
+{
+    static const char meant[] = "did you mean `";
+    char place[60];
+    snprintf(place, sizeof place, ":%zu:%zu: ", e->line, e->column);
+    const char *path = strstr(e->message, place);
+    path = path ? path + strlen(place) : e->message;
+    const char *end = strstr(path, ": ");
+    if (path > e->message && end && strcspn(path, " ") > (size_t)(end - path)) {
+        put_part("path", path, (size_t)(end - path));
+    }
+    const char *suggestion = strstr(path, meant);
+    if (suggestion) {
+        suggestion += sizeof meant - 1;
+        put_part("suggestion", suggestion, strcspn(suggestion, "`"));
+    }
+}
+
 static void print_json(const options *o, const mistakes *m, const char *message)
 {
     char file[1024];
@@ -157,6 +185,7 @@ static void print_json(const options *o, const mistakes *m, const char *message)
         printf(", \"line\": %zu, \"column\": %zu, \"message\": ", m->list[k].line,
                m->list[k].column);
         json_put_text(m->list[k].message);
+        put_parts(&m->list[k]);
         fputs("}", stdout);
     }
     fputs("]}\n", stdout);

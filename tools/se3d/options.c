@@ -11,6 +11,20 @@ static int usage_error(const char *command, const char *what, const char *word)
     return EXIT_USAGE;
 }
 
+static int put_setting(options *o, const char *command, const char *name, size_t length,
+                       const char *value)
+{
+    if (o->setting_count == SETTINGS_MAX) {
+        return usage_error(command, "too many --set, no room for", name);
+    }
+    memcpy(o->names[o->setting_count], name, length);
+    o->names[o->setting_count][length] = '\0';
+    o->settings[o->setting_count].name = o->names[o->setting_count];
+    o->settings[o->setting_count].value = value;
+    ++o->setting_count;
+    return EXIT_DONE;
+}
+
 static int add_setting(options *o, const char *command, const char *text)
 {
     const char *equals = strchr(text, '=');
@@ -21,15 +35,7 @@ static int add_setting(options *o, const char *command, const char *text)
     if (length >= sizeof o->names[0]) {
         return usage_error(command, "this name is too long:", text);
     }
-    if (o->setting_count == SETTINGS_MAX) {
-        return usage_error(command, "too many --set, no room for", text);
-    }
-    memcpy(o->names[o->setting_count], text, length);
-    o->names[o->setting_count][length] = '\0';
-    o->settings[o->setting_count].name = o->names[o->setting_count];
-    o->settings[o->setting_count].value = equals + 1;
-    ++o->setting_count;
-    return EXIT_DONE;
+    return put_setting(o, command, text, length, equals + 1);
 }
 
 static int add_caption(options *o, const char *command, const char *text)
@@ -110,6 +116,10 @@ static int read_valued(options *o, const char *command, const char *name, const 
     }
     if (strcmp(name, "--set") == 0) {
         return add_setting(o, command, value) == EXIT_DONE ? used : 0;
+    }
+    if (strcmp(name, "--every") == 0) {
+        static const char every[] = "output[0].every";
+        return put_setting(o, command, every, sizeof every - 1, value) == EXIT_DONE ? used : 0;
     }
     if (strcmp(name, "--caption") == 0) {
         return add_caption(o, command, value) == EXIT_DONE ? used : 0;

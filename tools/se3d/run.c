@@ -699,6 +699,7 @@ const command_entry run_entry = {
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}, modes"},
             COMMAND_OPTIONS_OF_SOLVERS,
+            {"--every", NULL, "T", "time between rows of the first of `output` [s]"},
             {"--checkpoint", NULL, "T",
              "every T seconds of the clock, write all that is needed to go on to run.checkpoint, "
              "beside the results; 0: at every row"},
