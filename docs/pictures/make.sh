@@ -43,7 +43,7 @@ plot pendulum pendulum -y bar.position.y -y bar.position.z -y bar.velocity.y -y 
     -y bar.acceleration.y -y bar.acceleration.z -y drive.effort
 plot slider_crank spatial_slider_crank -y slider.position.x -y slider.velocity.x -y motor.effort
 look slider_crank_3d spatial_slider_crank 0.35
-for name in suspension flyball_governor quarter_car pushed_grains hopper landing_gear geared_arm rotating_drum; do
+for name in suspension flyball_governor quarter_car pushed_grains hopper landing_gear geared_arm gear_train rotating_drum; do
     run $name
 done
 plot suspension suspension -x travel.value -y rocker_pivot.angle -y coil.length -y travel.effort
@@ -59,4 +59,5 @@ look grains pushed_grains 0.8
 look hopper hopper 0.55
 look landing_gear landing_gear 0.4
 look geared_arm geared_arm 0.3
+look gears gear_train 0.3
 look drum rotating_drum 0.9 colour=speed
