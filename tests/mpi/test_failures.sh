@@ -33,7 +33,7 @@ grep -o 'particle [0-9]* .*' "$dir/err" >"$dir/err3"
 holds "it names the same ones on three processes" cmp "$dir/err1" "$dir/err3"
 
 # Killed in the midst: the others end, and mpirun says why; resumed on fewer, as if nothing had been.
-long=analysis.duration=0.04
+long=analysis.duration=0.02
 share 3 run "$column" -o "$dir/killed" --set $long --checkpoint 0 &
 here=$!
 own_processes() { # that may end meanwhile
