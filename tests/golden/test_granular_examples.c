@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The granular examples do what their heads say: what leaves the hopper is counted and nothing is
- * lost beside it; the drum's motor carries the slope; the bucket's pin carries what it has dug. */
+ * lost beside it; the drum's motor carries the slope; the bucket's pin carries what it has dug;
+ * the oedometer's plate holds its load. */
 #include "check.h"
 #include "se3d/io.h"
 #include "se3d/se3d.h"
@@ -144,10 +145,33 @@ static void pin_carries_the_bucket_and_what_it_has_dug(void)
     close_world(&w);
 }
 
+/* A plate on a guide, whose load is followed by what it presses the beads with: it comes down at
+ * each step, less for each newton the more they are pressed. */
+static void plate_of_the_oedometer_holds_its_load(void)
+{
+    static const double times[3] = {0.2, 0.26, 0.32}, loads[3] = {20.0, 50.0, 100.0};
+    se3d_body plate;
+    double z[3];
+    open_world(&w, "oedometer");
+    CHECK(!se3d_body_find(w.system, "plate", &plate));
+    for (int k = 0; k < 3; ++k) {
+        double force[3], torque[3], r[3];
+        go(&w, times[k]);
+        CHECK(!se3d_body_get_contact_wrench(w.system, plate, force, torque));
+        CHECK_NEAR(force[2] / loads[k], 1.0, 0.01);
+        CHECK(!se3d_body_get_position(w.system, plate, r));
+        z[k] = r[2];
+    }
+    CHECK(z[0] > z[1] && z[1] > z[2]);
+    CHECK((z[0] - z[1]) / 30.0 > (z[1] - z[2]) / 50.0);
+    close_world(&w);
+}
+
 int main(void)
 {
     RUN(hopper_discharges_through_its_gate_and_loses_nothing);
     RUN(motor_of_the_drum_carries_the_slope);
+    RUN(plate_of_the_oedometer_holds_its_load);
     RUN(pin_carries_the_bucket_and_what_it_has_dug);
     return check_finish();
 }
