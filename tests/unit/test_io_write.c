@@ -170,6 +170,29 @@ static void every_example_is_written_and_read_as_the_same_system(void)
     check_folder("examples/fsae");
 }
 
+/* Seconds, names and words are those of a file in SI units. */
+static void sections_of_a_file_with_units_are_written_if_they_stay_the_same(void)
+{
+    static const char text[] =
+        "se3d: 1\nunits: {length: mm, force: N, mass: kg, time: s, angle: deg}\n"
+        "parameters: {T: 2, L: 30, u: 5 mm}\n"
+        "bodies: [{name: a, mass: 1, inertia: [1, 1, 1], position: [L, u, 0]}]\n"
+        "analysis: {type: dynamics, duration: T/2, step: 0.1, method: rk4}\n"
+        "output: [{file: a.csv, every: 0.1, channels: [a.position, a.velocity.x]}]\n";
+    se3d_model *model = read_again(text, "m.yaml");
+    char *written = model ? text_of(model, NULL) : NULL;
+    CHECK_CONTAINS(written ? written : "", "parameters:\n  T: 2\n\n");
+    CHECK_CONTAINS(written ? written : "", "\nanalysis: {type: dynamics, duration: T/2, step: 0.1, "
+                                           "method: rk4}\n");
+    CHECK_CONTAINS(written ? written : "", "every: 0.1, channels: [a.position, a.velocity.x]");
+    se3d_model *again = written ? read_again(written, "m.yaml") : NULL;
+    CHECK(again && se3d_system_hash(se3d_model_get_system(model)) ==
+                       se3d_system_hash(se3d_model_get_system(again)));
+    free(written);
+    se3d_model_destroy(again);
+    se3d_model_destroy(model);
+}
+
 /* ---- what a file cannot say -------------------------------------------------------------------*/
 
 static void sections_that_cannot_be_written_are_named_or_left_out(void)
@@ -179,9 +202,12 @@ static void sections_that_cannot_be_written_are_named_or_left_out(void)
         const char *text, *lost;
         int only; /* elements_only leaves it out */
     } rows[] = {
-        {"units: {length: mm}\nanalysis: {type: dynamics, duration: 1, step: 0.1}\n"
-         "output: [{file: a.csv}]\n",
+        {"units: {time: ms}\nanalysis: {type: dynamics, duration: 1, step: 0.1}\n"
+         "output: [{file: a.csv, every: 1}]\n",
          ": analysis, output (of a file with units)", 1},
+        {"units: {length: mm}\nanalysis: {type: dynamics, duration: 1, step: 0.1}\n"
+         "output: [{file: a.csv, channels: [a.position.x - 5]}]\n",
+         ": output (of a file with units)", 1},
         {"units: {length: mm}\ncontact: {step: 1e-4, threads: 2, skin: 1}\n",
          ": contact.threads, contact.skin (of a file with units)", 1},
         {"parameters: {L: 1}\nanalysis: {type: dynamics, duration: 1, step: 0.1}\n"
@@ -500,6 +526,7 @@ static void a_callback_is_named_or_left_out(void)
 int main(void)
 {
     RUN(every_example_is_written_and_read_as_the_same_system);
+    RUN(sections_of_a_file_with_units_are_written_if_they_stay_the_same);
     RUN(sections_that_cannot_be_written_are_named_or_left_out);
     RUN(texts_are_read_again_as_they_were);
     RUN(files_that_a_model_names_are_found_from_another_place);

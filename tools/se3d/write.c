@@ -87,8 +87,9 @@ const command_entry write_entry = {
         "Writes a model in standard form: includes, instances, repeats, mirrored parts, points, "
         "units and expressions of parameters are resolved, names and numbers stand for what "
         "they became. Comments are not kept. Read again, the elements are the same to the bit. "
-        "Analyses, results, events and particles are as the file says them; those of a file with "
-        "`units`, and studies, cannot be written: --partial leaves them out.",
+        "Analyses, results, events and particles are as the file says them. Of a file with "
+        "`units`, analyses and results can be written whose only numbers are seconds; other "
+        "such sections, and studies, cannot: --partial leaves them out.",
     .options =
         (const command_option[]){
             {"--output", "-o", "FILE.yaml", "the file; without it, it is printed"},

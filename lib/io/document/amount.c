@@ -476,22 +476,31 @@ static bool parse_alternative(const char *list, int n, se3di_measure *unit)
     return length > 0 && (at[length] == ',' || at[length] == ']');
 }
 
-/* What the key of `node` asks for. @return false: anything. */
-static bool find_wanted(const se3di_reader *reader, const se3di_node *node, se3di_measure *unit)
+const se3di_key *se3di_amount_find_key(const se3di_node *node)
 {
     const se3di_key *row = NULL;
     for (; node && !row; node = node->parent) {
         row = node->row;
     }
-    if (!row || reader->alternative < 0) {
-        return false;
-    }
+    return row;
+}
+
+bool se3di_amount_find_unit(const se3di_key *row, int alternative, se3di_measure *unit)
+{
     const char *list = row->text ? strchr(row->text, '[') : NULL;
-    if (list && parse_alternative(list + 1, reader->alternative, unit)) {
+    if (list && parse_alternative(list + 1, alternative, unit)) {
         return true;
     }
     *unit = (se3di_measure){{0, 0, 0, 0}, 1.0, 1.0};
     return !list && (row->kind == SE3DI_KIND_NUMBER || row->kind == SE3DI_KIND_COUNT);
+}
+
+/* What the key of `node` asks for. @return false: anything. */
+static bool find_wanted(const se3di_reader *reader, const se3di_node *node, se3di_measure *unit)
+{
+    const se3di_key *row = se3di_amount_find_key(node);
+    return row && reader->alternative >= 0 &&
+           se3di_amount_find_unit(row, reader->alternative, unit);
 }
 
 /* In a unit, from what has none in that of the file. */

@@ -16,6 +16,10 @@ bool se3di_amount_is_needed(const se3di_reader *reader, const char *text);
  * result. Its unit is as written, not yet that of a key. */
 bool se3di_amount_eval(se3di_reader *reader, const se3di_node *node, const char *const *variables,
                        se3di_amount *result);
+/* The row of the key that a node stands under, at any depth; NULL: none. */
+const struct se3di_key *se3di_amount_find_key(const se3di_node *node);
+/* The unit of a key, one of several (from 0). @return false: it takes any, or no number */
+bool se3di_amount_find_unit(const struct se3di_key *row, int alternative, se3di_measure *unit);
 /* Give the quantity of `node` the dimension that the key of `key` asks for: what has no unit is in
  * that of the file; another dimension is an error. The result is in the unit of the key. */
 bool se3di_amount_take(se3di_reader *reader, const se3di_node *node, const se3di_node *key,

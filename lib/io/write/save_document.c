@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/shortest.h"
+#include "io/document/amount.h"
 #include "io/write/save.h"
 
 enum { WIDTH = 100 };
@@ -106,11 +107,54 @@ void se3di_save_roads(se3di_save *s)
     }
 }
 
+/* Whether the texts of a section say in SI units what they say in those of the file: names, and
+ * numbers that are seconds or have no unit. */
+static bool is_same_in_si(const se3di_save *s, const se3di_node *node)
+{
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        if (!is_same_in_si(s, child)) {
+            return false;
+        }
+    }
+    if (node->kind != SE3DI_NODE_SCALAR) {
+        return true;
+    }
+    const se3di_measure *time = &s->model->scope->units.time;
+    const se3di_key *row = se3di_amount_find_key(node);
+    se3di_measure unit;
+    switch (row ? row->kind : SE3DI_KIND_END) {
+    case SE3DI_KIND_BOOL:
+    case SE3DI_KIND_WORD:
+    case SE3DI_KIND_TYPE:
+    case SE3DI_KIND_NAME:
+    case SE3DI_KIND_FILE:
+        return true;
+    case SE3DI_KIND_TEXT:
+    case SE3DI_KIND_CHANNELS:
+        return !strpbrk(node->text, " +-*/^()<>="); /* an expression may have numbers */
+    case SE3DI_KIND_NUMBER:
+    case SE3DI_KIND_COUNT:
+        return se3di_amount_find_unit(row, 0, &unit) && unit.dimension.length == 0 &&
+               unit.dimension.mass == 0 && unit.dimension.angle == 0 &&
+               (unit.dimension.time == 0 || time->times == time->over);
+    default:
+        return false;
+    }
+}
+
+/* A section that can be written as it is; NULL: it is not there, or cannot. */
+static const se3di_node *get_kept(const se3di_save *s, const char *key)
+{
+    const se3di_node *node = get_section(s, key);
+    const bool is_timed = strcmp(key, "analysis") == 0 || strcmp(key, "output") == 0;
+    return node && (!se3di_save_has_units(s) || (is_timed && is_same_in_si(s, node))) ? node : NULL;
+}
+
 void se3di_save_document(se3di_save *s)
 {
     for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) {
-        const se3di_node *node = get_section(s, sections[k]);
-        if (node && !se3di_save_has_units(s)) {
+        const se3di_node *node = get_kept(s, sections[k]);
+        if (node) {
             put_section(s, node);
         }
     }
@@ -131,7 +175,7 @@ static void list_in_units(const se3di_save *s, char text[LIST_SIZE])
 {
     const se3di_node *contact = get_section(s, "contact");
     for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) {
-        if (get_section(s, sections[k])) {
+        if (get_section(s, sections[k]) && !get_kept(s, sections[k])) {
             list(text, sections[k]);
         }
     }
@@ -197,11 +241,12 @@ static bool node_names(const se3di_node *node, const char *name)
 
 static bool is_named(const se3di_save *s, const char *name)
 {
-    const se3di_node *contact = get_section(s, "contact");
-    const se3di_node *roads = get_section(s, "roads");
+    const bool has_units = se3di_save_has_units(s);
+    const se3di_node *contact = has_units ? NULL : get_section(s, "contact");
+    const se3di_node *roads = has_units ? NULL : get_section(s, "roads");
     bool found = (contact && node_names(contact, name)) || (roads && node_names(roads, name));
     for (size_t k = 0; k < sizeof sections / sizeof *sections && !found; ++k) {
-        const se3di_node *node = get_section(s, sections[k]);
+        const se3di_node *node = get_kept(s, sections[k]);
         found = node && node_names(node, name);
     }
     return found;
@@ -230,7 +275,7 @@ static void put_parameters(se3di_save *s)
 {
     const se3di_scope *scope = s->model ? s->model->scope : NULL;
     bool is_first = true;
-    for (size_t k = 0; scope && k < scope->count && !se3di_save_has_units(s); ++k) {
+    for (size_t k = 0; scope && k < scope->count; ++k) {
         if (is_named(s, scope->list[k].name)) {
             put_parameter(s, &scope->list[k], &is_first);
         }
