@@ -110,6 +110,9 @@ static double orthogonalise(const selection *s, size_t r, double *R)
             const double *q = s->Q + k * s->columns;
             double f = dot(s->v, q, s->columns);
             R[k] += f;
+            if (f == 0.0) {
+                continue; /* rows without a body in common */
+            }
             for (size_t c = 0; c < s->columns; ++c) {
                 s->v[c] -= f * q[c];
             }
