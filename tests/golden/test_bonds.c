@@ -82,7 +82,7 @@ static void cantilevers_sag_as_their_beams(void)
         CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL));
         CHECK(added == LINKS - 1);
         CHECK(!se3d_particles_bond_shape(b.particles, &def, wall, -1, &added, NULL) && added == 1);
-        CHECK(!se3d_particles_run(b.particles, 3.0));
+        CHECK(!se3d_particles_run(b.particles, 2.0));
         CHECK(!se3d_particles_get_all(b.particles, LINKS, r, NULL, NULL));
         bend_cantilever(&def, R, weight, sag);
         for (int k = 0; k < LINKS; ++k) {
@@ -173,7 +173,7 @@ static void turns_of_the_whole_strain_nothing(void)
     CHECK(stats_of(&b, 0).count == 4);
     CHECK(!se3d_particles_set_all(b.particles, 4, NULL, v, w));
     const double before = total(&b);
-    CHECK(!se3d_particles_run(b.particles, 20.0)); /* three times around, far more for the axes */
+    CHECK(!se3d_particles_run(b.particles, 7.0)); /* once around */
     CHECK_NEAR(total(&b) / before, 1.0, 1e-8);
     CHECK(stats_of(&b, 0).energy < 1e-6 * before);
     bed_close(&b);
@@ -278,7 +278,7 @@ static double break_block(double part_of_step)
 static void energy_of_a_block_that_breaks_is_told(void)
 {
     CHECK(break_block(1.0) < 1e-3);
-    CHECK(break_block(0.25) < 1e-4);
+    CHECK(break_block(0.5) < 3e-4);
 }
 
 /* Two spheres that a glued one holds: of a load that comes at once the stress is twice the still
@@ -372,9 +372,9 @@ static void near_spheres_are_bonded_once(void)
 
 static void bits_do_not_depend_on_threads(void)
 {
-    uint64_t hash[5];
-    static const int32_t threads[5] = {1, 2, 3, 4, 16};
-    for (int n = 0; n < 5; ++n) {
+    uint64_t hash[3];
+    static const int32_t threads[3] = {1, 3, 16};
+    for (int n = 0; n < 3; ++n) {
         bed b;
         open_block(&b, 0.1, 4000.0, threads[n]);
         CHECK(!se3d_particles_run(b.particles, 0.02));
