@@ -40,7 +40,7 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     const u = new uPlot({
       ...size(), cursor: { sync: { key: "se3d", setSeries: false, scales: ["x", null] }, drag: { x: true, y: false, dist: 5 }, points: { size: 6 } },
       legend: { live: true, markers: { width: 2 } }, scales: { x: { time: false }, y: { range } },
-      axes: [{ ...small, size: 26, gap: 2 }, { ...small, size: 58, gap: 3, values: (_, ticks) => ticks.map(digits) }],
+      axes: [{ ...small, size: 26, gap: 2 }, { ...small, size: 58, gap: 3, space: 20, values: (_, ticks) => ticks.map(digits) }],
       series: [{ label: "t", value: (_, v) => `${digits(v)} s` }, ...series],
       hooks: { setSelect: [(v) => { zoomed = zoomed || v.select.width > 0; }] },
     }, data(quantity), frame);

@@ -284,9 +284,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
 
   // What the camera looks at: the box around the bodies at a few times.
   const low = new THREE.Vector3(1, 1, 1).multiplyScalar(1e9), high = low.clone().negate();
+  const heaviest = bodies.reduce((best, o, k) => (k > 0 && (best < 0 || o.userData.mass > bodies[best].userData.mass) ? k : best), -1);
+  let largest0 = 0, own = null; // of what is not the ground, at one time
   for (let k = 0; k < 24; ++k) {
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
+    const least = new THREE.Vector3(1e9, 1e9, 1e9), most = least.clone().negate();
+    const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
     root.traverse((o) => {
       if (!o.isMesh) return;
       if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
@@ -298,9 +302,17 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       for (let k = 0; k < 8; ++k) {
         va.set(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z).applyMatrix4(o.matrixWorld);
         low.min(va); high.max(va);
+        if (!isOfGround(o)) { least.min(va); most.max(va); }
       }
     });
+    if (heaviest > 0 && most.x >= least.x && most.distanceTo(least) > largest0) {
+      largest0 = most.distanceTo(least);
+      own = [least.sub(bodies[heaviest].position), most.sub(bodies[heaviest].position)];
+    }
   }
+  // What goes far for its size is followed, and as large as it is itself.
+  const isFar = !live && !packed && !second && own !== null && high.distanceTo(low) > 4 * largest0;
+  if (isFar) { pose(start); low.copy(own[0]).add(bodies[heaviest].position); high.copy(own[1]).add(bodies[heaviest].position); }
   if (grid) { // a floor under a road lies just below it
     let least = Infinity;
     pose(start); root.updateMatrixWorld(true);
@@ -348,13 +360,16 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const direction = (azimuth, height) => new THREE.Vector3(Math.cos(azimuth) * Math.cos(height), Math.sin(azimuth) * Math.cos(height), Math.sin(height));
   const fit = () => {
     const [width, height] = film || [innerWidth, innerHeight], bar = film ? 0 : Math.min(0.4 * height, $("bar").offsetHeight + 8);
+    // The middle is above the bar, and beside the plots, or below them where they are above.
+    const box = film ? { width: 0, height: 0 } : $("plots").getBoundingClientRect(), isAbove = width < 600;
+    const side = isAbove ? 0 : Math.min(0.3 * width, box.width), above = isAbove && box.height ? Math.min(0.25 * height, box.bottom) : 0;
     camera.aspect = width / height;
-    if (bar) camera.setViewOffset(width, height, 0, 0.5 * bar, width, height); // the middle is above the bar
+    if (bar || side || above) camera.setViewOffset(width, height, 0.5 * side, 0.5 * (bar - above), width, height);
     else camera.clearViewOffset();
     camera.updateProjectionMatrix();
-    const aspect = width / (height - bar);
+    const aspect = (width - side) / (height - bar - above);
     const back = direction(orbit.azimuth, orbit.height), right = new THREE.Vector3(-Math.sin(orbit.azimuth), Math.cos(orbit.azimuth), 0);
-    const up = back.clone().cross(right), tan = Math.tan(camera.fov * Math.PI / 360) * (1 - bar / height);
+    const up = back.clone().cross(right), tan = Math.tan(camera.fov * Math.PI / 360) * (1 - (bar + above) / height);
     let most = 0;
     for (let k = 0; k < 8; ++k) {
       va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z).sub(center);
@@ -363,6 +378,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     orbit.distance = 1.06 * most;
   };
 
+  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0, second: "ghost" };
   // What hides a joint or a grain from the camera is seen through ("x"): rays tell.
   const ray = new THREE.Raycaster(), solids = [];
   root.traverse((o) => { if (o.isMesh && !o.userData.wire && o.geometry.attributes.normal) solids.push(o); });
@@ -376,12 +392,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   };
   // For each joint and some grains the fewest things before one of its points; none: it is seen.
   const hidden = (azimuth, height, count) => {
-    const found = [], eye = direction(azimuth, height).multiplyScalar(orbit.distance).add(orbit.target), at = new THREE.Vector3();
+    const found = [], eye = new THREE.Vector3(), at = new THREE.Vector3();
     const stride = Math.ceil(shown.length / 60);
     for (let k = 0; k < count; ++k) {
       const t = start + (end - start) * (count > 1 ? k / (count - 1) : 0);
       pose(t);
       root.updateMatrixWorld(true);
+      eye.copy(direction(azimuth, height)).multiplyScalar(orbit.distance).add(state.follow > 0 ? bodies[state.follow].position : orbit.target);
       shown.forEach((e, i) => {
         if (i % stride) return;
         const around = [[0, 0, 0], [0, 0, 0.45], [0, 0, -0.45], [0.9, 0, 0], [-0.9, 0, 0], [0, 0.9, 0], [0, -0.9, 0]]
@@ -409,7 +426,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   // Only given shapes are seen through, never a bar or another joint; nor tubes, of which little would be left.
   const isSlim = (o) => {
     const box = o.geometry.boundingBox, wide = va.copy(box.max).sub(box.min).multiply(o.scale).toArray().map(Math.abs).sort((a, b) => a - b);
-    return wide[1] < 6 * pin && wide[2] > 3 * wide[1];
+    return wide[1] < 2.6 * pin && wide[2] > 3 * wide[1];
   };
   const see = () => {
     if (state.solid) return;
@@ -421,7 +438,6 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     }
   };
 
-  const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0, second: "ghost" };
   reach = 0.08 * size;
   const axes = bodies.map((b) => { const a = new THREE.AxesHelper(0.15 * size); a.visible = false; b.add(a); return a; });
   // Reactions: arrows at the nodes named as joints.
@@ -498,7 +514,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     pose(state.time);
     if (grains) grains.move(state.time);
     shade();
-    if (state.follow > 0) orbit.aim(bodies[state.follow].position);
+    if (state.follow > 0) {
+      const { target } = orbit, way = va.copy(bodies[state.follow].position).sub(target);
+      if (isFar) for (const o of [sun.position, sun.target.position, floor.position]) { o.x += way.x; o.y += way.y; }
+      orbit.aim(bodies[state.follow].position);
+    }
     root.updateMatrixWorld(true);
     camera.lookAt(orbit.target);
     for (const { arrow, joint, column } of arrows) {
@@ -764,7 +784,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     orbit.azimuth = around.reduce((a, b) => (b[0] < a[0] ? b : a))[1];
     fit();
   }
-  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost" });
+  set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost", follow: isFar ? heaviest : -1 });
   set(recall());
   see();
   // Live: whether there is another picture than the last one.
