@@ -132,12 +132,13 @@ static const se3di_shape *as_hull(const se3di_shape *shape, const se3di_shape *o
     return hull;
 }
 
-/* Of two surfaces one must be closed. */
+/* Of two surfaces one must be closed, convex or in convex pieces. */
 int se3di_narrow_is_known(const se3di_shape *i, const se3di_shape *j)
 {
     const group a = group_of(i), b = group_of(j);
     if (a == SURFACE && b == SURFACE) {
-        return i->closed != 0 || j->closed != 0;
+        return i->closed != 0 || j->closed != 0 || i->convex || j->convex ||
+               i->piece_count + j->piece_count > 0;
     }
     return general[a][b].find || general[b][a].find;
 }

@@ -28,7 +28,7 @@ typedef struct se3di_manifold {
 } se3di_manifold;
 
 /* Whether there is contact between two shapes of these kinds; not between two planes, or two
- * surfaces of which none is closed. */
+ * surfaces of which none is closed, convex or in convex pieces. */
 int se3di_narrow_is_known(const se3di_shape *i, const se3di_shape *j);
 
 /* The points where shapes i and j touch; none if they are apart, or their pair is not known. */

@@ -602,6 +602,9 @@ static void look(const se3di_solid *i, const se3di_solid *j, double limit, searc
 void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     search both[2];
+    if (i->shape->closed == 0 && j->shape->closed == 0) {
+        return; /* neither has an inside */
+    }
     look(i, j, LIMIT, both);
     if (fmax(both[0].deepest, both[1].deepest) > 0.5 * both[0].limit) {
         look(i, j, LIMIT_MOST, both);
