@@ -54,7 +54,7 @@ typedef struct se3di_runner {
     size_t file_count; /* open ones */
     se3d_solver *solver;
     struct se3di_guests *guests; /* units beside the analysis; NULL: none */
-    se3di_sample sample; /* what the rows of one time ask for */
+    se3di_sample sample;         /* what the rows of one time ask for */
     se3d_solver_stats stats;
     double time;                 /* where the analysis before ended */
     struct se3di_resume *resume; /* a checkpoint that the run goes on from; NULL: none, or done */
