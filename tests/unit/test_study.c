@@ -663,6 +663,7 @@ static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
                 {"10*x", "", "b: [1, 2]", "x", 2, 1},
                 {"10*a", "", "a: [2, 3]", "1", 2, 0},  /* where it stands */
                 {"x + m", "", "b: [1, 2]", "1", 2, 0}, /* through another parameter */
+                {"0", "", "a: [2, 3]", "b, u: {max: a*pin.angle}", 2, 0}, /* what is measured */
                 {"0", ", method: radau, tolerance: 1e-6*a", "a: [1, 2]", "1", 2, 0}};
     char text[3000];
     for (size_t k = 0; k < sizeof files / sizeof *files; ++k) {
