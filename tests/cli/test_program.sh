@@ -53,6 +53,10 @@ expect 'fmt of what is no YAML' 2 "$program" fmt "$dir/open.yaml"
 has "$dir/err" 'open.yaml:2:1: syntax error'
 
 expect 'quiet' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" --quiet --duration 0.1
+if command -v script >/dev/null; then # at a terminal
+    script -qec "$program run $models/pendulum.yaml -o $dir/p2 --duration 0.1" /dev/null >"$dir/out"
+    has "$dir/out" "next: se3d view $dir/p2"
+fi
 expect 'every' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" -q --duration 0.1 --every 0.05
 holds 'rows at other times' [ "$(grep -c . "$dir/p2/pendulum.csv")" = 4 ]
 is "$(cat "$dir/out" "$dir/err")" ''

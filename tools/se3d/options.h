@@ -71,6 +71,8 @@ se3d_model_options options_get_model(const options *o);
 /* mistakes.c: read the model. @return EXIT_DONE, or EXIT_USAGE after its mistakes were shown. */
 int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model);
 
+/* Tell at a terminal what to do next with the results in a folder. */
+void report_next(const options *o, const char *folder);
 /* Print a failure as text or, with --json, as an object. */
 void report_failure(const options *o, const char *command, const char *message);
 

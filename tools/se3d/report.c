@@ -47,6 +47,16 @@ void put_count(uint64_t count, const char *one, const char *many, const char *af
     printf("%" PRIu64 " %s%s", count, count == 1 ? one : many, after);
 }
 
+void report_next(const options *o, const char *folder)
+{
+    if (!o->quiet && !o->json && is_terminal()) {
+        fflush(stdout);
+        fputs("next: se3d view ", stderr);
+        text_put_plain(stderr, folder);
+        fputs("\n", stderr);
+    }
+}
+
 void report_failure(const options *o, const char *command, const char *message)
 {
     fprintf(stderr, "%s%s%s\n", command, command[0] ? ": " : "", message);

@@ -680,6 +680,11 @@ static int command_run(int count, char *const *words)
         code = warnings_forbid(&warned, EXIT_DONE);
         code = code == EXIT_DONE ? warnings_forbid(&warned, run_model(&warned, model, NULL)) : code;
     }
+    if (code == EXIT_DONE) {
+        char *made = results_folder(&o, model);
+        report_next(&o, o.directory ? o.directory : made ? made : "results");
+        free(made);
+    }
     se3d_model_destroy(model);
     return code;
 }
