@@ -702,7 +702,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const share = () => {
     const part = new URLSearchParams({ t: round(state.time), view: [orbit.azimuth, orbit.height, orbit.distance, ...orbit.target.toArray()].map(round).join(","),
       plot: plots.names().join(","), show: ["frames", "reactions", "traces", "dark", "solid", "labels"].filter((key) => state[key]).join(",") });
-    if (state.follow > 0) part.set("follow", bodies[state.follow].name);
+    if (state.follow > 0 || isFar) part.set("follow", state.follow > 0 ? bodies[state.follow].name : "");
     if (state.colour) part.set("colour", state.colour);
     if (state.mode) part.set("mode", String(state.mode));
     if (secondRoot) part.set("second", state.second);
@@ -722,7 +722,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (part.has("t") && !live && Number.isFinite(Number(part.get("t")))) Object.assign(change, { time: Number(part.get("t")), playing: false });
     (part.get("show") || "").split(",").forEach((key) => { if (["frames", "reactions", "traces", "dark", "solid", "labels"].includes(key)) change[key] = true; });
     const follow = bodies.findIndex((b) => b.name === part.get("follow"));
-    if (follow > 0) change.follow = follow;
+    if (part.has("follow")) change.follow = follow > 0 ? follow : -1;
     if (Number(part.get("mode")) > 0 && Number(part.get("mode")) <= shapes.length) change.mode = Math.floor(Number(part.get("mode")));
     if (["ghost", "beside", "off"].includes(part.get("second"))) change.second = part.get("second");
     if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
