@@ -70,10 +70,8 @@ static void merge(se3di_links *links, size_t a, size_t b)
     se3di_link *to = &links->list[leader];
     se3di_link *from = &links->list[other];
     const se3di_frame in = se3di_frame_in(&to->frame, &from->frame);
-    if (from->mass.mass > 0.0) {
-        const se3di_mass mass = se3di_mass_of(&in, &from->mass);
-        to->mass = se3di_mass_sum(&to->mass, &mass);
-    }
+    const se3di_mass mass = se3di_mass_of(&in, &from->mass); /* a rotor may have inertia alone */
+    to->mass = se3di_mass_sum(&to->mass, &mass);
     to->anchored = to->anchored || from->anchored;
     from->group = leader;
 }
