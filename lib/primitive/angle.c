@@ -59,7 +59,7 @@ double se3di_primitive_angle_value(const se3di_term *t, const se3di_frame *i, co
     return se3di_atan2(cs[1] + 0.0, cs[0]); /* + 0.0: s = -0 is at pi, not -pi */
 }
 
-SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
+static SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     const angle_vectors x = vectors_of(t, i, j);
     for (int k = 0; k < 3; ++k) {
@@ -68,7 +68,7 @@ SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *
     se3di_dot_gradient(way, i, x.m, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     const angle_vectors x = vectors_of(t, i, j);
     return se3di_dot_gamma(way, i, x.m, j, t->a_j) +
@@ -92,7 +92,7 @@ static inline void add_rank_two(double *H, int n, double lambda, const double *t
     }
 }
 
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     const int m = se3di_turns(way);
     const angle_vectors x = vectors_of(t, i, j);

@@ -19,7 +19,7 @@ double se3di_primitive_cd_value(const se3di_term *t, const se3di_frame *i, const
     return se3di_dot(t->c, d);
 }
 
-SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
+static SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     se3di_copy(t->c, phi_j);
     se3di_scale(-1.0, t->c, phi_i);
@@ -27,7 +27,7 @@ SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *
     se3di_gradient(way, j, t->s_j, phi_j, phi_j + 3);
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double d_term[3];
     se3di_distance_velocity_term(way, t, i, j, d_term);
@@ -35,7 +35,7 @@ SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 }
 
 /* In r-p independent of the pose: CD is quadratic in p. */
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     se3di_add_curvature(way, se3di_block(H, n, I, I), i, -lambda, t->s_i, t->c);

@@ -20,7 +20,7 @@ double se3di_primitive_d_value(const se3di_term *t, const se3di_frame *i, const 
     return se3di_dot(d, d);
 }
 
-SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
+static SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     se3di_term_distance(t, i, j, phi_j);
     se3di_scale(2.0, phi_j, phi_j);
@@ -29,7 +29,7 @@ SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *
     se3di_gradient(way, j, t->s_j, phi_j, phi_j + 3);
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double d[3];
     double ddot[3];
@@ -41,7 +41,7 @@ SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 }
 
 /* With D the derivative of d: 2 D^T D, and the second derivatives of A_i s_i and A_j s_j. */
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     double d[3];

@@ -16,9 +16,9 @@ static inline double se3di_dot_value(const se3di_frame *i, const double a_i[3],
 }
 
 /* Rotational parts only: 3 or 4 numbers each. */
-SE3DI_EITHER void se3di_dot_gradient(se3di_way way, const se3di_frame *i, const double a_i[3],
-                                     const se3di_frame *j, const double a_j[3], double *phi_i,
-                                     double *phi_j)
+static SE3DI_EITHER void se3di_dot_gradient(se3di_way way, const se3di_frame *i,
+                                            const double a_i[3], const se3di_frame *j,
+                                            const double a_j[3], double *phi_i, double *phi_j)
 {
     double u[3];
     double v[3];
@@ -28,8 +28,8 @@ SE3DI_EITHER void se3di_dot_gradient(se3di_way way, const se3di_frame *i, const 
     se3di_gradient(way, j, a_j, u, phi_j);
 }
 
-SE3DI_EITHER double se3di_dot_rate(se3di_way way, const se3di_frame *i, const double a_i[3],
-                                   const se3di_frame *j, const double a_j[3])
+static SE3DI_EITHER double se3di_dot_rate(se3di_way way, const se3di_frame *i, const double a_i[3],
+                                          const se3di_frame *j, const double a_j[3])
 {
     double u[3];
     double v[3];
@@ -42,8 +42,8 @@ SE3DI_EITHER double se3di_dot_rate(se3di_way way, const se3di_frame *i, const do
     return se3di_dot(udot, v) + se3di_dot(u, vdot);
 }
 
-SE3DI_EITHER double se3di_dot_gamma(se3di_way way, const se3di_frame *i, const double a_i[3],
-                                    const se3di_frame *j, const double a_j[3])
+static SE3DI_EITHER double se3di_dot_gamma(se3di_way way, const se3di_frame *i, const double a_i[3],
+                                           const se3di_frame *j, const double a_j[3])
 {
     double u[3];
     double v[3];
@@ -60,9 +60,9 @@ SE3DI_EITHER double se3di_dot_gamma(se3di_way way, const se3di_frame *i, const d
     return -se3di_dot(v, u_term) - se3di_dot(u, v_term) - 2.0 * se3di_dot(udot, vdot);
 }
 
-SE3DI_EITHER void se3di_dot_curvature(se3di_way way, const se3di_frame *i, const double a_i[3],
-                                      const se3di_frame *j, const double a_j[3], double lambda,
-                                      double *H)
+static SE3DI_EITHER void se3di_dot_curvature(se3di_way way, const se3di_frame *i,
+                                             const double a_i[3], const se3di_frame *j,
+                                             const double a_j[3], double lambda, double *H)
 {
     const int n = se3di_columns(way), m = se3di_turns(way);
     double *H_ii = se3di_block(H, n, SE3DI_ROTATION_I, SE3DI_ROTATION_I);

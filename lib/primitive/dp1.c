@@ -19,7 +19,7 @@ double se3di_primitive_dp1_value(const se3di_term *t, const se3di_frame *i, cons
     return se3di_dot_value(i, t->a_i, j, t->a_j);
 }
 
-SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
+static SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     for (int k = 0; k < 3; ++k) {
         phi_i[k] = phi_j[k] = 0.0;
@@ -27,12 +27,12 @@ SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *
     se3di_dot_gradient(way, i, t->a_i, j, t->a_j, phi_i + 3, phi_j + 3);
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     return se3di_dot_gamma(way, i, t->a_i, j, t->a_j);
 }
 
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     se3di_dot_curvature(way, i, t->a_i, j, t->a_j, lambda, H);
 }

@@ -53,7 +53,7 @@ void se3di_primitive_dp2_jacobian_rp(const se3di_term *t, const se3di_frame *i,
     se3di_rp_gradient(j, t->s_j, phi_j, phi_j + 3);
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     double u[3];
     double d[3];
@@ -72,7 +72,7 @@ SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 
 /* With U and D the derivatives of u and d: U^T D + D^T U, and the second derivatives of A_i a_i,
  * A_i s_i and A_j s_j. */
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     const int m = se3di_turns(way);

@@ -22,9 +22,9 @@
 
 /* A function of both columns: callers give `way` as a constant, no choice is left when it runs. */
 #ifdef __OPTIMIZE__
-#define SE3DI_EITHER static inline __attribute__((always_inline))
+#define SE3DI_EITHER inline __attribute__((always_inline))
 #else
-#define SE3DI_EITHER static inline
+#define SE3DI_EITHER inline
 #endif
 
 typedef enum se3di_way { SE3DI_WAY_ROMEGA, SE3DI_WAY_RP } se3di_way;
@@ -33,19 +33,19 @@ typedef enum se3di_way { SE3DI_WAY_ROMEGA, SE3DI_WAY_RP } se3di_way;
 enum { SE3DI_ROTATION_I = 3, SE3DI_TERM_TOTAL = 14 };
 
 /* Rotational unknowns of a body. */
-SE3DI_EITHER int se3di_turns(se3di_way way)
+static SE3DI_EITHER int se3di_turns(se3di_way way)
 {
     return way == SE3DI_WAY_RP ? 4 : 3;
 }
 
 /* Columns of a term's rows. */
-SE3DI_EITHER int se3di_columns(se3di_way way)
+static SE3DI_EITHER int se3di_columns(se3di_way way)
 {
     return 2 * (3 + se3di_turns(way));
 }
 
 /* First column of the rotational block of body j. */
-SE3DI_EITHER int se3di_rotation_j(se3di_way way)
+static SE3DI_EITHER int se3di_rotation_j(se3di_way way)
 {
     return 6 + se3di_turns(way);
 }
@@ -103,8 +103,8 @@ static inline void se3di_rp_velocity_term(const se3di_frame *f, const double a[3
     se3di_b_mul(f->pdot, a, f->pdot, out);
 }
 
-SE3DI_EITHER void se3di_gradient(se3di_way way, const se3di_frame *f, const double a[3],
-                                 const double y[3], double *out)
+static SE3DI_EITHER void se3di_gradient(se3di_way way, const se3di_frame *f, const double a[3],
+                                        const double y[3], double *out)
 {
     if (way == SE3DI_WAY_RP) {
         se3di_rp_gradient(f, a, y, out);
@@ -113,8 +113,8 @@ SE3DI_EITHER void se3di_gradient(se3di_way way, const se3di_frame *f, const doub
     }
 }
 
-SE3DI_EITHER void se3di_derivative(se3di_way way, const se3di_frame *f, const double a[3],
-                                   double *D)
+static SE3DI_EITHER void se3di_derivative(se3di_way way, const se3di_frame *f, const double a[3],
+                                          double *D)
 {
     if (way == SE3DI_WAY_RP) {
         se3di_rp_derivative(f, a, D);
@@ -123,7 +123,8 @@ SE3DI_EITHER void se3di_derivative(se3di_way way, const se3di_frame *f, const do
     }
 }
 
-SE3DI_EITHER void se3di_rate(se3di_way way, const se3di_frame *f, const double a[3], double out[3])
+static SE3DI_EITHER void se3di_rate(se3di_way way, const se3di_frame *f, const double a[3],
+                                    double out[3])
 {
     if (way == SE3DI_WAY_RP) {
         se3di_rp_rate(f, a, out);
@@ -132,8 +133,8 @@ SE3DI_EITHER void se3di_rate(se3di_way way, const se3di_frame *f, const double a
     }
 }
 
-SE3DI_EITHER void se3di_velocity_term(se3di_way way, const se3di_frame *f, const double a[3],
-                                      double out[3])
+static SE3DI_EITHER void se3di_velocity_term(se3di_way way, const se3di_frame *f, const double a[3],
+                                             double out[3])
 {
     if (way == SE3DI_WAY_RP) {
         se3di_rp_velocity_term(f, a, out);
@@ -155,8 +156,9 @@ static inline void se3di_term_distance(const se3di_term *t, const se3di_frame *i
 }
 
 /* The rate of d_ij. */
-SE3DI_EITHER void se3di_distance_rate(se3di_way way, const se3di_term *t, const se3di_frame *i,
-                                      const se3di_frame *j, double out[3])
+static SE3DI_EITHER void se3di_distance_rate(se3di_way way, const se3di_term *t,
+                                             const se3di_frame *i, const se3di_frame *j,
+                                             double out[3])
 {
     double arm[3];
     se3di_rate(way, j, t->s_j, out);
@@ -167,9 +169,9 @@ SE3DI_EITHER void se3di_distance_rate(se3di_way way, const se3di_term *t, const 
 }
 
 /* The velocity part of the second time derivative of d_ij. */
-SE3DI_EITHER void se3di_distance_velocity_term(se3di_way way, const se3di_term *t,
-                                               const se3di_frame *i, const se3di_frame *j,
-                                               double out[3])
+static SE3DI_EITHER void se3di_distance_velocity_term(se3di_way way, const se3di_term *t,
+                                                      const se3di_frame *i, const se3di_frame *j,
+                                                      double out[3])
 {
     double arm[3];
     se3di_velocity_term(way, j, t->s_j, out);
@@ -178,8 +180,9 @@ SE3DI_EITHER void se3di_distance_velocity_term(se3di_way way, const se3di_term *
 }
 
 /* The derivative of d_ij: [-I, -D(s_i), I, D(s_j)], 3 x 12 or 3 x 14, row-major. */
-SE3DI_EITHER void se3di_distance_derivative(se3di_way way, const se3di_term *t,
-                                            const se3di_frame *i, const se3di_frame *j, double *D)
+static SE3DI_EITHER void se3di_distance_derivative(se3di_way way, const se3di_term *t,
+                                                   const se3di_frame *i, const se3di_frame *j,
+                                                   double *D)
 {
     const int m = se3di_turns(way);
     double D_i[12];
@@ -248,8 +251,8 @@ static inline void se3di_rp_add_curvature(double *block, double s, const double 
     }
 }
 
-SE3DI_EITHER void se3di_add_curvature(se3di_way way, double *block, const se3di_frame *f, double s,
-                                      const double a[3], const double y[3])
+static SE3DI_EITHER void se3di_add_curvature(se3di_way way, double *block, const se3di_frame *f,
+                                             double s, const double a[3], const double y[3])
 {
     if (way == SE3DI_WAY_RP) {
         se3di_rp_add_curvature(block, s, a, y);

@@ -37,7 +37,7 @@ double se3di_primitive_triple_value(const se3di_term *t, const se3di_frame *i, c
     return se3di_dot(x.d, x.n);
 }
 
-SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
+static SE3DI_EITHER void jacobian(se3di_way way, SE3DI_ON_TERM, double *phi_i, double *phi_j)
 {
     vectors x = vectors_of(t, i, j);
     double arm_i[4];
@@ -72,7 +72,7 @@ static double gamma_by(const vectors *x, const motion *m)
            2.0 * (se3di_dot(x->d, both) + se3di_dot(m->ddot, left) + se3di_dot(m->ddot, right));
 }
 
-SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
+static SE3DI_EITHER double gamma_of(se3di_way way, SE3DI_ON_TERM)
 {
     vectors x = vectors_of(t, i, j);
     motion m;
@@ -127,7 +127,7 @@ static void add_products(const vectors *x, double lambda, const double *U, const
     se3di_block_add_product(se3di_block(H, n, 0, i), n, -lambda, D, n, vU, m);
 }
 
-SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
+static SE3DI_EITHER void curvature(se3di_way way, SE3DI_ON_TERM, double lambda, double *H)
 {
     const int n = se3di_columns(way), I = SE3DI_ROTATION_I, J = se3di_rotation_j(way);
     vectors x = vectors_of(t, i, j);
