@@ -47,7 +47,7 @@ def look(where, name):
                 xml.parse(path)
             if f.endswith(".html"):
                 page = open(path, "rb").read()
-                check(len(re.findall(rb"</?script", page, re.I)) == 14 and b"<!--" not in page.split(b"id=\"results\"")[1].split(b"</script>")[0],
+                check(len(re.findall(rb"</?script", page, re.I)) == 16 and b"<!--" not in page.split(b"id=\"results\"")[1].split(b"</script>")[0],
                       "a page of other scripts", name)
                 page.decode("utf-8")
     check(not os.path.exists(os.path.join(root, "PWNED")) and not os.listdir(os.environ["TMPDIR"]), "left something", name)
@@ -178,7 +178,10 @@ holds 'a page of others' [ ! -e page.html ]
 mkdir "$dir/bin"
 printf '#!/bin/sh\nexit 3\n' >"$dir/bin/npm"
 chmod +x "$dir/bin/npm"
-printf 'THREE\n' >"$dir/three.min.js"
+printf 'THREE\n' >"$dir/other.js"
+expect 'another three.js' 1 env SE3D_CACHE="$dir/own" SE3D_THREE="$dir/other.js" "$program" view . -o page.html
+says 'was not made by'
+printf 'window.se3dReady = 1\nTHREE\n' >"$dir/three.min.js"
 expect 'no home' 0 env -u HOME -u XDG_CACHE_HOME -u SE3D_CACHE SE3D_THREE="$dir/three.min.js" "$program" view . -o page.html
 holds 'not the three.js asked for' grep -q '^THREE$' page.html
 holds "left in the temporary folder: $(ls "$dir/tmp")" [ -z "$(ls "$dir/tmp")" ]

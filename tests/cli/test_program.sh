@@ -113,16 +113,20 @@ expect 'no model' 2 "$program" new "$dir/other.txt"
 has "$dir/err" 'must end with .yaml or .yml'
 expect 'write prints the model' 0 "$program" write "$models/pendulum.yaml" --set L=3
 has "$dir/out" 'type: revolute'
-expect 'write a file with units' 1 "$program" write "$models/axle.yaml" -o "$dir/axle.yaml"
-has "$dir/err" 'cannot be written: analysis, output (of a file with units); `--partial` leaves it out'
-expect 'write' 0 "$program" write "$models/axle.yaml" --partial -o "$dir/axle.yaml"
-is "$(tail -1 "$dir/axle.yaml")" '# Left out: analysis, output (of a file with units)'
-expect 'what is written is a model' 0 "$program" write "$dir/axle.yaml" -o "$dir/again.yaml"
-sed '$d' "$dir/axle.yaml" >"$dir/whole.yaml"
+cp -R "$models/axle.yaml" "$models/parts" "$dir"
+{
+    cat "$models/axle.yaml"
+    printf 'events:\n  - {name: up, channel: left_wheel.travel, value: 1 mm}\n'
+} >"$dir/stopped.yaml"
+expect 'write a file with units' 1 "$program" write "$dir/stopped.yaml" -o "$dir/written.yaml"
+has "$dir/err" 'cannot be written: events (of a file with units); `--partial` leaves it out'
+expect 'write' 0 "$program" write "$dir/stopped.yaml" --partial -o "$dir/written.yaml"
+is "$(tail -1 "$dir/written.yaml")" '# Left out: events (of a file with units)'
+expect 'what is written is a model' 0 "$program" write "$dir/written.yaml" -o "$dir/again.yaml"
+sed '$d' "$dir/written.yaml" >"$dir/whole.yaml"
 expect 'and is written as itself' 0 cmp "$dir/whole.yaml" "$dir/again.yaml"
 expect 'write over the model' 2 "$program" write "$dir/axle.yaml" -o "$dir/axle.yaml"
 has "$dir/err" 'comments and expressions would be lost'
-cp -R "$models/axle.yaml" "$models/parts" "$dir"
 ln -s axle.yaml "$dir/link.yaml"
 ln "$dir/parts/corner.yaml" "$dir/hard.yaml"
 for target in ./axle.yaml link.yaml parts/corner.yaml hard.yaml; do
