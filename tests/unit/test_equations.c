@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What can be asked of equations whose functions fail or that have no value: it is refused, and
+ * its numbers are zero. */
+#include "property/test_joint_world.h"
+
+/* A callback that can be told to fail. */
+typedef struct failing {
+    int fails;
+} failing;
+
+static se3d_status line(void *ctx, const double *x, double jet[3], double *gradient)
+{
+    const failing *f = ctx;
+    jet[0] = 0.1 * x[0];
+    jet[1] = 0.1;
+    jet[2] = 0.0;
+    if (gradient) {
+        gradient[0] = 0.1;
+    }
+    return f->fails ? SE3D_ERR_CALLBACK : SE3D_OK;
+}
+
+/* The x coordinate of the body is 1. */
+static se3d_status at_one(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                          double *jacobian, double *nu, double *gamma)
+{
+    const failing *f = ctx;
+    (void)t;
+    (void)nu;
+    (void)gamma;
+    if (phi) {
+        phi[0] = bodies[0].r[0] - 1.0;
+    }
+    if (jacobian) {
+        jacobian[0] = 1.0;
+    }
+    return f->fails ? SE3D_ERR_CALLBACK : SE3D_OK;
+}
+
+static void check_fails(const world *w, se3d_constraint constraint, se3d_status status)
+{
+    double phi[6], phi_r[18], violation[3];
+    CHECK(se3d_constraint_eval(w->system, constraint, SE3D_FORMULATION_ROMEGA, phi, NULL, NULL) ==
+          status);
+    CHECK(phi[0] == 0.0);
+    if (status == SE3D_ERR_CALLBACK) {
+        CHECK(se3d_system_get_violation(w->system, violation) == status);
+    }
+    if (status == SE3D_ERR_NOT_FINITE) {
+        CHECK(se3d_constraint_eval_jacobian(w->system, constraint, SE3D_FORMULATION_ROMEGA, 1,
+                                            phi_r, NULL) == status);
+        CHECK(phi_r[0] == 0.0);
+    }
+}
+
+static void a_driver_whose_function_fails_has_no_equation(void)
+{
+    const double upwards[3] = {0.0, 0.0, 1.0};
+    failing f = {0};
+    world w;
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_driver_def def = se3d_driver_def_default();
+    se3d_function_def law = se3d_function_def_default();
+    se3d_solver_def how = se3d_solver_def_default();
+    se3d_solver *solver;
+    se3d_constraint driver;
+    double phi;
+    world_init(&w, 3);
+    joint.body_i = w.ground;
+    joint.body_j = w.body[0];
+    CHECK(!se3d_joint_def_set_frame(w.system, &joint, w.system->model.frames[1].r, upwards, NULL));
+    CHECK(!se3d_joint_create_revolute(w.system, &joint, &def.joint));
+    law.callback = line;
+    law.ctx = &f;
+    CHECK(!se3d_function_create(w.system, &law, &def.function));
+    CHECK(!se3d_driver_create(w.system, &def, &driver));
+    CHECK(!se3d_solver_create(w.system, &how, &solver));
+    CHECK(se3d_solver_run(solver, 0.0) >= 0);
+    CHECK(!se3d_constraint_eval(w.system, driver, SE3D_FORMULATION_RP, &phi, NULL, NULL));
+    f.fails = 1;
+    check_fails(&w, driver, SE3D_ERR_CALLBACK);
+    se3d_solver_destroy(solver);
+    world_destroy(&w);
+}
+
+static void a_constraint_whose_callback_fails_has_no_reaction(void)
+{
+    failing f = {0};
+    world w;
+    se3d_user_constraint_def def = se3d_user_constraint_def_default();
+    se3d_solver_def how = se3d_solver_def_default();
+    se3d_solver *solver;
+    se3d_constraint constraint;
+    double force[3], torque[3], phi_r[3];
+    const double r[3] = {1.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0};
+    world_init(&w, 3);
+    CHECK(!se3d_body_set_position(w.system, w.body[0], r));
+    CHECK(!se3d_body_set_velocity(w.system, w.body[0], v));
+    def.callback = at_one;
+    def.ctx = &f;
+    def.bodies[0] = w.body[0];
+    CHECK(!se3d_user_constraint_create(w.system, &def, &constraint));
+    CHECK(!se3d_solver_create(w.system, &how, &solver));
+    CHECK(se3d_solver_run(solver, 0.0) >= 0);
+    CHECK(!se3d_constraint_get_reaction(w.system, constraint, force, torque));
+    f.fails = 1;
+    CHECK(se3d_constraint_get_reaction(w.system, constraint, force, torque) < 0);
+    CHECK(force[0] == 0.0 && torque[0] == 0.0);
+    CHECK(se3d_constraint_eval_jacobian(w.system, constraint, SE3D_FORMULATION_RP, 1, phi_r,
+                                        NULL) == SE3D_ERR_CALLBACK);
+    check_fails(&w, constraint, SE3D_ERR_CALLBACK);
+    se3d_solver_destroy(solver);
+    world_destroy(&w);
+}
+
+/* The direction that the angle is measured to is along the axis. */
+static void an_angle_without_a_direction_has_no_equation(void)
+{
+    const double upright[4] = {1.0, 0.0, 0.0, 0.0};
+    const double over[4] = {0.5, 0.5, 0.5, 0.5}; /* x to y to z to x */
+    world w;
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_driver_def def = se3d_driver_def_default();
+    se3d_constraint driver;
+    world_init(&w, 3);
+    CHECK(!se3d_body_set_orientation(w.system, w.body[0], upright));
+    joint.body_i = w.ground;
+    joint.body_j = w.body[0];
+    joint.ref_i[0] = joint.ref_j[1] = 1.0;
+    CHECK(!se3d_joint_create_revolute(w.system, &joint, &def.joint));
+    CHECK(!se3d_driver_create(w.system, &def, &driver));
+    CHECK(!se3d_body_set_orientation(w.system, w.body[0], over));
+    check_fails(&w, driver, SE3D_ERR_NOT_FINITE);
+    world_destroy(&w);
+}
+
+static void numbers_that_overflow_are_not_given(void)
+{
+    const double far[3] = {1e200, 0.0, 0.0};
+    world w;
+    se3d_primitive_def def = se3d_primitive_def_default();
+    se3d_constraint square;
+    double phi;
+    world_init(&w, 3);
+    def.type = SE3D_PRIMITIVE_D;
+    def.body_i = w.ground;
+    def.body_j = w.body[0];
+    def.value = 4.0;
+    CHECK(!se3d_primitive_create(w.system, &def, &square));
+    CHECK(!se3d_body_set_position(w.system, w.body[0], far));
+    CHECK(se3d_constraint_eval(w.system, square, SE3D_FORMULATION_RP, &phi, NULL, NULL) ==
+          SE3D_ERR_NOT_FINITE);
+    CHECK(phi == 0.0);
+    world_destroy(&w);
+}
+
+/* The distance of a joint that gives none is the present one, which must be one. */
+static void points_that_coincide_have_no_distance(void)
+{
+    const double at[3] = {0.5, 0.0, 0.0};
+    world w;
+    se3d_joint_def def = se3d_joint_def_default();
+    se3d_constraint link;
+    world_init(&w, 3);
+    CHECK(!se3d_body_set_position(w.system, w.body[0], at));
+    def.body_i = w.ground;
+    def.body_j = w.body[0];
+    def.point_i[0] = 0.5;
+    CHECK(se3d_joint_create_distance(w.system, &def, &link) == SE3D_ERR_INVALID_ARGUMENT);
+    def.point_i[0] = 0.0;
+    CHECK(!se3d_joint_create_distance(w.system, &def, &link));
+    world_destroy(&w);
+}
+
+int main(void)
+{
+    RUN(a_driver_whose_function_fails_has_no_equation);
+    RUN(a_constraint_whose_callback_fails_has_no_reaction);
+    RUN(an_angle_without_a_direction_has_no_equation);
+    RUN(numbers_that_overflow_are_not_given);
+    RUN(points_that_coincide_have_no_distance);
+    return check_finish();
+}
