@@ -882,6 +882,7 @@ static void all_mistakes_of_a_draft_are_reported(void)
 static void equal_mistakes_of_different_things_are_all_reported(void)
 {
     static const char text[] = "se3d: 1\n"
+                               "units: mm\n"
                                "bodies:\n"
                                "  - {name: a, fixed: true}\n"
                                "  - {fixed: true}\n"
@@ -889,10 +890,10 @@ static void equal_mistakes_of_different_things_are_all_reported(void)
                                "  - {name: b, fixed: true, position: [w, w, w]}\n";
     se3d_model_error error;
     const mistakes m = find_mistakes(text, &error);
-    CHECK_CONTAINS(m.text, ":4:5: bodies[1].name: is missing");
-    CHECK_CONTAINS(m.text, ":5:5: bodies[2].name: is missing");
-    CHECK_CONTAINS(m.text, ":6:39: bodies[3].position[0]: `w`");
-    CHECK(m.count == 3);
+    CHECK_CONTAINS(m.text, ":5:5: bodies[1].name: is missing");
+    CHECK_CONTAINS(m.text, ":6:5: bodies[2].name: is missing");
+    CHECK_CONTAINS(m.text, ":7:39: bodies[3].position[0]: `w`");
+    CHECK(m.count == 4);
 }
 
 /* An expression that is cut at a comma has two halves, not any number of them. */

@@ -94,7 +94,7 @@ static bool is_foundation(const se3di_node *node)
 {
     return !node->parent->parent &&
            se3di_keys_contain(
-               " se3d parameters points units bodies joints drivers constraints forces materials "
+               " se3d parameters points bodies joints drivers constraints forces materials "
                "contact particles analysis include instances parts ",
                node->key);
 }
