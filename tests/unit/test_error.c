@@ -87,7 +87,12 @@ static void halves_go_to_the_even_integer(void)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
         CHECK(se3di_nearest(rows[k][0]) == rows[k][1]);
     }
-    CHECK(se3di_nearest(0x1.fffffffffffffp-2) == 0.0); /* the sum with a half is rounded up */
+    volatile double below = 0x1.fffffffffffffp-2; /* its sum with a half is rounded up */
+    CHECK(se3di_nearest(below) == 0.0);
+    CHECK(fesetround(FE_UPWARD) == 0);
+    const double up = se3di_nearest(below);
+    CHECK(fesetround(FE_TONEAREST) == 0);
+    CHECK(up == 0.0);
 }
 
 int main(void)

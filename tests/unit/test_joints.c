@@ -89,6 +89,14 @@ static void given_references_define_the_angle(void)
     def.angle0 = 0.0;
     CHECK(se3d_joint_create_revolute(w.system, &def, &pin) == SE3D_OK);
     CHECK_NEAR(angle_of(&w, pin), -PI / 2, 1e-15);
+    def = se3d_joint_def_default(); /* about x, measured from z */
+    def.body_i = w.ground;
+    def.body_j = w.body[0];
+    def.axis_i[0] = def.axis_j[0] = def.ref_i[2] = def.ref_j[2] = 1.0;
+    def.axis_i[2] = def.axis_j[2] = 0.0;
+    def.angle0 = 2 * PI;
+    CHECK(se3d_joint_create_revolute(w.system, &def, &pin) == SE3D_OK);
+    CHECK_NEAR(angle_of(&w, pin), 2 * PI, 1e-15);
     world_destroy(&w);
 }
 
