@@ -13,8 +13,8 @@ stamp="three 0.187 uplot 1.6.32 $(cksum <"$here/three_entry.js")"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 if [ -n "${SE3D_THREE:-}" ]; then # one that this script made elsewhere
-    grep -q '^window.se3dReady = ' "$SE3D_THREE" || {
-        echo "SE3D_THREE: $SE3D_THREE was not made by tools/viewer/build.sh" >&2
+    grep -qF -e "/* $stamp" -- "$SE3D_THREE" || {
+        echo "SE3D_THREE: $SE3D_THREE was not made by tools/viewer/build.sh of this version" >&2
         exit 1
     }
     cp -- "$SE3D_THREE" "$work/three.js"
@@ -25,7 +25,7 @@ elif command -v npm >/dev/null 2>&1; then
         npx --no-install esbuild three_entry.js --bundle --minify --format=iife --global-name=THREE --loader:.css=text \
             --legal-comments=none --log-level=error --outfile=bundle.js)
     {
-        echo '/* three.js:'
+        printf '/* %s\nthree.js:\n' "$stamp"
         cat "$work/node_modules/three/LICENSE"
         printf '\nuPlot:\n'
         cat "$work/node_modules/uplot/LICENSE"
