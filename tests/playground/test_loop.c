@@ -109,6 +109,39 @@ static void check_saving(void)
     check_motion(80.0, turn_until_quiet());
 }
 
+/* Particles beside a body that follows a driver on one joint too many: a step is one turn. */
+static void check_particles(void)
+{
+    FILE *file = fopen(path, "w");
+    CHECK(file != NULL);
+    if (!file) {
+        return;
+    }
+    fputs("se3d: 1\n"
+          "materials: [{name: glass, density: 2500, stiffness: 2e4}]\n"
+          "contact: {law: hooke}\n"
+          "particles: [{material: glass, radius: 0.01, packing: lattice, lower: [0, 0, 1],\n"
+          "             upper: [0.05, 0.05, 1.05]}]\n"
+          "bodies: [{name: blade, mass: 1, inertia: [1, 1, 1], position: [2, 0, 0]}]\n"
+          "joints:\n"
+          "  - {name: rail, type: prismatic, body_i: ground, body_j: blade, at: [2, 0, 0],\n"
+          "     axis: [1, 0, 0]}\n"
+          "  - {name: other, type: prismatic, body_i: ground, body_j: blade, at: [2, 0, 1],\n"
+          "     axis: [1, 0, 0]}\n"
+          "drivers: [{name: way, joint: rail, value: 0.5*t}]\n"
+          "analysis: {type: kinematics, duration: 1}\n",
+          file);
+    fclose(file);
+    CHECK(*se3d_play_open(path) == '\0');
+    CHECK(se3d_play_say("pause") && se3d_play_say("reset"));
+    (void)turn_until_quiet();
+    CHECK(se3d_play_say("step"));
+    (void)se3d_play_turn();
+    const char *state = se3d_play_take_state();
+    CHECK_NEAR(read_number(state, "\"t\":"), 1.0 / 60.0, 1e-9);
+    CHECK_CONTAINS(state, "\"grains\":\"");
+}
+
 static void check_refusals(void)
 {
     char words[300];
@@ -134,6 +167,7 @@ int main(void)
     check_opening();
     check_orders();
     check_saving();
+    check_particles();
     check_refusals();
     remove(path);
     return check_finish();

@@ -165,14 +165,14 @@ static se3d_status run_all(const se3di_live *live, double time)
     (void)se3d_particles_get_time(particles->set, &now);
     (void)se3d_particles_get_step(particles->set, &step);
     const double piece = step > 0.0 ? 20.0 * step : time - now;
-    while (status == SE3D_OK && now < time && !is_ended(live)) {
+    do {
         now = fmin(time, now + piece);
         status = se3di_tagged_advance(s->model, def, s->solver, now);
         (void)se3d_system_get_time(s->model->system, &now);
         if (status == SE3D_ERR_INTERRUPTED) {
             (void)se3d_particles_run(particles->set, now);
         }
-    }
+    } while (status >= 0 && status != SE3D_INFO_EVENT && now < time && !is_ended(live));
     return status;
 }
 
