@@ -52,6 +52,22 @@ for text in other tsda_mass 'block: position [m]'; do
 done
 ! grep -q 'block.position.x' "$dir/two.svg" || fail 'the name of the channel is repeated'
 
+# What two runs differ by, as far as both go; other times, other channels and other options are refused.
+awk 'BEGIN { print "time,a.position.x,a.position.y"; for (k = 0; k < 9; ++k) print k / 10 "," k * k "," 5 }' >"$dir/one.csv"
+awk 'BEGIN { print "time,a.position.y,a.position.x"; for (k = 0; k < 7; ++k) print k / 10 "," 5 - k "," k * k + 0.25 }' >"$dir/second.csv"
+expect 'a difference' 0 "$program" plot "$dir/one.csv" "$dir/second.csv" --difference -o "$dir/apart.svg"
+has "$dir/apart.svg" 'difference of position'
+awk -F, 'NR == 1 { if ($0 != "time,a.position.x,a.position.y") exit 1 } NR > 1 && ($1 != (NR - 2) / 10 || $2 != 0.25 || $3 != 2 - NR) { exit 1 }
+    END { if (NR != 8) exit 1 }' "$dir/apart.difference.csv" || fail 'the second less the first'
+sed 's/^0.3,/0.31,/' "$dir/second.csv" >"$dir/third.csv"
+expect 'rows at other times' 1 "$program" plot "$dir/one.csv" "$dir/third.csv" --difference -o "$dir/none.svg"
+has "$dir/err" 'third.csv has rows at other times than'
+expect 'a channel that one lacks' 1 "$program" plot "$dir/one.csv" "$dir/a.csv" --difference -o "$dir/none.svg"
+has "$dir/err" 'a.csv has no channel a.position.x'
+[ ! -e "$dir/none.svg" ] || fail 'it is drawn'
+expect 'a difference of one' 2 "$program" plot "$dir/one.csv" --difference
+expect 'a difference over something else' 2 "$program" plot "$dir/one.csv" "$dir/second.csv" --difference -x a.position.x
+
 # Kinematics of a suspension over the travel of its wheel, with units.
 awk 'BEGIN { print "time,hub.travel,hub.toe,tyre.fz"; for (k = 0; k < 9; ++k) print k "," k / 100 "," k / 1000 "," 10 * k }' >"$dir/bump.csv"
 expect 'toe over travel' 0 "$program" plot "$dir/bump.csv" -x hub.travel -y hub.toe -y tyre.fz

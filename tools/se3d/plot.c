@@ -78,6 +78,8 @@ static int read_word(plot *p, const char *word)
         p->help = 1;
     } else if (strcmp(word, "--fft") == 0) {
         p->fft = 1;
+    } else if (strcmp(word, "--difference") == 0) {
+        p->difference = 1;
     } else if (strcmp(word, "--quiet") == 0 || strcmp(word, "-q") == 0) {
         p->quiet = 1;
     } else if (word[0] == '-') {
@@ -121,6 +123,10 @@ static int read_words(plot *p, int count, const char *const *words)
     }
     if (p->file_count == 0 && !p->help) {
         fputs("se3d plot: which results? Give a CSV file, see `se3d help plot`\n", stderr);
+        return EXIT_USAGE;
+    }
+    if (p->difference && !p->help && (p->file_count != 2 || p->x || p->fft)) {
+        fputs("se3d plot: --difference is of two files, without -x and --fft\n", stderr);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -245,7 +251,7 @@ static int plot_all(plot *p)
     if (!process_is_found("gnuplot")) {
         return process_report_missing("plot", "gnuplot", "gnuplot-nox");
     }
-    if (p->fft && !plot_transform(p)) {
+    if ((p->fft && !plot_transform(p)) || (p->difference && !plot_subtract(p))) {
         return EXIT_FAILED;
     }
     return draw(p);
@@ -319,6 +325,9 @@ const command_entry plot_entry = {
              "reactions)"},
             {"-o", NULL, "FILE", "name of the picture; .svg, .png or .pdf is replaced by each"},
             {"--fft", NULL, NULL, "amplitude over frequency; the spectrum is kept as FILE.fft.csv"},
+            {"--difference", NULL, NULL,
+             "of two runs: the second less the first, at the same times; kept as "
+             "FILE.difference.csv"},
             {"--style", NULL, "STYLE", "screen (default), or paper: small letters, thin lines"},
             {"--width", NULL, "WIDTH", "of the picture, 30mm to 1000mm (of paper: 85mm)"},
             COMMAND_OPTION_QUIET,
@@ -331,6 +340,7 @@ const command_entry plot_entry = {
             {"plot results/bump/bump.csv -x hub.travel -y hub.toe -y hub.camber",
              "kinematics of a suspension over the travel of its wheel"},
             {"plot a.csv b.csv -y bar.position.z -o compared", "two runs in one frame"},
+            {"plot a.csv b.csv --difference -o apart", "how far they are apart"},
             {0}},
     .exits = "0 done; 1 a file or program failed; 2 bad usage.",
 };

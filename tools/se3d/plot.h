@@ -35,7 +35,8 @@ typedef struct plot {
     int paper;                          /* --style paper: for print */
     double width;                       /* of the picture [mm]; 0: as it comes */
     int fft;
-    int bode; /* gains and phases over frequency */
+    int difference; /* of the second file to the first */
+    int bode;       /* gains and phases over frequency */
     int quiet;
     int help;
     int done; /* the model's own plots are drawn */
@@ -45,8 +46,26 @@ typedef struct plot {
 int plot_choose(plot *p);
 /* Replace the tables by their amplitude spectra, in files beside the picture. */
 int plot_transform(plot *p);
+/* Replace two tables by the second one less the first one, in a file beside the picture. */
+int plot_subtract(plot *p);
 /* Replace tables of transfer functions by gains and phases, in files beside the picture. */
 int plot_make_bode(plot *p);
+
+/* Numbers of the curves that are drawn. */
+typedef struct plot_curves {
+    const char *first_name; /* of what they are over */
+    const double *first;    /* [rows] */
+    const double *values;   /* values[curve * stride + row] */
+    size_t stride, rows;
+    int digits;
+} plot_curves;
+size_t plot_count_curves(const plot *p);
+/* Write them to a file. @return false: errno says why. */
+int plot_write_curves(const plot *p, const plot_curves *c, const char *path);
+/* Draw the files p->spectra, which are written, of the same curves; `what` of them goes into the
+ * titles. @return false after a message. */
+int plot_take_files(plot *p, const char *what);
+
 /* Write the script. @return false: errno says why. */
 int plot_write_script(plot *p, const char *path);
 

@@ -113,8 +113,8 @@ static int convert_table(plot *p, size_t k, char *path, size_t size)
 
 int plot_make_bode(plot *p)
 {
-    if (p->fft) {
-        return 1; /* spectra are of the columns as they are */
+    if (p->fft || p->difference) {
+        return 1; /* which are of the columns as they are */
     }
     for (size_t k = 0; k < p->file_count; ++k) {
         if (!is_transfer(&p->tables[k]) || is_asked(p, &p->tables[k])) {

@@ -81,7 +81,7 @@ static void get_amplitudes(double *re, double *im, size_t n)
     }
 }
 
-static size_t count_curves(const plot *p)
+size_t plot_count_curves(const plot *p)
 {
     size_t count = 0;
     for (size_t k = 0; k < p->panel_count; ++k) {
@@ -115,25 +115,24 @@ static int compute(const plot *p, const table *t, double *values, size_t n, doub
     return good;
 }
 
-static int write_spectrum(const plot *p, const char *path, const double *values, size_t n,
-                          double duration)
+int plot_write_curves(const plot *p, const plot_curves *c, const char *path)
 {
-    const size_t curves = count_curves(p);
+    const size_t curves = plot_count_curves(p);
     FILE *file = se3di_partial_open(path);
     if (!file) {
         return 0;
     }
-    fputs("frequency", file);
+    fputs(c->first_name, file);
     for (size_t k = 0; k < p->panel_count; ++k) {
         for (size_t i = 0; i < p->panels[k].count; ++i) {
             fprintf(file, ",%s", p->panels[k].names[i]);
         }
     }
     fputc('\n', file);
-    for (size_t i = 0; i < n / 2; ++i) {
-        fprintf(file, "%.9g", (double)i * (double)(n - 1) / (double)n / duration);
-        for (size_t c = 0; c < curves; ++c) {
-            fprintf(file, ",%.9g", values[c * n + i]);
+    for (size_t i = 0; i < c->rows; ++i) {
+        fprintf(file, "%.*g", c->digits, c->first[i]);
+        for (size_t k = 0; k < curves; ++k) {
+            fprintf(file, ",%.*g", c->digits, c->values[k * c->stride + i]);
         }
         fputc('\n', file);
     }
@@ -150,10 +149,16 @@ static int transform_table(plot *p, size_t k, char *path, size_t size)
         n *= 2;
     }
     snprintf(path, size, k == 0 ? "%s.fft.csv" : "%s.%zu.fft.csv", p->base, k + 1);
-    double *values = malloc(count_curves(p) * n * sizeof *values);
+    const size_t curves = plot_count_curves(p);
+    double *values = malloc((curves + 1) * n * sizeof *values); /* frequencies are the last */
     const int good = values && compute(p, t, values, n, &duration);
+    for (size_t i = 0; good && i < n / 2; ++i) {
+        values[curves * n + i] = (double)i * (double)(n - 1) / (double)n / duration;
+    }
+    const plot_curves made = {
+        "frequency", values ? values + curves * n : NULL, values, n, n / 2, 9};
     errno = 0;
-    if (!good || !write_spectrum(p, path, values, n, duration)) {
+    if (!good || !plot_write_curves(p, &made, path)) {
         fprintf(stderr, "se3d plot: %s: %s\n", good ? path : t->path,
                 good     ? strerror(errno)
                 : values ? "a spectrum needs at least three rows of increasing time"
@@ -170,7 +175,7 @@ static int transform_table(plot *p, size_t k, char *path, size_t size)
 static int take_names(plot *p, const table *spectrum)
 {
     size_t column = 1;
-    if (spectrum->count != count_curves(p) + 1) {
+    if (spectrum->count != plot_count_curves(p) + 1) {
         return 0;
     }
     for (size_t k = 0; k < p->panel_count; ++k) {
@@ -181,18 +186,12 @@ static int take_names(plot *p, const table *spectrum)
     return 1;
 }
 
-/* The tables keep the names of their columns; their files and orders of columns are replaced. */
-int plot_transform(plot *p)
+int plot_take_files(plot *p, const char *what)
 {
-    for (size_t k = 0; k < p->file_count; ++k) {
-        if (!transform_table(p, k, p->spectra[k], sizeof p->spectra[k])) {
-            return 0;
-        }
-    }
     for (size_t k = 0; k < p->panel_count; ++k) {
         char rest[160];
         snprintf(rest, sizeof rest, "%s", p->panels[k].title);
-        snprintf(p->panels[k].title, sizeof p->panels[k].title, "amplitude of %.140s", rest);
+        snprintf(p->panels[k].title, sizeof p->panels[k].title, "%.15s of %.140s", what, rest);
     }
     for (size_t k = 0; k < p->file_count; ++k) {
         table spectrum;
@@ -206,6 +205,20 @@ int plot_transform(plot *p)
         }
         table_destroy(&p->tables[k]);
         p->tables[k] = spectrum;
+    }
+    return 1;
+}
+
+/* The tables keep the names of their columns; their files and orders of columns are replaced. */
+int plot_transform(plot *p)
+{
+    for (size_t k = 0; k < p->file_count; ++k) {
+        if (!transform_table(p, k, p->spectra[k], sizeof p->spectra[k])) {
+            return 0;
+        }
+    }
+    if (!plot_take_files(p, "amplitude")) {
+        return 0;
     }
     p->x = "frequency";
     strcpy(p->x_title, "frequency [Hz]");
