@@ -2,7 +2,7 @@
 // Opens a page of `se3d view` in headless Chromium and checks it:
 //     node page.js PAGE CSV BODY [PICTURE]        a mechanism, whose results are in CSV
 //     node page.js PAGE CSV grains                particles: snapshots in CSV; the time of a picture is reported
-//     node page.js PAGE none                      that it loads
+//     node page.js PAGE none                      that it loads, and may ask nobody
 //     node page.js PAGE joints                    that every joint and spring is seen, also on a telephone's screen
 //     node page.js PAGE beads                     that a third of the grains is seen
 //     node page.js PAGE modes CSV                 shapes of the modes in CSV, of two bodies on springs
@@ -376,7 +376,7 @@ const checkPlayground = async () => {
 const start = async () => {
   let ready = false;
   const shown = csv === "playground" ? "!!document.getElementById('page').contentWindow.se3d" : "!!window.se3d";
-  for (let k = 0; k < 200 && !ready; ++k) { await wait(100); ready = await evaluate(shown); }
+  for (let k = 0; k < 800 && !ready; ++k) { await wait(25); ready = await evaluate(shown); }
   check(ready, "the page starts");
 };
 
@@ -388,6 +388,8 @@ const checkSecond = async ({ names, rows }, name) => {
     await evaluate(`se3d.show(${row[0]})`);
     check(apart(await where(), row.slice(column, column + 3)) < 1e-4, `the other run at t = ${row[0]}: ${await where()}`);
   }
+  const at = await evaluate(`se3d.project(se3d.second(${JSON.stringify(name)}))`);
+  check(at[0] > 0 && at[0] < 800 && at[1] > 0 && at[1] < 450, `it is in the picture: ${at}`);
   const [ghost, own] = [await where(), await evaluate(`se3d.position(${JSON.stringify(name)})`)];
   check(apart(ghost, own) > 1e-3, "it is another one");
   for (const state of ["beside", "off", "ghost"]) {
@@ -413,6 +415,13 @@ const run = async () => {
   } else if (csv === "second") {
     await checkSecond(read(body), picture);
     picture = undefined;
+  } else if (csv === "none") {
+    const refused = await evaluate(`new Promise((done) => { addEventListener("securitypolicyviolation", (e) => done(e.effectiveDirective));
+      fetch("http://127.0.0.1:9/").catch(() => {}); setTimeout(() => done("nothing"), 2000); })`);
+    check(refused === "connect-src", `what asks a network is refused: ${refused}`);
+    await wait(100);
+    problems.splice(0, problems.length, ...problems.filter((text) => !text.includes("127.0.0.1:9")));
+    asked.length = 0;
   } else if (csv === "beads") {
     await checkBeads();
   } else if (body === "grains") {
@@ -434,6 +443,7 @@ const run = async () => {
     fs.writeFileSync(picture, Buffer.from(shot.data, "base64"));
   }
   check(problems.length === 0, "no error on the console: " + problems.join("; "));
+  if (!page.startsWith("http:")) check(asked.length === 0, `nothing is asked of a network: ${asked}`);
 };
 
 (async () => {

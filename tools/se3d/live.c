@@ -156,7 +156,7 @@ static char *make_page(size_t *size)
         return NULL;
     }
     FILE *file = open_memstream(&data, size);
-    const int good = file && page_put_begin(file, parts) &&
+    const int good = file && page_put_begin(file, parts, 0) &&
                      page_put_part(file, parts, "live.html") &&
                      page_put_end(file, parts, "live.js");
     page_end(parts);

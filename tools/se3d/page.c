@@ -153,10 +153,16 @@ void page_end(const page_parts *p)
     }
 }
 
-int page_put_begin(FILE *file, const page_parts *p)
+int page_put_begin(FILE *file, const page_parts *p, int asks_nobody)
 {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-          "<meta name=\"viewport\" content=\"width=device-width\">"
+    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n", file);
+    if (asks_nobody) {
+        fputs("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+              "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+              "base-uri 'none'; form-action 'none'\">\n",
+              file);
+    }
+    fputs("<meta name=\"viewport\" content=\"width=device-width\">"
           "<link rel=\"icon\" href=\"data:,\">\n<title>se3d</title>\n<style>\n",
           file);
     const int good = put_file(file, p->viewer, "viewer.css");

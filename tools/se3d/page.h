@@ -19,8 +19,9 @@ typedef struct page_parts {
 int page_begin(page_parts *p, const char *command);
 void page_end(const page_parts *p);
 /* Write the page to where its own data begin, and from their end on, with one more script at its
- * end (NULL: none). @return false after a message. */
-int page_put_begin(FILE *file, const page_parts *p);
+ * end (NULL: none). A page that `asks_nobody` may load nothing, whatever its data say. @return
+ * false after a message. */
+int page_put_begin(FILE *file, const page_parts *p, int asks_nobody);
 int page_put_end(FILE *file, const page_parts *p, const char *script);
 /* Write another file of tools/viewer. */
 int page_put_part(FILE *file, const page_parts *p, const char *name);

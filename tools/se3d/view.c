@@ -145,7 +145,7 @@ static int put_modes(FILE *file, const page *p)
 
 static int put_page(FILE *file, const page *p)
 {
-    int good = page_put_begin(file, &p->parts);
+    int good = page_put_begin(file, &p->parts, 1);
     fputs("<script type=\"text/plain\" id=\"glb\">", file);
     base64_put(file, p->glb, p->glb_size);
     fputs("</script>\n<script type=\"text/plain\" id=\"other\">", file);

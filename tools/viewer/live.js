@@ -31,6 +31,7 @@
     busy = false;
   };
   let version = -1, list = -1, viewer = null, sliders = [];
+  const graves = []; // what frees the pictures before
   // What names a body is said of a version of the scene, what names a number of one of the list of them.
   const live = { post: (kind, words) => post(kind, kind === "pull" ? `${version} ${words}` : words), pulls: () => $("pull").getAttribute("aria-pressed") === "true" };
 
@@ -67,7 +68,7 @@
     if (viewer) viewer.hold(true);
     const scene = await (await ask("scene")).json();
     if (viewer) viewer.share();
-    const bury = viewer ? viewer.close() : () => {};
+    if (viewer) graves.push(viewer.close());
     viewer = await se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: scene.box ? { box: scene.box } : null, modes: null, live });
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
@@ -75,7 +76,7 @@
     live.painted = () => { // the first picture
       live.painted = null;
       window.se3dLive.drawn = Date.now();
-      bury();
+      graves.splice(0).forEach((bury) => bury());
     };
   };
   const follow = async () => {

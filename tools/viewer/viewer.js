@@ -44,21 +44,23 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
 
   // Motion: a clip of three.js. A long one was thinned out to more than half of the most samples: then a curve
   // through its points.
-  const mixer = new THREE.AnimationMixer(root), [clip] = gltf.animations, times = clip ? clip.tracks[0].times : new Float32Array([0]);
-  let action = null;
-  if (clip) {
+  const animate = (top, all, { animations: [clip], parser }) => {
+    if (!clip || !clip.tracks.length) return { times: new Float32Array([0]), show: () => {} };
+    const mixer = new THREE.AnimationMixer(top), { times } = clip.tracks[0];
     clip.tracks.forEach((track, k) => {
-      const { node, path } = json.animations[0].channels[k].target;
-      track.name = nodes[node].uuid + track.name.slice(track.name.lastIndexOf(".")); // names may be there twice
+      const { node, path } = parser.json.animations[0].channels[k].target;
+      track.name = all[node].uuid + track.name.slice(track.name.lastIndexOf(".")); // names may be there twice
       if (path === "translation" && times.length > 625) track.setInterpolation(THREE.InterpolateSmooth);
     });
-    action = mixer.clipAction(clip).play();
-  }
+    const action = mixer.clipAction(clip).play();
+    return { times, show: (t) => { action.time = Math.min(times[times.length - 1], Math.max(times[0], t)); mixer.update(0); } };
+  };
+  const motion = animate(root, nodes, gltf), { times } = motion;
   // Another run: at the same place as a ghost, or beside with colours of its own.
   const second = other ? await new THREE.GLTFLoader().parseAsync(other, "") : null;
-  let secondAction = null, secondRoot = null, secondBodies = new Map();
+  let secondMotion = null, secondRoot = null, secondBodies = new Map();
   if (second) {
-    const all = await second.parser.getDependencies("node"), clip2 = second.animations[0], names = second.parser.json.nodes;
+    const all = await second.parser.getDependencies("node"), names = second.parser.json.nodes;
     secondRoot = all[second.parser.json.scenes[0].nodes[0]];
     secondRoot.quaternion.set(0, 0, 0, 1);
     const pale = new THREE.MeshStandardMaterial({ color: 0x8896a4, transparent: true, opacity: 0.35, depthWrite: false, side: THREE.DoubleSide });
@@ -67,13 +69,10 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       if (names[k].name === "grid" || names[k].name === "road") o.visible = false;
       if (o.isMesh) { o.material.side = THREE.DoubleSide; Object.assign(o.userData, { own: o.material, pale }); }
     });
-    if (clip2) {
-      clip2.tracks.forEach((track, k) => { track.name = all[second.parser.json.animations[0].channels[k].target.node].uuid + track.name.slice(track.name.lastIndexOf(".")); });
-      secondAction = { action: new THREE.AnimationMixer(secondRoot).clipAction(clip2).play(), first: clip2.tracks[0].times[0], last: clip2.duration };
-    }
+    secondMotion = animate(secondRoot, all, second);
   }
   const grainTimes = packed && packed.times || [];
-  let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1), secondAction ? secondAction.last : -Infinity);
+  let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1), ...(secondMotion ? secondMotion.times.slice(-1) : []));
   const qa = new THREE.Quaternion(), va = new THREE.Vector3(), vb = new THREE.Vector3();
   const locate = (list, count, t) => {
     let low = 0, high = count - 1;
@@ -145,12 +144,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     follow(t);
   };
   const follow = (t) => {
-    if (!action) return;
-    action.time = t;
-    mixer.update(0);
-    if (!secondAction) return;
-    secondAction.action.time = Math.min(secondAction.last, Math.max(secondAction.first, t));
-    secondAction.action.getMixer().update(0);
+    motion.show(t);
+    if (secondMotion) secondMotion.show(t);
   };
 
   // Results beside the motion.
@@ -291,8 +286,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     root.updateMatrixWorld(true);
     const least = new THREE.Vector3(1e9, 1e9, 1e9), most = least.clone().negate();
     const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
-    root.traverse((o) => {
-      if (!o.isMesh) return;
+    const reckon = (o) => {
+      if (!o.isMesh || !o.visible) return;
       if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
         if (Math.abs(va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z) < 0.5) o.material.opacity = 0.08;
         return;
@@ -304,7 +299,9 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
         low.min(va); high.max(va);
         if (!isOfGround(o)) { least.min(va); most.max(va); }
       }
-    });
+    };
+    root.traverse(reckon);
+    if (secondRoot) { secondRoot.updateMatrixWorld(true); secondRoot.traverse(reckon); }
     if (heaviest > 0 && most.x >= least.x && most.distanceTo(least) > largest0) {
       largest0 = most.distanceTo(least);
       own = [least.sub(bodies[heaviest].position), most.sub(bodies[heaviest].position)];
@@ -802,7 +799,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   let fence = null, began = 0, idle = 0, held = false;
   const isPainted = () => {
     if (!fence) return true;
-    if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    if (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     gl.deleteSync(fence);
     fence = null;
     const took = performance.now() - began;
