@@ -190,6 +190,24 @@ static void outputs_are_those_of_a_run(void)
     r->f->free(c);
 }
 
+/* A caller may find the zero itself: the event is there, once. */
+static void an_event_at_zero_is_found_once(void)
+{
+    double x[STATES_MAX];
+    double values[STATES_MAX];
+    int ended = 0;
+    void *c = begin();
+    CHECK(r->f->get_states(c, x, n) == GOOD);
+    x[0] = 0.3125;
+    CHECK(r->f->set_states(c, x, n) == GOOD && r->f->get_indicators(c, values, m) == GOOD);
+    CHECK_NEAR(values[0], 0.0, 0.0);
+    CHECK(event(c, x, &ended) == GOOD && ended);
+    CHECK(event(c, x, &ended) == GOOD && !ended);
+    x[0] = 0.5;
+    CHECK(r->f->set_states(c, x, n) == GOOD && event(c, x, &ended) == GOOD && !ended);
+    r->f->free(c);
+}
+
 /* ---- derivatives ----------------------------------------------------------------------------*/
 
 /* The same bits, whatever was asked before. */
@@ -339,23 +357,27 @@ static void it_is_refused(void)
     CHECK_CONTAINS(told_last, "co-simulation only");
 }
 
-void exchange_check(const run *results)
+int exchange_check(const run *results)
 {
     r = results;
     n = r->d->derivative_count;
     m = r->d->indicator_count;
     if (!r->d->exchanges) {
         RUN(it_is_refused);
-        return;
+        return check_finish();
     }
     CHECK(n <= STATES_MAX && m <= STATES_MAX);
     if (n > STATES_MAX || m > STATES_MAX) {
-        return;
+        return check_finish();
     }
     RUN(derivatives_belong_to_states);
     RUN(outputs_are_those_of_a_run);
+    if (strcmp(r->d->model, "level") == 0) {
+        RUN(an_event_at_zero_is_found_once);
+    }
     RUN(derivatives_are_a_function_of_states);
     RUN(directional_derivatives_are_those_of_differences);
     RUN(a_state_goes_on_with_the_same_bits);
     RUN(wrong_calls_are_refused);
+    return check_finish();
 }

@@ -45,6 +45,18 @@ if command -v xmllint >/dev/null; then
     holds 'the description is no XML' xmllint --noout "$dir/kinds.2/modelDescription.xml"
 fi
 
+cat >"$dir/level.yaml" <<'END_OF_YAML'
+se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: block, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, 0]}]
+forces: [{name: drag, type: force, body: block, value: [-0.1*t, 0, 0]}]
+events: [{name: mark, channel: rail.displacement, value: 0.3125, action: stop}]
+analysis: {type: dynamics, duration: 0.5, tolerance: 1e-8}
+output: [{file: level.csv, every: 0.05, channels: [rail.displacement]}]
+END_OF_YAML
+unit '2 3' level "$dir/level.yaml"
+
 # What remembers more than states is for co-simulation only, and the program says why.
 refused() {
     expect "$1" 0 "$program" fmu "$2" -o "$dir/$1.fmu"

@@ -176,7 +176,7 @@ static se3d_status read_impacts(se3di_fmi_unit *u, bool begins)
         se3d_force_get_parameter(system, stop, SE3D_FORCE_PARAMETER_LOWER, &ends[0]);
         se3d_force_get_parameter(system, stop, SE3D_FORCE_PARAMETER_UPPER, &ends[1]);
         status = status < 0 ? status : se3d_force_get_state(system, stop, &x, &rate, NULL);
-        const bool is_outward = (x < ends[0] && rate < 0.0) || (x > ends[1] && rate > 0.0);
+        const bool is_outward = (x <= ends[0] && rate < 0.0) || (x >= ends[1] && rate > 0.0);
         *impact = begins && is_outward ? fabs(rate) : *impact;
     }
     return status;
@@ -209,9 +209,12 @@ static se3d_status begin(se3di_fmi_unit *u)
     return status;
 }
 
-static double sign_of(double value)
+/* 1, -1. A value that comes to zero has come to the other side, once (0.5, -0.5): a caller may find
+ * the zero itself. At the beginning it is on none (0). */
+static double sign_of(double value, double before)
 {
-    return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
+    const double reached = fabs(before) < 1.0 ? before : -0.5 * before;
+    return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : reached;
 }
 
 static bool get_indicators(se3di_fmi_unit *u, double *values)
@@ -237,9 +240,10 @@ bool se3di_fmi_exchange_begin(se3di_fmi_unit *u)
         return false;
     }
     for (size_t k = 0; k < u->variables.indicators; ++k) {
-        u->exchange->signs[k] = sign_of(u->exchange->signs[k]);
+        u->exchange->signs[k] = sign_of(u->exchange->signs[k], 0.0);
     }
-    return true;
+    u->exchange->is_stale = true; /* the bits of a trial state, as they will be asked for again */
+    return se3di_fmi_exchange_update(u);
 }
 
 static se3d_status apply_inputs(const se3di_fmi_unit *u)
@@ -479,7 +483,7 @@ static bool see_events(se3di_fmi_unit *u, const double *values, bool *ends)
     bool found = false;
     char text[200];
     for (size_t k = 0; k < u->variables.indicators; ++k) {
-        const double sign = sign_of(values[k]);
+        const double sign = sign_of(values[k], u->exchange->signs[k]);
         found = found || sign * u->exchange->signs[k] < 0.0;
         if (k < u->model->event_count && has_happened(u, k, sign)) {
             *ends = *ends || u->model->events[k].action == SE3D_EVENT_STOP;
