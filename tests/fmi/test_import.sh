@@ -59,6 +59,39 @@ for fmi in 2 3; do
         "$dir/coarse" "$dir/fine"
 done
 
+# The order of units does not matter: all are told before any acts.
+both() {
+    echo 'se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: block, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 0, 0], axis: [1, 0, 0]}]
+forces: [{name: push, type: effort, joint: rail, value: 0}, {name: more, type: effort, joint: rail, value: 0}]
+analysis: {type: dynamics, duration: 0.1}
+output: [{file: a.csv, every: 0.02, channels: [rail.displacement, push.effort, more.effort]}]
+fmus:'
+    for each in "$@"; do
+        case $each in
+        a) echo "  - {name: a, file: spring.3, step: 0.02, inputs: [{variable: place.input, channel: rail.displacement}],
+     outputs: [{variable: push, element: push}]}" ;;
+        b) echo "  - {name: b, file: spring.3, step: 0.02, inputs: [{variable: place.input, channel: 0.1*push.effort}],
+     outputs: [{variable: push, element: more}]}" ;;
+        esac
+    done
+}
+both a b >"$dir/ab.yaml"
+both b a >"$dir/ba.yaml"
+expect 'two units of one library' 0 "$program" run -q "$dir/ab.yaml" -o "$dir/ab"
+expect 'the other way round' 0 "$program" run -q "$dir/ba.yaml" -o "$dir/ba"
+holds 'the order of units matters' cmp "$dir/ab/a.csv" "$dir/ba/a.csv"
+
+# A model that is written names them from where it stands, and a folder may have any name.
+mkdir "$dir/other"
+cp -r "$dir/spring.2" "$dir/spring %41 2"
+host 2 0.002 | sed 's/file: spring.2/file: "spring %41 2"/' >"$dir/host.yaml"
+expect 'writing' 0 "$program" write "$dir/host.yaml" -o "$dir/other/host.yaml"
+expect 'what was written' 0 "$program" run -q "$dir/other/host.yaml" -o "$dir/written"
+holds 'written otherwise' cmp "$dir/written/a.csv" "$dir/run.2.0.002/a.csv"
+
 # What is wrong is said with the name of the unit.
 wrong() {
     host 2 0.01 | sed "$1" >"$dir/wrong.yaml"
@@ -72,6 +105,17 @@ wrong 's/element: push/element: pull/' 'there is no such element' 2
 wrong 's/element: push/element: rail/' 'has no such number' 2
 wrong 's/channel: rail.displacement/channel: rail.length/' 'rail.length' 2
 wrong 's/step: 0.01/step: 0/' 'step' 2
+wrong 's/step: 0.01/step: 1e-30/' 'too short to be seen' 1
+wrong 's/channel: rail.displacement/channel: 1\/(rail.displacement-rail.displacement)/' 'fmu `spring`' 1
+cp -r "$dir/spring.3" "$dir/rows.3"
+sed 's|<Float64 name="push"[^/]*"|&><Dimension start="3"/></Float64|; s|</Float64/>|</Float64>|' \
+    "$dir/spring.3/modelDescription.xml" >"$dir/rows.3/modelDescription.xml"
+wrong 's/file: spring.2/file: rows.3/' 'is output array, must be output Float64' 1
+sed 's/<CoSimulation /&canBeInstantiatedOnlyOncePerProcess="true" /' "$dir/spring.3/modelDescription.xml" \
+    >"$dir/rows.3/modelDescription.xml"
+sed 's/spring.3/rows.3/' "$dir/ab.yaml" >"$dir/twice.yaml"
+expect 'one too many' 2 "$program" run -q "$dir/twice.yaml" -o "$dir/twice.run"
+says 'there can be one of this unit only'
 expect 'checkpoints' 1 "$program" run -q "$dir/host.yaml" --checkpoint 1 -o "$dir/kept.run"
 says 'has no checkpoints'
 expect 'a unit of it' 2 "$program" fmu "$dir/host.yaml" -o "$dir/no.fmu"

@@ -13,7 +13,8 @@
 #include "io/model/settable.h"
 #include "io/run/guest_description.h"
 
-enum { TOLD = 300, PATH_SIZE = 4096, GOOD_MOST = 1 /* OK, Warning */, DISCARD = 2 };
+enum { TOLD = 300, PATH_SIZE = 4096, FOLDER_MOST = 1000 };
+enum { GOOD_MOST = 1 /* OK, Warning */, DISCARD = 2, FATAL = 4 };
 
 #if defined(__linux__) && defined(__x86_64__)
 #define PLATFORM2 "linux64"
@@ -28,6 +29,7 @@ enum { TOLD = 300, PATH_SIZE = 4096, GOOD_MOST = 1 /* OK, Warning */, DISCARD = 
 extern void *dlopen(const char *path, int how) __attribute__((weak));
 extern void *dlsym(void *object, const char *name) __attribute__((weak));
 extern int dlclose(void *object) __attribute__((weak));
+extern char *dlerror(void) __attribute__((weak));
 extern char *realpath(const char *path, char *resolved);
 #define HAS_OBJECTS 1
 #define NOW         2 /* RTLD_NOW, local */
@@ -84,7 +86,8 @@ typedef struct guest {
     callbacks_2 callbacks;
     char told[TOLD];
     double start, time;
-    double points; /* communication points so far */
+    double points;  /* communication points so far */
+    bool is_broken; /* it has said so: nothing of it may be called any more */
 } guest;
 
 struct se3di_guests {
@@ -134,6 +137,13 @@ static se3d_status fail(const guest *g, se3d_status status, char *problem, const
     return status;
 }
 
+/* Whether a call went well. */
+static bool good(guest *g, int status)
+{
+    g->is_broken = g->is_broken || status == FATAL;
+    return status >= 0 && status <= GOOD_MOST;
+}
+
 /* ---- loading ----------------------------------------------------------------------------------*/
 
 #if HAS_OBJECTS
@@ -174,12 +184,13 @@ static se3d_status load_object(guest *g, char *problem)
         return fail(g, SE3D_ERR_UNSUPPORTED, problem,
                     "this program is linked statically and cannot load units");
     }
-    snprintf(path, sizeof path, "%.3000s%s/binaries/%s/%.500s.so",
-             g->entry->path[0] == '/' ? "" : "./", g->entry->path,
-             g->description.version == 2 ? PLATFORM2 : PLATFORM3, g->description.identifier);
+    snprintf(path, sizeof path, "%s%s/binaries/%s/%.500s.so", g->entry->path[0] == '/' ? "" : "./",
+             g->entry->path, g->description.version == 2 ? PLATFORM2 : PLATFORM3,
+             g->description.identifier);
     g->object = dlopen(path, NOW);
     if (!g->object) {
-        snprintf(g->told, sizeof g->told, "%.290s", path);
+        const char *why = dlerror ? dlerror() : NULL;
+        snprintf(g->told, sizeof g->told, "%.290s", why ? why : path);
         return fail(g, SE3D_ERR_IO, problem, "it has no shared object that this machine can load");
     }
     return load_functions(g) ? SE3D_OK
@@ -208,10 +219,9 @@ static void unload(guest *g)
 
 static bool set(guest *g, const uint32_t *references, size_t count, const double *values)
 {
-    return count == 0 ||
-           (g->description.version == 2
-                ? g->f.set_2(g->instance, references, count, values)
-                : g->f.set_3(g->instance, references, count, values, count)) <= GOOD_MOST;
+    return count == 0 || good(g, g->description.version == 2
+                                     ? g->f.set_2(g->instance, references, count, values)
+                                     : g->f.set_3(g->instance, references, count, values, count));
 }
 
 static bool get(guest *g, size_t k, double *value)
@@ -228,7 +238,7 @@ static bool get(guest *g, size_t k, double *value)
         status = old ? g->f.get_2(g->instance, reference, 1, value)
                      : g->f.get_3(g->instance, reference, 1, value, 1);
     }
-    return status <= GOOD_MOST;
+    return good(g, status);
 }
 
 static se3d_status find_variable(const guest *g, const char *name, const char *causality,
@@ -279,17 +289,37 @@ static se3d_status find_variables(guest *g, se3di_iopool *pool, char *problem)
 
 /* ---- life -------------------------------------------------------------------------------------*/
 
+/* A path as a part of a URI. */
+static void quote(char *out, const char *path)
+{
+    static const char plain[] = "-._~/";
+    for (; *path; ++path) {
+        const unsigned char c = (unsigned char)*path;
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                              (c >= '0' && c <= '9') || strchr(plain, c);
+        out += is_plain ? snprintf(out, 2, "%c", c) : snprintf(out, 4, "%%%02X", c);
+    }
+    *out = '\0';
+}
+
 static bool instantiate(guest *g)
 {
     char resources[PATH_SIZE];
+    char quoted[3 * FOLDER_MOST + 1];
     const se3di_guest_description *d = &g->description;
     char *folder = NULL;
 #if HAS_OBJECTS
     folder = realpath(g->entry->path, NULL);
 #endif
-    snprintf(resources, sizeof resources,
-             d->version == 2 ? "file://%.3000s/resources" : "%.3000s/resources/",
-             folder ? folder : g->entry->path);
+    const char *path = folder ? folder : g->entry->path;
+    if (strlen(path) > FOLDER_MOST) {
+        snprintf(g->told, sizeof g->told, "the path of its folder is too long");
+        free(folder);
+        return false;
+    }
+    quote(quoted, path);
+    snprintf(resources, sizeof resources, d->version == 2 ? "file://%s/resources" : "%s/resources/",
+             d->version == 2 ? quoted : path);
     free(folder);
     g->callbacks = (callbacks_2){hear_2, calloc, free, NULL, g};
     g->instance =
@@ -302,16 +332,15 @@ static bool instantiate(guest *g)
 
 static bool begin(guest *g, double start, double stop)
 {
-    return g->description.version == 2
-               ? g->f.setup_2(g->instance, 0, 0.0, start, 1, stop) <= GOOD_MOST
-               : true;
+    return g->description.version != 2 ||
+           good(g, g->f.setup_2(g->instance, 0, 0.0, start, 1, stop));
 }
 
 static bool enter(guest *g, double start, double stop)
 {
-    return (g->description.version == 2
-                ? g->f.enter_2(g->instance)
-                : g->f.enter_3(g->instance, false, 0.0, start, true, stop)) <= GOOD_MOST;
+    return good(g, g->description.version == 2
+                       ? g->f.enter_2(g->instance)
+                       : g->f.enter_3(g->instance, false, 0.0, start, true, stop));
 }
 
 static se3d_status set_parameters(guest *g, char *problem)
@@ -332,15 +361,28 @@ static se3d_status set_parameters(guest *g, char *problem)
 }
 
 /* Into the initialization, which ends at the first communication point. */
-static se3d_status open_guest(guest *g, se3di_iopool *pool, double stop, char *problem)
+static se3d_status open_guest(const guest *list, guest *g, se3di_iopool *pool, double stop,
+                              char *problem)
 {
     char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%.4000s/modelDescription.xml", g->entry->path);
+    if (strlen(g->entry->path) > FOLDER_MOST) {
+        return fail(g, SE3D_ERR_IO, problem, "the path of its folder is too long");
+    }
+    if (!(stop + g->entry->step > stop)) {
+        return fail(g, SE3D_ERR_INVALID_ARGUMENT, problem,
+                    "its `step` is too short to be seen at the end of the analysis");
+    }
+    snprintf(path, sizeof path, "%s/modelDescription.xml", g->entry->path);
     se3d_status status = se3di_guest_describe(path, pool, &g->description, g->told, sizeof g->told);
     if (status < 0) {
         return fail(g, status, problem, path);
     }
     g->told[0] = '\0';
+    for (const guest *other = list; other < g && g->description.is_single; ++other) {
+        if (strcmp(other->description.token, g->description.token) == 0) {
+            return fail(g, SE3D_ERR_UNSUPPORTED, problem, "there can be one of this unit only");
+        }
+    }
     status = find_variables(g, pool, problem);
     status = status < 0 ? status : load_object(g, problem);
     if (status < 0) {
@@ -380,7 +422,7 @@ se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3d
         memset(g, 0, sizeof *g);
         g->entry = &model->guests[k];
         g->start = g->time = start;
-        status = open_guest(g, &made->pool, stop, problem);
+        status = open_guest(list, g, &made->pool, stop, problem);
     }
     if (status < 0) {
         se3di_guests_close(made);
@@ -397,7 +439,7 @@ void se3di_guests_close(se3di_guests *guests)
     }
     for (size_t k = 0; k < guests->count; ++k) {
         guest *g = &guests->list[k];
-        if (g->instance) {
+        if (g->instance && !g->is_broken) {
             if (g->points > 0.0 && !guests->has_failed) {
                 g->f.terminate(g->instance);
             }
@@ -453,6 +495,10 @@ static se3d_status tell(guest *g, se3di_sample *sample, char *problem)
         if (status < 0) {
             return fail(g, status, problem, g->entry->inputs[k].channel);
         }
+        if (!isfinite(numbers[source->component])) {
+            snprintf(g->told, sizeof g->told, "%.250s", g->entry->inputs[k].channel);
+            return fail(g, SE3D_ERR_NOT_FINITE, problem, "an input is not finite");
+        }
         if (!set(g, &g->inputs[k], 1, &numbers[source->component])) {
             return fail(g, SE3D_ERR_INVALID_ARGUMENT, problem, "an input is refused");
         }
@@ -469,11 +515,11 @@ static se3d_status step(guest *g, double time, char *problem)
         g->description.version == 2
             ? g->f.step_2(g->instance, g->time, h, 1)
             : g->f.step_3(g->instance, g->time, h, true, &flags[0], &flags[1], &flags[2], &reached);
-    if (status == DISCARD || flags[1] || reached < time - 1e-6 * h) {
+    const bool went = good(g, status);
+    if (status == DISCARD || flags[1] || !(reached >= time - 1e-6 * h)) {
         return fail(g, SE3D_ERR_STEP_SIZE, problem, "it does not go on to the next point");
     }
-    return status <= GOOD_MOST ? SE3D_OK
-                               : fail(g, SE3D_ERR_CALLBACK, problem, "its step has failed");
+    return went ? SE3D_OK : fail(g, SE3D_ERR_CALLBACK, problem, "its step has failed");
 }
 
 static se3d_status act(const se3di_guests *guests, guest *g, char *problem)
@@ -492,28 +538,34 @@ static se3d_status act(const se3di_guests *guests, guest *g, char *problem)
     return SE3D_OK;
 }
 
-/* At the first point the initialization ends with the inputs there. */
-static se3d_status meet(const se3di_guests *guests, guest *g, se3di_sample *sample, double time,
-                        char *problem)
+/* To a point and told what is there; at the first one the initialization ends with it. */
+static se3d_status hear(guest *g, se3di_sample *sample, double time, char *problem)
 {
     const bool begins = !(g->points > 0.0);
-    se3d_status status = begins ? tell(g, sample, problem) : step(g, time, problem);
-    if (status >= 0 && begins && g->f.leave(g->instance) > GOOD_MOST) {
+    se3d_status status = begins ? SE3D_OK : step(g, time, problem);
+    status = status < 0 ? status : tell(g, sample, problem);
+    if (status >= 0 && begins && !good(g, g->f.leave(g->instance))) {
         status = fail(g, SE3D_ERR_INVALID_ARGUMENT, problem, "its initialization has failed");
     }
     g->time = time;
-    g->points += 1.0;
-    status = status < 0 || begins ? status : tell(g, sample, problem);
-    return status < 0 ? status : act(guests, g, problem);
+    return status;
 }
 
+/* All are told of the model as it is before any acts on it: their order does not matter. */
 se3d_status se3di_guests_meet(se3di_guests *guests, se3di_sample *sample, double time,
                               char problem[SE3DI_GUEST_PROBLEM])
 {
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < guests->count && status >= 0; ++k) {
         if (is_due(&guests->list[k], time)) {
-            status = meet(guests, &guests->list[k], sample, time, problem);
+            status = hear(&guests->list[k], sample, time, problem);
+        }
+    }
+    for (size_t k = 0; k < guests->count && status >= 0; ++k) {
+        guest *g = &guests->list[k];
+        if (is_due(g, time)) {
+            status = act(guests, g, problem);
+            g->points += 1.0;
         }
     }
     guests->has_failed = status < 0;

@@ -85,9 +85,13 @@ static void XMLCALL begin(void *ctx, const char *name, const char **a)
     if (is(name, "fmiModelDescription")) {
         take_head(r, a);
     } else if (is(name, "CoSimulation")) {
+        const char *single = find(a, "canBeInstantiatedOnlyOncePerProcess");
         r->d->identifier = copy(r, find(a, "modelIdentifier"));
+        r->d->is_single = single && (is(single, "true") || is(single, "1"));
     } else if (is(name, "ScalarVariable")) {
         take_variable(r, "", a);
+    } else if (r->d->version == 3 && r->d->count > 0 && is(name, "Dimension")) {
+        r->d->variables[r->d->count - 1].type = "array";
     } else if (r->d->version == 2 && r->d->count > 0 && !r->d->variables[r->d->count - 1].type[0]) {
         r->d->variables[r->d->count - 1].type = copy(r, name);
     }

@@ -8,7 +8,7 @@
 typedef struct se3di_guest_variable {
     const char *name;
     const char *causality;
-    const char *type; /* "Real", "Float64", ... */
+    const char *type; /* "Real", "Float64", ..., or "array" */
     uint32_t reference;
 } se3di_guest_variable;
 
@@ -16,6 +16,7 @@ typedef struct se3di_guest_description {
     int version; /* 2 or 3 */
     const char *token;
     const char *identifier; /* for co-simulation; NULL: the unit is for something else */
+    bool is_single;         /* a process can have one instance */
     se3di_guest_variable *variables;
     size_t count, capacity;
 } se3di_guest_description;

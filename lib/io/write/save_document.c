@@ -10,8 +10,8 @@
 
 enum { WIDTH = 100 };
 
-static const char *const sections[] = {"clumps", "particles", "sinks",    "regions", "flows",
-                                       "bonds",  "cell",      "analysis", "events",  "output"};
+static const char *const sections[] = {"clumps", "particles", "sinks",  "regions", "flows", "bonds",
+                                       "cell",   "analysis",  "events", "fmus",    "output"};
 
 static bool is_bare(const char *text)
 {
@@ -58,7 +58,8 @@ void se3di_save_put_node(se3di_save *s, const se3di_node *node)
 
 static void put_section(se3di_save *s, const se3di_node *node)
 {
-    s->in_files = strcmp(node->key, "particles") == 0 || strcmp(node->key, "roads") == 0;
+    s->in_files = strcmp(node->key, "particles") == 0 || strcmp(node->key, "roads") == 0 ||
+                  strcmp(node->key, "fmus") == 0;
     se3di_save_put(s, "\n");
     se3di_save_put(s, node->key);
     if (node->kind != SE3DI_NODE_LIST || !node->first) {
