@@ -60,6 +60,16 @@ fi
 expect 'every' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p2" -q --duration 0.1 --every 0.05
 holds 'rows at other times' [ "$(grep -c . "$dir/p2/pendulum.csv")" = 4 ]
 is "$(cat "$dir/out" "$dir/err")" ''
+expect 'no folder -' 2 sh -c 'cd "$2" && "$0" run "$1" -o - -q' "$program" "$models/pendulum.yaml" "$dir"
+says 'results are not for standard output'
+holds 'a folder -' [ ! -e "$dir/-" ]
+expect 'a model to standard output' 0 "$program" write "$models/pendulum.yaml" -o -
+has "$dir/out" 'se3d: 1'
+expect 'threads' 0 "$program" run "$source/tests/mpi/column.yaml" -q --duration 0.01 --threads 1 -o "$dir/t1"
+expect 'threads' 0 "$program" run "$source/tests/mpi/column.yaml" -q --duration 0.01 --threads 2 -o "$dir/t2"
+holds 'other results' cmp "$dir/t1/column.csv" "$dir/t2/column.csv"
+expect 'no threads' 2 "$program" run "$source/tests/mpi/column.yaml" -q --threads 0 -o "$dir/t1"
+says 'contact.threads'
 expect 'the same bits on every run' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" -q
 is "$(cksum <"$dir/p/pendulum.csv")" "$(cksum <"$dir/p3/pendulum.csv")"
 expect 'json' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p4" --json --duration=0.1 --formulation rp

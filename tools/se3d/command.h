@@ -53,6 +53,7 @@ typedef struct command_entry {
     const command_option *options;
     const command_example *examples;
     const char *exits; /* what the exit codes mean */
+    int prints;        /* without -o it writes to standard output */
 } command_entry;
 
 extern const command_entry new_entry, fmt_entry, channels_entry, run_entry, check_entry,

@@ -152,6 +152,7 @@ static int command_import(int count, char *const *words)
 const command_entry import_entry = {
     .name = "import",
     .run = command_import,
+    .prints = 1,
     .operands = "FILE",
     .files = "urdf adm",
     .summary = "make a model file of a model of another program",
@@ -162,7 +163,7 @@ const command_entry import_entry = {
             "too. docs/import.md says what becomes of what.",
     .options =
         (const command_option[]){
-            {"--output", "-o", "MODEL.yaml", "the model file; without it, it is printed"},
+            {"--output", "-o", "MODEL.yaml", "the model file; without it, or -, it is printed"},
             {"--partial", NULL, NULL, "exit code 0 although something could not be carried"},
             {"--format", NULL, "FORMAT", "urdf, sdf, mjcf, adams, chrono or me751, if not told"},
             {"--merge-fixed", NULL, NULL, "links on fixed joints become one body"},

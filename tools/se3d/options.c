@@ -105,6 +105,14 @@ static int *flag_target(options *o, const char *name)
     return NULL;
 }
 
+/* What an option sets in the model; NULL: nothing. */
+static const char *place_of(const char *name)
+{
+    return strcmp(name, "--every") == 0     ? "output[0].every"
+           : strcmp(name, "--threads") == 0 ? "contact.threads"
+                                            : NULL;
+}
+
 /* An option with a value: "--name VALUE" or "--name=VALUE". @return words used, 0: an error. */
 static int read_valued(options *o, const char *command, const char *name, const char *value,
                        int used)
@@ -117,9 +125,9 @@ static int read_valued(options *o, const char *command, const char *name, const 
     if (strcmp(name, "--set") == 0) {
         return add_setting(o, command, value) == EXIT_DONE ? used : 0;
     }
-    if (strcmp(name, "--every") == 0) {
-        static const char every[] = "output[0].every";
-        return put_setting(o, command, every, sizeof every - 1, value) == EXIT_DONE ? used : 0;
+    const char *place = place_of(name);
+    if (place) {
+        return put_setting(o, command, place, strlen(place), value) == EXIT_DONE ? used : 0;
     }
     if (strcmp(name, "--caption") == 0) {
         return add_caption(o, command, value) == EXIT_DONE ? used : 0;
@@ -175,6 +183,18 @@ static int report_no_operand(const command_entry *c)
     return EXIT_USAGE;
 }
 
+/* `-o -` is what a command prints without -o; it makes no file or folder of that name. */
+static int check_output(options *o, const command_entry *c)
+{
+    if (!o->directory || strcmp(o->directory, "-") != 0) {
+        return EXIT_DONE;
+    }
+    o->directory = NULL;
+    return c->prints ? EXIT_DONE
+                     : usage_error(c->name,
+                                   "results are not for standard output; of that name:", "-o ./-");
+}
+
 int options_read(options *o, const command_entry *c, int count, char *const *words)
 {
     int options_end = 0;
@@ -202,7 +222,7 @@ int options_read(options *o, const command_entry *c, int count, char *const *wor
         command_print_help(c);
         return EXIT_DONE;
     }
-    return o->model || c->operands[0] == '[' ? EXIT_DONE : report_no_operand(c);
+    return !o->model && c->operands[0] != '[' ? report_no_operand(c) : check_output(o, c);
 }
 
 int options_check_file(const options *o, const command_entry *c)

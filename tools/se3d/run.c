@@ -705,6 +705,7 @@ const command_entry run_entry = {
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}, modes"},
             COMMAND_OPTIONS_OF_SOLVERS,
             {"--every", NULL, "T", "time between rows of the first of `output` [s]"},
+            {"--threads", NULL, "N", "of particles, as contact.threads; results stay the same"},
             {"--checkpoint", NULL, "T",
              "every T seconds of the clock, write all that is needed to go on to run.checkpoint, "
              "beside the results; 0: at every row"},

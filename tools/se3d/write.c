@@ -80,6 +80,7 @@ static int command_write(int count, char *const *words)
 const command_entry write_entry = {
     .name = "write",
     .run = command_write,
+    .prints = 1,
     .operands = "MODEL",
     .files = "yaml yml json",
     .summary = "write a model as one file without parts and expressions",
@@ -87,12 +88,12 @@ const command_entry write_entry = {
         "Writes a model in standard form: includes, instances, repeats, mirrored parts, points, "
         "units and expressions of parameters are resolved, names and numbers stand for what "
         "they became. Comments are not kept. Read again, the elements are the same to the bit. "
-        "Analyses, results, events and particles are as the file says them. Of a file with "
+        "Analyses, results, events, `fmus` and particles are as the file says them. Of a file with "
         "`units`, analyses and results can be written whose only numbers are seconds; other "
         "such sections, and studies, cannot: --partial leaves them out.",
     .options =
         (const command_option[]){
-            {"--output", "-o", "FILE.yaml", "the file; without it, it is printed"},
+            {"--output", "-o", "FILE.yaml", "the file; without it, or -, it is printed"},
             {"--partial", NULL, NULL, "leave out what a file cannot hold, with a comment"},
             COMMAND_OPTION_SET,
             {0}},
