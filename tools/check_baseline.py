@@ -66,11 +66,13 @@ def main(words):
         sys.exit(__doc__)
     if shutil.which("abidiff") is None:
         print("left out: abidiff is missing (Debian: abigail-tools)")
-        return 0
+        return 1 if words[1] == "write" else 0
     problems = []
     for library in words[2:]:
         if has_debug_information(library):
             problems += checks[words[1]](library)
+        elif words[1] == "write":
+            problems.append(f"{library}: has no debug information")
         else:
             print(f"left out: {library} has no debug information")
     for problem in problems:

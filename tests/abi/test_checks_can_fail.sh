@@ -191,6 +191,8 @@ int se3d_g(void); int se3d_g(void) { return 1; }'
         build
         reject 'libgrowth.so:' python3 tools/check_baseline.py compare libgrowth.so
     done
+    $cc -shared -fPIC -o libplain.so library.c
+    reject 'no debug information' python3 tools/check_baseline.py write libplain.so
 fi
 
 echo "$count checks, $failed failed"
