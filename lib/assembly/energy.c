@@ -50,7 +50,7 @@ static se3d_status user_power(const se3di_model *model, double t, double *power)
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
         const se3di_constraint *constraint = &model->constraints[k];
         se3di_user_values values;
-        if (se3di_is_user(constraint)) {
+        if (se3di_is_user(constraint) && !se3di_is_broken(constraint, model->rows)) {
             SE3DI_TRY(se3di_user_eval(model, constraint, t, SE3DI_USER_NU, &values));
             for (uint32_t r = 0; r < constraint->row_count; ++r) {
                 *power -= model->lambda[constraint->row_begin + r] * values.nu[r];

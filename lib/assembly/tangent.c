@@ -650,8 +650,9 @@ static se3d_status add_user_curvatures(se3di_tangent *tangent, double t, const d
 {
     const se3di_model *model = tangent->assembly->model;
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        if (se3di_is_user(&model->constraints[k])) {
-            SE3DI_TRY(add_user_curvature(tangent, &model->constraints[k], t, lambda));
+        const se3di_constraint *constraint = &model->constraints[k];
+        if (se3di_is_user(constraint) && !se3di_is_broken(constraint, model->rows)) {
+            SE3DI_TRY(add_user_curvature(tangent, constraint, t, lambda));
         }
     }
     return SE3D_OK;

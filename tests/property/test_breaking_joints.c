@@ -343,13 +343,18 @@ static void what_acts_on_a_joint_ends_with_it_and_its_spring_is_lost(void)
     }
 }
 
-/* A driver that follows a body prescribes nothing, and is met, once its joint is broken. */
+/* A driver whose value or rate follows a body prescribes nothing, and is met, once its joint is
+ * broken, also where its function has no value any more. */
 static void a_driver_of_signals_ends_with_its_joint(void)
 {
+    static const char *const laws[] = {"t^2*(2 + 0.1*x) + 0*sqrt(2.5 - t)",
+                                       "4*t*(1 + 0.05*x) + 0*sqrt(2.5 - t)"};
     static const char *const names[] = {"t", "x"};
-    static const int32_t ways[] = {SE3D_FORMULATION_ROMEGA, SE3D_FORMULATION_RP,
-                                   SE3D_FORMULATION_JOINT};
-    for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
+    static const int32_t ways[][2] = {{SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA},
+                                      {SE3D_METHOD_DOP853, SE3D_FORMULATION_RP},
+                                      {SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT},
+                                      {SE3D_METHOD_RADAU, SE3D_FORMULATION_ROMEGA}};
+    for (size_t k = 0; k < 2 * sizeof ways / sizeof *ways; ++k) {
         const double origin[3] = {0.0, 0.0, 0.0}, from[2] = {0.0, 0.0}, aside[2] = {0.0, 3.0};
         world w = world_create();
         se3d_constraint pin, motor;
@@ -362,15 +367,16 @@ static void a_driver_of_signals_ends_with_its_joint(void)
         const se3d_signal signal = {.kind = SE3D_SIGNAL_POINT_POSITION,
                                     .body = add_bar(&w, NULL, aside, 0.0, 1.0, 500.0)};
         pin = hang(&w, se3d_joint_create_revolute, "pin", w.ground, bar, origin, 30.0, 0.0);
-        law.expression = "t^2*(2 + 0.1*x)";
+        law.expression = laws[k % 2];
         law.variables = names;
         law.variable_count = 2;
         law.signals = &signal;
         law.signal_count = 1;
         drive.joint = pin;
+        drive.is_rate = k % 2;
         MUST(&w, se3d_function_create(w.system, &law, &drive.function));
         MUST(&w, se3d_driver_create(w.system, &drive, &motor));
-        use(&w, SE3D_METHOD_DOP853, ways[k], 0.0);
+        use(&w, ways[k / 2][0], ways[k / 2][1], 0.0);
         MUST(&w, se3d_solver_run(w.solver, 2.0));
         CHECK(se3d_solver_count_event_records(w.solver) == 1);
         MUST(&w, se3d_joint_get_broken(w.system, motor, &broken));
