@@ -561,9 +561,16 @@ static se3d_status solve_velocity(se3di_equations *equations, double t)
 
 se3d_status se3di_velocity_solve(se3di_equations *equations, double t)
 {
-    SE3DI_TRY(se3di_assembly_eval_functions(&equations->assembly, t, equations->error));
+    se3di_assembly *assembly = &equations->assembly;
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     SE3DI_TRY(solve_velocity(equations, t));
-    for (int k = 0; k < RATES_MAX && !follows_rates(equations); ++k) {
+    for (int k = 0; !follows_rates(equations); ++k) {
+        if (k == RATES_MAX) { /* all but rounding, or there are no such velocities */
+            for (uint32_t row = 0; row < assembly->row_count; ++row) {
+                equations->c[row] = assembly->f[3 * row + 1];
+            }
+            return check_level(equations, t, "velocity");
+        }
         SE3DI_TRY(solve_velocity(equations, t));
     }
     return SE3D_OK;

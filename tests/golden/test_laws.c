@@ -393,6 +393,26 @@ static void rates_are_refused_where_positions_come_first(void)
     se3d_system_destroy(copy);
 }
 
+/* w = w^2 + 1 has no solution, that Newton's method goes from 1 to 0 and back. */
+static void rates_that_no_velocities_have_are_refused(void)
+{
+    for (int32_t formulation = 0; formulation < 2; ++formulation) {
+        text_model m = text_model_open(
+            CAM
+            "drivers: [{name: box, joint: pin, rate: rail.rate}, {name: cam, joint: rail, rate: "
+            "pin.rate^2 + 1}]\n" TAIL,
+            SE3D_METHOD_DOP853, formulation, 0.0);
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver *solver = NULL;
+        CHECK(!se3d_model_get_solver(m.model, 0, &def));
+        CHECK(!se3d_solver_create(m.system, &def, &solver));
+        CHECK(se3d_solver_run(solver, 0.1) == SE3D_ERR_INCONSISTENT);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), "the velocity equation of");
+        se3d_solver_destroy(solver);
+        text_model_close(&m);
+    }
+}
+
 #define CHAIN                                                                                      \
     "se3d: 1\nbodies:\n  - {name: arm, mass: 1, inertia: [1, 1, 2]}\n"                             \
     "  - {name: cart, mass: 2, inertia: [1, 1, 1]}\n"                                              \
@@ -516,6 +536,7 @@ int main(void)
     RUN(rates_follow_velocities_states_and_positions);
     RUN(a_rate_of_a_free_angle_is_a_gear);
     RUN(rates_are_refused_where_positions_come_first);
+    RUN(rates_that_no_velocities_have_are_refused);
     RUN(drivers_follow_lengths_positions_and_followers);
     RUN(a_follower_takes_its_part_in_frequencies);
     RUN(followers_are_checked_and_given_back);
