@@ -85,8 +85,9 @@ static se3d_status draft_rate(se3d_system *system, const se3d_driver_def *def, u
     const se3di_function *law = function >= 0 ? &system->model.functions[function] : NULL;
     if (!law || law->signal_count == 0) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "is_rate is set, but function has no signals: let it be a function with "
-                          "`integrate`");
+                          "is_rate = %d, must be 0 for a function without signals: let it be one "
+                          "with `integrate`",
+                          (int)def->is_rate);
     }
     if (!is_differentiable(&system->model, law)) {
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,

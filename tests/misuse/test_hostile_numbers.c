@@ -146,6 +146,7 @@ FILL_IN(se3d_driver_def, driver)
 }
 CREATE(se3d_driver_def, driver_create, se3d_constraint)
 static const field driver_fields[] = {INTEGER(se3d_driver_def, coordinate),
+                                      INTEGER(se3d_driver_def, is_rate),
                                       NUMBERS(se3d_driver_def, value), FIELDS_END};
 
 FILL_IN(se3d_material_def, material)
