@@ -115,9 +115,38 @@ static void a_socket_holds_its_ball(void)
     scene_end(&s);
 }
 
+/* A ring lies on a sheet, beyond whose border one of its corners is by 0.03 mm, less than the depth
+ * to which is looked; then by more. There is nothing to push that corner aside. */
+static void nothing_touches_beyond_the_border_of_a_sheet(void)
+{
+    static const ring plate[] = {{0.01, 0.0}, {0.03, 0.0}, {0.03, 0.01}, {0.01, 0.01}};
+    const uint32_t faces[6] = {0, 1, 2, 0, 2, 3};
+    const double J[3] = {1e-5, 1e-5, 2e-5};
+    for (int k = 0; k < 3; ++k) {
+        const double border = 0.03 - 0.00003 * k, start[3] = {0.0, 0.0, 1e-5};
+        const double corners[12] = {-1.0,   -1.0, 0.0, border, -1.0, 0.0,
+                                    border, 1.0,  0.0, -1.0,   1.0,  0.0};
+        double r[3], v[3], force[3];
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.1, 0.2, 1e6);
+        const se3d_body body = scene_body(&s, 0.04, J, start, scene_zero);
+        scene_mesh_on(&s, scene_ground(&s), corners, 4, faces, 2);
+        turn(&s, body, plate, 4, 0.0);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, 1e-3, 0.0);
+        if (scene_run(&s, 0.1)) {
+            CHECK(se3d_body_get_position(s.system, body, r) == SE3D_OK);
+            CHECK(se3d_body_get_velocity(s.system, body, v) == SE3D_OK);
+            CHECK_NEAR(contact_force(&s, body, force), 0.04 * G, 1e-3 * 0.04 * G);
+            CHECK_NEAR(hypot(r[0], r[1]), 0.0, 1e-6);
+            CHECK_NEAR(hypot(v[0], v[1]), 0.0, 1e-6);
+        }
+        scene_end(&s);
+    }
+}
+
 int main(void)
 {
     RUN(a_bolt_sits_in_its_hole);
     RUN(a_socket_holds_its_ball);
+    RUN(nothing_touches_beyond_the_border_of_a_sheet);
     return check_finish();
 }

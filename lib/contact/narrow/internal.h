@@ -43,13 +43,13 @@ void se3di_narrow_boxes(const se3di_solid *i, const se3di_solid *j, se3di_manifo
 void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 /* A solid on a mesh. */
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
-/* On a plane: the corners of a shape that has some; a capsule; a cylinder; of any other convex
- * shape the lowest point; a mesh. */
 /* Two surfaces, of which at least one is closed, by their triangles. */
 void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
-/* The same with or without. */
+/* The same, with convex pieces or without. */
 void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, double normal[3]);
+/* On a plane: the corners of a shape that has some; a capsule; a cylinder; of any other convex
+ * shape the lowest point; a mesh. */
 void se3di_plane_corners(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);

@@ -23,6 +23,7 @@
 #define FLAT       1e-12 /* of the square of its length: an edge in a plane does not touch */
 #define LEAN       0.3   /* cosine: its own surface leads no more than this into the other one */
 #define MORE       1.01  /* times farther: what takes the place of another, not by rounding */
+#define FOLDED     0.1   /* mean of normals: faces back to back */
 #define SHALLOW    0.1   /* of the deepest: places that count the less */
 #define CUTS       16    /* through the other surface, of one edge */
 #define CANDIDATES 128
@@ -116,6 +117,48 @@ static double distance_of(const search *s, const double x[3], double at[3], doub
     return height < 0.0 ? -distance : distance;
 }
 
+/* The sum of the normals of the faces at a place. */
+typedef struct outward {
+    const search *s;
+    double sum[3];
+    int count, reserved;
+} outward;
+
+static void add_normal(void *ctx, uint32_t triangle)
+{
+    outward *o = ctx;
+    double n[3];
+    normal_of(o->s, triangle, n);
+    se3di_add(o->sum, n, o->sum);
+    ++o->count;
+}
+
+/* Beyond the border of an open surface there is nothing to be within: from a place below it, the
+ * nearest one of the surface being `at`, the mean of the normals there leads past it. */
+static int is_beside(const search *s, const double x[3], const double at[3], double distance)
+{
+    outward o = {.s = s};
+    double to[3];
+    if (s->other->shape->closed != 0) {
+        return 0;
+    }
+    se3di_mesh_visit(s->other->shape, at, SAME * s->size, add_normal, &o);
+    const double mean = se3di_norm(o.sum) / (double)(o.count > 0 ? o.count : 1);
+    if (!(mean > FOLDED)) {
+        return 0;
+    }
+    se3di_copy(x, to);
+    se3di_add_scaled((2.0 * distance + SAME * s->size) / (mean * se3di_norm(o.sum)), o.sum, to);
+    return !se3di_mesh_crosses(s->other->shape, x, to);
+}
+
+/* How deep x is, at most: negative if it is not within. */
+static double depth_of(const search *s, const double x[3], double at[3], double n[3])
+{
+    const double depth = -distance_of(s, x, at, n);
+    return depth > 0.0 && is_beside(s, x, at, depth) ? -depth : depth;
+}
+
 static int looks_out(const surroundings *around, const double n[3])
 {
     for (int k = 0; k < around->count; ++k) {
@@ -164,13 +207,13 @@ static void try_face(void *ctx, uint32_t triangle)
 static double find_way(search *s, const surroundings *around, const double x[3], double at[3],
                        double n[3])
 {
-    const double distance = distance_of(s, x, at, n);
-    s->deepest = fmax(s->deepest, -distance);
-    if (distance > SAME * SAME * s->size || -distance > s->limit) {
+    const double depth = depth_of(s, x, at, n);
+    s->deepest = fmax(s->deepest, depth);
+    if (-depth > SAME * SAME * s->size || depth > s->limit) {
         return 0.0;
     }
-    if (distance < 0.0 && looks_out(around, n)) {
-        return -distance;
+    if (depth > 0.0 && looks_out(around, n)) {
+        return depth;
     }
     way_out w = {.s = s, .around = around, .x = x, .least = s->limit};
     se3di_mesh_visit(s->other->shape, x, s->limit, try_face, &w);
@@ -383,7 +426,7 @@ static void cut_edge(search *s, edge *e)
         }
         point_at(e, 0.5 * (cuts[k].share + cuts[k + 1].share), middle);
         if ((count == 1 && se3di_mesh_is_clear(s->other->shape, middle, s->limit)) ||
-            !(distance_of(s, middle, at, n) < 0.0)) {
+            !(depth_of(s, middle, at, n) > 0.0)) {
             continue; /* without a cut all of it is off, or too deep */
         }
         if (!known && !is_own(s, e)) {
