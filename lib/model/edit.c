@@ -133,8 +133,12 @@ static int acts_on_broken(const se3di_model *model, const se3di_constraint *cons
     return broken;
 }
 
+/* What is broken already stays as it is: its bodies may have been apart. */
 static void leave_out(se3di_model *model, const se3di_constraint *constraint, int broken)
 {
+    if (broken && se3di_is_broken(constraint, model->rows)) {
+        return;
+    }
     for (uint32_t k = 0; k < constraint->row_count; ++k) {
         const uint32_t row = constraint->row_begin + k;
         model->rows[row].left_out = broken ? SE3DI_ROW_BROKEN : 0;

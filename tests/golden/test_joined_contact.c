@@ -163,6 +163,42 @@ static void what_a_broken_joint_held_touches_once_it_has_been_apart(void)
     }
 }
 
+/* Also if the joint was driven, and elements are added while the two touch. */
+static void what_touches_after_a_break_goes_on_touching(void)
+{
+    const double size[3] = {0.4, 0.4, 0.2}, at_block[3] = {0.0, 0.0, 0.1}, at[3] = {0.0, 0.0, 0.26};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
+    se3d_joint_def slide = se3d_joint_def_default();
+    se3d_driver_def drive = se3d_driver_def_default();
+    se3d_marker_def mark = se3d_marker_def_default();
+    se3d_marker marker;
+    se3d_constraint joint, driver;
+    double r[3];
+    const se3d_body block = scene_box(&s, size, 20.0, at_block, scene_zero);
+    const se3d_body ball = scene_ball(&s, 0.05, 0.5, at, scene_zero);
+    scene_floor(&s, 0.0);
+    slide.body_i = block;
+    slide.body_j = ball;
+    slide.point_i[2] = at[2] - at_block[2];
+    CHECK(se3d_joint_create_prismatic(s.system, &slide, &joint) == SE3D_OK);
+    drive.joint = joint;
+    drive.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
+    CHECK(se3d_driver_create(s.system, &drive, &driver) == SE3D_OK);
+    CHECK(se3d_joint_set_broken(s.system, joint, 1) == SE3D_OK);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, 1e-3, 0.0);
+    if (scene_run(&s, 0.3)) {
+        CHECK(se3d_body_get_position(s.system, ball, r) == SE3D_OK);
+        CHECK_NEAR(r[2], 0.25, 1e-3);
+        mark.body = ball;
+        CHECK(se3d_marker_create(s.system, &mark, &marker) == SE3D_OK);
+        CHECK(se3d_joint_set_broken(s.system, joint, 1) == SE3D_OK); /* as it is */
+        CHECK(scene_run(&s, 0.6));
+        CHECK(se3d_body_get_position(s.system, ball, r) == SE3D_OK);
+        CHECK_NEAR(r[2], 0.25, 1e-3);
+    }
+    scene_end(&s);
+}
+
 int main(void)
 {
     RUN(an_arm_falls_on_the_floor);
@@ -170,5 +206,6 @@ int main(void)
     RUN(what_is_welded_to_the_ground_does_not_touch_it);
     RUN(a_lift_lands_on_the_floor);
     RUN(what_a_broken_joint_held_touches_once_it_has_been_apart);
+    RUN(what_touches_after_a_break_goes_on_touching);
     return check_finish();
 }
