@@ -94,6 +94,12 @@ static void code_contact(se3di_coder *c, se3di_body_contact *contact)
     se3di_code_numbers(c, &contact->energy, 1);
 }
 
+/* Only of a joint that is broken the bodies have been apart since. */
+static int is_row_flag(uint32_t flag)
+{
+    return flag <= SE3DI_ROW_BROKEN || flag == SE3DI_ROW_BREAKS;
+}
+
 static void code_array(se3di_coder *c, const saved_array *a, size_t numbers)
 {
     uint8_t *bytes = a->array->data;
@@ -107,7 +113,7 @@ static void code_array(se3di_coder *c, const saved_array *a, size_t numbers)
         } else if (a->size == sizeof *bytes) {
             uint32_t flag = bytes[k];
             se3di_code_uint32(c, &flag);
-            c->failed |= flag > SE3DI_ROW_BREAKS;
+            c->failed |= !is_row_flag(flag);
             if (c->in) {
                 bytes[k] = (uint8_t)(flag & UINT8_MAX);
             }

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "check.h"
+#include "model/model.h"
 #include "support/damage.h"
 #include "support/models.h"
 
@@ -179,11 +180,47 @@ static void numbers_that_are_not_finite_are_refused(void)
     }
 }
 
+/* Rows are left out as dependent, of a broken joint, or of one whose bodies have been apart since:
+ * 0, 1, 2, 6. */
+static void rows_that_are_left_out_for_no_reason_are_refused(void)
+{
+    static world w;
+    static unsigned char bytes[ROOM];
+    const unsigned char broken[8] = {SE3DI_ROW_BROKEN};
+    se3d_constraint joint;
+    se3d_snapshot *snapshot = NULL;
+    size_t at = 16, found = 0;
+    open_world(&w, SE3D_METHOD_AUTO);
+    CHECK(!se3d_system_get_constraint(w.model.system, 0, &joint));
+    CHECK(!se3d_joint_set_broken(w.model.system, joint, 1));
+    CHECK(!se3d_snapshot_create(w.model.system, &snapshot));
+    CHECK(!se3d_snapshot_write(snapshot, w.bytes, ROOM, &w.size));
+    se3d_snapshot_destroy(snapshot);
+    for (size_t k = 16; k + 8 <= w.size && found < 5; k += 8) { /* of a revolute joint */
+        found = memcmp(w.bytes + k, broken, sizeof broken) == 0 ? found + 1 : 0;
+        at = k - 8 * 4;
+    }
+    CHECK(found == 5);
+    for (uint64_t flag = 0; flag < 9; ++flag) {
+        memcpy(bytes, w.bytes, w.size);
+        for (size_t row = 0; row < 5; ++row) {
+            damage_write(bytes, at + 8 * row, flag);
+        }
+        sign(bytes, w.size);
+        CHECK(
+            (read_bytes(&w, bytes, w.size, &snapshot) >= 0) ==
+            (flag == SE3DI_ROW_DEPENDENT || flag == SE3DI_ROW_BROKEN || flag == SE3DI_ROW_BREAKS));
+        se3d_snapshot_destroy(snapshot);
+    }
+    close_world(&w);
+}
+
 int main(void)
 {
     RUN(numbers_that_are_not_finite_are_refused);
     RUN(cut_and_changed_bytes_are_refused);
     RUN(another_model_is_refused);
     RUN(made_up_words_do_no_harm);
+    RUN(rows_that_are_left_out_for_no_reason_are_refused);
     return check_finish();
 }
