@@ -183,7 +183,8 @@ SE3D_API se3d_status se3d_joint_get_broken(const se3d_system *system, se3d_const
 
 /* Break a joint as it is, or make it whole again: bodies that are apart by then come together when
  * the next analysis begins, as at any start. What was computed of forces and accelerations is void
- * until then. Snapshots, clones and checkpoints keep which joints are broken.
+ * until then. Snapshots, clones and checkpoints keep which joints are broken. Dynamics,
+ * kinematics and inverse dynamics refuse a broken joint with an armature.
  * @param[in] broken  1 or 0
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no joint between two bodies, another number),
  * STATE (within a callback). @since 0.1 */

@@ -134,7 +134,10 @@ typedef enum se3d_shown {
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown);
 
-/* Make one step that moves the time on; n steps come to n h, to rounding.
+/* Make one step that moves the time on; n steps come to n h, to rounding. A step that is too long
+ * for an impact on a stop or between shapes, and by explicit methods for what rests there, returns
+ * STEP_SIZE with a length that would do: se3d_solver_run chooses its own. Shapes that convex finds
+ * too fast meet in parts of the step.
  * @param[in] h  length of the step, >= 1e-15 [s]
  * @return as se3d_solver_run.
  * @since 0.1 */

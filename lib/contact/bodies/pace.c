@@ -308,7 +308,7 @@ se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind 
     }
     return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
                            "t = %g s: a step of %g s is too large for the contact of the shapes "
-                           "%.60s and %.60s; try at most %.3g s, or none for an automatic step",
+                           "%.60s and %.60s; try at most %.3g s, or a run that chooses its steps",
                            model->time, h, se3di_shape_describe(model, p.i),
                            se3di_shape_describe(model, p.j), p.step);
 }

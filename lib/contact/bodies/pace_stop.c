@@ -120,6 +120,6 @@ se3d_status se3di_stops_check_step(const se3di_model *model, se3di_pace_kind kin
     const char *name = which->name ? which->name : "without a name";
     return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
                            "t = %g s: a step of %g s is too large for the impact on the stop "
-                           "%.60s; try at most %.3g s, or none for an automatic step",
+                           "%.60s; try at most %.3g s, or a run that chooses its steps",
                            model->time, h, name, se3di_stops_pace(model, kind, step));
 }
