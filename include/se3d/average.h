@@ -25,7 +25,7 @@ typedef struct se3d_average {
     double temperature;       /* granular: a third of the mean square of velocities about the mean
                                  [m^2/s^2] */
     double kinetic_stress[6]; /* of velocities about the mean [Pa] */
-    double contact_stress[6]; /* of the forces of the last step [Pa] */
+    double contact_stress[6]; /* of the last step's forces of contacts, not of bonds [Pa] */
 } se3d_average;
 
 /* As se3d_particles_get_average, told the size of *average in bytes. @return as

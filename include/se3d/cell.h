@@ -54,9 +54,10 @@ static inline se3d_cell_def se3d_cell_def_default(void)
 SE3D_API se3d_status se3d_particles_add_cell_stage(se3d_particles *particles,
                                                    const se3d_cell_def *def, uint32_t *stage);
 
-/* A cell as it is now. Stress is that of contacts and of motion about the mean velocities, positive
- * where particles press, in the last step. Energy of translation about the mean velocities and of
- * rotation, and what the contacts store and turn to heat, come from the work. @since 0.1 */
+/* A cell as it is now. Stress is that of contacts, bonds and motion about the mean velocities,
+ * positive where particles press, in the last step. Energy of translation about the mean velocities
+ * and of rotation, and what contacts and bonds store and turn to heat, come from the work.
+ * @since 0.1 */
 typedef struct se3d_cell_state {
     double lower[3], upper[3]; /* of the domain [m] */
     double offset;             /* of the image beyond the upper side, along `flow` [m] */

@@ -350,17 +350,26 @@ static double largest_radius(const se3di_particles *set)
     return radius;
 }
 
+/* The image of particle k that is within the period. */
+static void get_home(const se3di_particles *set, size_t k, double x[3])
+{
+    se3di_copy(set->particles[k].x, x);
+    se3di_particles_come_home(set, x);
+}
+
 /* The longest axis; in a cell that strains the one along which images are not shifted. */
 static void choose_axis(const se3di_particles *set, near_search *s)
 {
-    double low[3], high[3];
-    for (int a = 0; a < 3; ++a) {
-        low[a] = HUGE_VAL;
-        high[a] = -HUGE_VAL;
-        for (size_t k = 0; k < set->count; ++k) {
-            low[a] = fmin(low[a], set->particles[k].x[a]);
-            high[a] = fmax(high[a], set->particles[k].x[a]);
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double x[3];
+    for (size_t k = 0; k < set->count; ++k) {
+        get_home(set, k, x);
+        for (int a = 0; a < 3; ++a) {
+            low[a] = fmin(low[a], x[a]);
+            high[a] = fmax(high[a], x[a]);
         }
+    }
+    for (int a = 1; a < 3; ++a) {
         s->axis = high[a] - low[a] > high[s->axis] - low[s->axis] ? a : s->axis;
     }
     s->axis = set->cell.count > 0 ? 3 - set->cell.flow - set->cell.gradient : s->axis;
@@ -368,7 +377,8 @@ static void choose_axis(const se3di_particles *set, near_search *s)
     s->bin = fmax(2.0 * largest_radius(set) * (1.0 + ROUNDING) + s->def->gap, extent / BINS);
     s->all = !(extent > 4.0 * s->bin);
     for (size_t k = 0; k < set->count; ++k) {
-        const double bin = floor((set->particles[k].x[s->axis] - low[s->axis]) / s->bin);
+        get_home(set, k, x);
+        const double bin = floor((x[s->axis] - low[s->axis]) / s->bin);
         s->order[2 * k] = (int32_t)(bin < BINS ? bin : BINS);
         s->order[2 * k + 1] = (int32_t)k;
     }
@@ -481,8 +491,9 @@ static int place_on_wall(const se3di_particles *set, const se3d_bond_def *def, u
 {
     const se3di_particle *particle = &set->particles[k];
     const double reach = particle->radius * (1.0 + ROUNDING) + def->gap;
-    double x[3], normal[3];
-    se3di_particles_image(set, &set->walls[w], particle->x, reach, x);
+    double home[3], x[3], normal[3];
+    get_home(set, k, home);
+    se3di_particles_image(set, &set->walls[w], home, reach, x);
     *place = (se3di_bond_place){.first = set->spins[k].id, .second = SE3DI_NO_INDEX, .wall = w};
     const double distance = se3di_wall_nearest(&set->walls[w], x, place->x, normal);
     se3di_sub(place->x, x, place->way);

@@ -252,6 +252,105 @@ static void energy_and_momenta_of_a_block_stay(void)
     CHECK(error[0] < 1e-3 && error[1] < 0.35 * error[0]);
 }
 
+/* Three dumb-bells in a row, held at their ends, that turn and fly at each other: the error of the
+ * energy after 0.1 s, without damping. */
+static double swing_clumps(double part_of_step)
+{
+    const double spheres[6] = {-0.009, 0.0, 0.0, 0.009, 0.0, 0.0}, radius[2] = {0.01, 0.01};
+    const double r[9] = {0.0, 0.0, 0.0, 0.05, 0.0, 0.0, 0.1, 0.0, 0.0};
+    const double v[9] = {0.1, 0.02, 0.0, 0.0, -0.03, 0.05, -0.1, 0.0, -0.04};
+    const double w[9] = {3.0, 5.0, -4.0, -6.0, 2.0, 1.0, 4.0, -3.0, 2.0};
+    se3d_clump_def clump = se3d_clump_def_default();
+    se3d_bond_def def = se3d_bond_def_default();
+    size_t added = 0;
+    double step;
+    bed b;
+    open_bed(&b, none, 1);
+    clump.count = 2;
+    clump.r = spheres;
+    clump.radius = radius;
+    CHECK(!se3d_particles_add_clump_template(b.particles, &clump, NULL));
+    CHECK(!se3d_particles_add_clumps(b.particles, 0, b.material, 3, r, NULL, v, w));
+    def.young = 1e6;
+    def.poisson = 0.2;
+    def.gap = 0.0121;
+    CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL) && added == 2);
+    CHECK(!se3d_particles_get_step(b.particles, &step));
+    CHECK(!se3d_particles_set_step(b.particles, part_of_step * step));
+    const double before = total(&b);
+    double most = 0.0;
+    for (int k = 0; k < 20; ++k) {
+        CHECK(!se3d_particles_run(b.particles, 0.005 * (k + 1)));
+        most = fmax(most, stats_of(&b, 0).energy);
+    }
+    const double error = fabs(total(&b) / before - 1.0);
+    CHECK(most > 0.05 * before);
+    bed_close(&b);
+    return error;
+}
+
+static void energy_of_bonded_clumps_stays(void)
+{
+    const double whole = swing_clumps(1.0), half = swing_clumps(0.5);
+    printf("clumps: energy %g, with half of the step %g\n", whole, half);
+    CHECK(whole < 1e-3 && half < 0.5 * whole);
+}
+
+/* What a cell that shears does goes to motion and bonds: the error, as a part of the work. */
+static double shear_lattice(double part_of_step)
+{
+    se3d_material_def material = se3d_material_def_default();
+    se3d_particles_def set = se3d_particles_def_default();
+    se3d_fill_def fill = se3d_fill_def_default();
+    se3d_bond_def def = se3d_bond_def_default();
+    se3d_cell_def stage = se3d_cell_def_default();
+    se3d_cell_state cell;
+    size_t added = 0;
+    double v[3 * 64], step;
+    bed b;
+    material.density = 1000.0;
+    material.stiffness = 1e4;
+    for (int a = 0; a < 3; ++a) {
+        set.boundary[a] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        set.upper[a] = fill.upper[a] = 0.1;
+    }
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &set, &material);
+    fill.material = b.material;
+    fill.radius_min = fill.radius_max = 0.01;
+    fill.spacing = 0.025;
+    CHECK(!se3d_particles_fill_lattice(b.particles, &fill, NULL));
+    CHECK(se3d_particles_count(b.particles) == 64);
+    for (int k = 0; k < 3 * 64; ++k) {
+        v[k] = 0.01 * (k * 37 % 64 / 31.5 - 1.0);
+    }
+    CHECK(!se3d_particles_set_all(b.particles, 64, NULL, v, NULL));
+    def.young = 1e6;
+    def.gap = 0.0051;
+    CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL) && added == 192);
+    stage.shear_rate = 2.0;
+    stage.rate[0] = -1.0;
+    CHECK(!se3d_particles_add_cell_stage(b.particles, &stage, NULL));
+    CHECK(!se3d_particles_get_step(b.particles, &step));
+    CHECK(!se3d_particles_set_step(b.particles, part_of_step * step));
+    CHECK(!se3d_particles_step(b.particles, 1));
+    CHECK(!se3d_particles_get_cell(b.particles, &cell));
+    const double first = cell.kinetic_energy + stats_of(&b, -1).energy - cell.work;
+    CHECK(!se3d_particles_run(b.particles, 0.05));
+    CHECK(!se3d_particles_get_cell(b.particles, &cell));
+    const double stored = stats_of(&b, -1).energy;
+    CHECK(stored > 0.1 * cell.work && cell.work > 0.0);
+    const double error = fabs(cell.kinetic_energy + stored - cell.work - first) / cell.work;
+    bed_close(&b);
+    return error;
+}
+
+static void work_of_a_cell_goes_into_bonds(void)
+{
+    const double whole = shear_lattice(1.0), half = shear_lattice(0.5);
+    printf("cell: %g of the work, with half of the step %g\n", whole, half);
+    CHECK(whole < 1e-4 && half < 1e-4);
+}
+
 /* What is damped and what goes with bonds that break is told; the sum stays. */
 static double break_block(double part_of_step)
 {
@@ -331,6 +430,37 @@ static void bonds_decide_who_touches(void)
     }
 }
 
+/* Particles may have been added, or have flown, far out of the period. */
+static void images_that_are_near_are_bonded(void)
+{
+    const double r[9] = {-1.99, 0.0, 0.0, 0.03, 0.0, 0.0, 3.5, 0.0, 0.01};
+    const double radius[3] = {0.01, 0.01, 0.01};
+    se3d_particles_def set = se3d_particles_def_default();
+    se3d_material_def material = se3d_material_def_default();
+    se3d_bond_def def = se3d_bond_def_default();
+    se3d_shape_def plane = se3d_shape_def_default();
+    se3d_shape shape;
+    size_t added = 0;
+    bed b;
+    material.density = 1000.0;
+    material.stiffness = 1e4;
+    set.boundary[0] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
+    set.upper[0] = 1.0;
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &set, &material);
+    CHECK(!se3d_particles_add(b.particles, b.material, 3, r, radius, NULL, NULL, NULL));
+    def.young = 1e6;
+    CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL) && added == 1);
+    plane.material = b.material;
+    plane.size[0] = plane.size[1] = plane.size[2] = 0.1;
+    plane.position[0] = 0.5;
+    plane.position[2] = -0.05;
+    CHECK(!se3d_shape_create_box(b.system, &plane, &shape));
+    CHECK(!se3d_particles_bond_shape(b.particles, &def, shape, -1, &added, NULL) && added == 1);
+    CHECK(!se3d_particles_step(b.particles, 10));
+    CHECK(stats_of(&b, -1).count == 2 && stats_of(&b, -1).energy < 1e-20);
+    bed_close(&b);
+}
+
 /* Pairs of a cubic lattice, in a period and without; between two tags; gone with their spheres. */
 static void near_spheres_are_bonded_once(void)
 {
@@ -391,9 +521,12 @@ int main(void)
     RUN(turns_of_the_whole_strain_nothing);
     RUN(energy_and_momenta_of_a_block_stay);
     RUN(energy_of_a_block_that_breaks_is_told);
+    RUN(energy_of_bonded_clumps_stays);
+    RUN(work_of_a_cell_goes_into_bonds);
     RUN(strength_decides);
     RUN(bonds_decide_who_touches);
     RUN(near_spheres_are_bonded_once);
+    RUN(images_that_are_near_are_bonded);
     RUN(bits_do_not_depend_on_threads);
     return check_finish();
 }

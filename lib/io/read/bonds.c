@@ -13,6 +13,8 @@
 #include "io/read/particle_names.h"
 #include "se3d/bond.h"
 
+#include <math.h>
+
 static const char *const laws[] = {[SE3D_BOND_LAW_BEAM] = "beam",
                                    [SE3D_BOND_LAW_SLENDER] = "slender",
                                    [SE3D_BOND_LAW_PARALLEL] = "parallel",
@@ -95,7 +97,7 @@ static bool read_pairs(se3di_reader *reader, const se3di_node *list, uint32_t *i
             return false;
         }
         for (int n = 0; n < 2; ++n) {
-            if (!(values[n] >= 0.0 && values[n] < 4294967295.0)) {
+            if (!(values[n] >= 0.0 && values[n] < 4294967295.0) || values[n] > floor(values[n])) {
                 return se3di_reader_fail(reader, pair, "is [%g, %g], must be ids of particles",
                                          values[0], values[1]);
             }
