@@ -30,12 +30,13 @@ typedef struct whole {
     uint32_t *faces;
 } whole;
 
+/* The ends of bonds stay when these break, and name particles by the ids of the whole. */
 static const char *refusal(const se3di_particles *set)
 {
     return set->clump_count > 0 || set->template_count > 0 ? "cannot be clumps"
            : set->flow_count > 0                           ? "cannot be counted by flows"
            : set->cell.count > 0                           ? "cannot be in a cell that strains"
-           : set->bond_count > 0                           ? "cannot be bonded"
+           : set->bond_end_count > 0                       ? "cannot be bonded, nor have been"
            : set->law == SE3DI_LAW_CALLBACK ? "cannot have a law of contact of the user's own"
                                             : NULL;
 }

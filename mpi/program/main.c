@@ -55,6 +55,23 @@ static int fail(const job *j, const char *message)
     return EXIT_FAILED;
 }
 
+/* What one process lacks or cannot write, the others do not know: they would wait for it. */
+static int is_lonely(se3d_status status)
+{
+    return status == SE3D_ERR_IO || status == SE3D_ERR_NO_MEMORY;
+}
+
+static void end_all(const job *j, const char *message)
+{
+    fflush(stdout);
+    fprintf(stderr, "%s: %s (process %d of %d; all processes end)\n", j->path, message, j->rank,
+            j->size);
+    if (j->rank != 0) {
+        folder_remove(j->folder);
+    }
+    MPI_Abort(MPI_COMM_WORLD, EXIT_FAILED);
+}
+
 /* NAME=VALUE. */
 static int add_setting(job *j, const char *text)
 {
@@ -202,7 +219,8 @@ static int run_attached(job *j)
     se3d_model_error error = {.message = ""};
     se3d_run_options how = se3d_run_options_default();
     if (SE3D_FAILED(se3d_scene_create(j->model, &scene))) {
-        return fail(j, "out of memory");
+        end_all(j, "out of memory");
+        return EXIT_FAILED;
     }
     how.directory = j->folder;
     how.progress = watch;
@@ -215,6 +233,9 @@ static int run_attached(job *j)
     }
     const se3d_status status = se3d_model_run(j->model, &how, &run, &error);
     const int good = !SE3D_FAILED(status);
+    if (is_lonely(status) && j->size > 1) {
+        end_all(j, error.message);
+    }
     if (!good) {
         (void)fail(j, error.message);
     }
@@ -233,11 +254,10 @@ static int run_attached(job *j)
 
 static int run_model(job *j)
 {
-    if (!all_agree(choose_folder(j))) {
-        return fail(j, "a folder for results cannot be made");
-    }
     int code = EXIT_FAILED;
-    if (j->resume && !all_agree(copy_results(j))) {
+    if (!all_agree(choose_folder(j))) {
+        code = fail(j, "a folder for results cannot be made");
+    } else if (j->resume && !all_agree(copy_results(j))) {
         code = fail(j, "the results to go on with cannot be copied for all processes");
     } else if (SE3D_FAILED(se3d_mpi_attach(se3d_model_get_system(j->model), MPI_COMM_WORLD))) {
         code = fail(j, se3d_system_get_error(se3d_model_get_system(j->model)));

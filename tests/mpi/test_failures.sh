@@ -22,6 +22,39 @@ refuses flows
     echo 'clumps: [{name: two, spheres: [{position: [0, 0, 0], radius: 0.002}, {position: [0.002, 0, 0], radius: 0.002}]}]'
 } >"$dir/refused.yaml"
 refuses clumps
+{ cat "$column" && echo 'bonds: [{name: glue, gap: 0.001, young: 1e6}]'; } >"$dir/refused.yaml"
+refuses bonded
+cp "$source/examples/models/triaxial.yaml" "$dir/refused.yaml"
+refuses 'in a cell'
+
+# A bond that breaks before the run fails: who had bonds is refused, too.
+cat >"$dir/refused.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, 0]
+materials: [{name: glass, density: 2500, stiffness: 100}]
+contact: {law: hooke}
+particles:
+  - {name: up, material: glass, radius: 0.001, packing: lattice, spacing: 0.002, lower: [0, 0, 0.01], upper: [0.0021, 0.0021, 0.0121],
+     velocity: [0, 0, 1]}
+  - {name: down, material: glass, radius: 0.001, packing: lattice, spacing: 0.002, lower: [0, 0, 0.006], upper: [0.0021, 0.0021, 0.0081],
+     velocity: [0, 0, -9]}
+bonds: [{name: glue, gap: 0.01, young: 1e4, tensile_strength: 1}]
+bodies: [{name: ground, shapes: [{type: plane, material: glass}]}]
+analysis: {type: dynamics, duration: 0.1}
+output: [{file: a.csv, every: 1e-4, channels: [glue.count]}]
+END
+"$SE3D_PROGRAM" run "$dir/refused.yaml" -o "$dir/refused" -q --checkpoint 0 2>"$dir/err"
+holds "an overlap ends the run of one" grep -q 'overlap' "$dir/err"
+holds "it leaves a checkpoint" test -s "$dir/refused/run.checkpoint"
+share 2 run "$dir/refused.yaml" -o "$dir/refused" --resume
+holds "refused: bonds that were" test "$status" -eq 2
+holds "the message says so" grep -q 'share cannot be bonded' "$dir/err"
+
+# What the first process cannot write ends all.
+: >"$dir/file"
+share 2 run "$column" -o "$dir/file/results"
+holds "a folder that cannot be made ends the run" test "$status" -eq 1
+holds "the message says why" grep -q 'results.*cannot be written: .*all processes end' "$dir/err"
 
 share 2 run "$column" -o "$dir/failed" --set materials.glass.stiffness=20
 holds "an overlap ends the run" test "$status" -eq 1

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Particles over several processes of MPI (libse3d-mpi).                                 docs/mpi.md
+/* Particles over several processes of MPI (libse3d-mpi).                                docs/mpi.md
  *
  * Every process makes the same system by the same calls and attaches it. From then on all of them
  * call the same functions in the same order. While a run is under way each process moves its part
@@ -21,7 +21,7 @@ extern "C" {
 
 /* Share the particles of a system among the processes of `comm`, of which a copy is made. Sets that
  * are created later are not shared; snapshots, clones and copies are whole. What is not carried
- * (clumps, flows, cells that strain, laws by callback) is refused when a run begins
+ * (clumps, bonds, flows, cells that strain, laws by callback) is refused when a run begins
  * (UNSUPPORTED, the message says what). Exclusive; collective.
  * @return OK, NULL, STATE (attached already, or the library is of another version), NO_MEMORY, IO
  *         (MPI failed).
