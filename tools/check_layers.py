@@ -188,7 +188,7 @@ def list_folders(root):
             if place[0] in ROOMS:
                 known = len(place) == 1 or (len(place) == 2 and place[1] in ROOMS[place[0]])
             yield folder, place, known
-    for folder in (root / "tools" / "se3d", root / "examples"):
+    for folder in (root / "tools" / "se3d", root / "examples", root / "mpi" / "program"):
         if folder.is_dir():
             yield folder, [], True
 

@@ -16,7 +16,7 @@ from pathlib import Path
 LINES, KERNEL_LINES, COMPLEXITY, PARAMETERS, FILE_LINES, EXAMPLE_LINES = 100, 160, 20, 8, 1000, 120
 COLUMNS = 100
 STANDARD = ("fmi2", "fmi3") # functions whose parameters a standard has chosen
-FOLDERS = ("include", "lib", "tools", "examples", "tests", "fuzz", "bench", "fmi", "record")
+FOLDERS = ("include", "lib", "tools", "examples", "tests", "fuzz", "bench", "fmi", "record", "mpi")
 TOKEN = re.compile(r"[A-Za-z_]\w*|\n|&&|\|\||\.?\d(?:[eEpP][+-]|[\w.])*|\S")
 NOISE = re.compile(r"/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'", re.S)
 DECISIONS = {"if", "for", "while", "case", "&&", "||", "?"}
