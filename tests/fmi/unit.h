@@ -101,7 +101,8 @@ typedef struct run {
     size_t column_count;
 } run;
 
-/* exchange.c: what a caller that integrates meets; check.h counts in each file. @return 1: failed */
+/* exchange.c: what a caller that integrates meets; check.h counts in each file. @return 1: failed
+ */
 int exchange_check(const run *results);
 
 #endif
