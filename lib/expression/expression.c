@@ -259,6 +259,13 @@ static int is_smooth(const se3di_instruction *in)
     }
 }
 
+static int is_continuous(const se3di_instruction *in)
+{
+    return in->op == SE3DI_OP_UNARY || in->op == SE3DI_OP_BINARY
+               ? se3di_function_is_continuous(in->function)
+               : in->op != SE3DI_OP_JUMP_IF_ZERO;
+}
+
 static int is_total(const se3di_instruction *in)
 {
     switch (in->op) {
@@ -288,6 +295,11 @@ static int holds_for_all(const se3d_expression *expression,
 int se3di_expression_is_smooth(const se3d_expression *expression)
 {
     return holds_for_all(expression, is_smooth);
+}
+
+int se3di_expression_is_continuous(const se3d_expression *expression)
+{
+    return holds_for_all(expression, is_continuous);
 }
 
 int se3di_expression_is_total(const se3d_expression *expression)

@@ -21,6 +21,10 @@ void se3di_expression_eval_along(const se3d_expression *expression, const double
 /* Whether it has derivatives wherever it has a value, for certain: no |x|, condition or root. */
 int se3di_expression_is_smooth(const se3d_expression *expression);
 
+/* Whether it has no jump, for certain: no condition, comparison, sign, rounding or remainder. The
+ * angle of atan2 jumps where it is half a turn. */
+int se3di_expression_is_continuous(const se3d_expression *expression);
+
 /* Whether it is finite wherever its variables are, but for numbers that grow without bound. */
 int se3di_expression_is_total(const se3d_expression *expression);
 

@@ -303,6 +303,11 @@ int se3di_function_is_smooth(size_t function)
     return is_named(function, names);
 }
 
+int se3di_function_is_continuous(size_t function)
+{
+    return !se3di_functions[function].flat && strcmp(se3di_functions[function].name, "mod") != 0;
+}
+
 int se3di_function_is_total(size_t function)
 {
     static const char *const names[] = {"abs",   "sin",  "cos",   "atan", "tanh", "sign",

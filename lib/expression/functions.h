@@ -40,6 +40,8 @@ size_t se3di_function_find(const char *name, size_t length);
 
 /* Whether it has derivatives wherever it has a value (abs, sqrt, asin, mod have not). */
 int se3di_function_is_smooth(size_t function);
+/* ... no jump, but for the angle of atan2 where it is half a turn. */
+int se3di_function_is_continuous(size_t function);
 
 /* Whether it has a finite value and finite rates for every finite argument. */
 int se3di_function_is_total(size_t function);

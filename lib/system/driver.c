@@ -56,6 +56,18 @@ static int is_differentiable(const se3di_model *model, const se3di_function *fun
     return is_good;
 }
 
+/* The search for jumps knows functions of the time alone, and a velocity that jumps within a step
+ * is not in its accelerations. */
+static int is_continuous(const se3di_model *model, const se3di_function *function)
+{
+    int is_good = !function->expression || se3di_expression_is_continuous(function->expression);
+    for (uint32_t k = 0; k < function->signal_count && is_good; ++k) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[k]);
+        is_good = !inner || is_continuous(model, inner);
+    }
+    return is_good;
+}
+
 /* A rate may depend on anything but itself. */
 static se3d_status check_leaves(se3d_system *system, const se3di_function *law, uint32_t joint,
                                 int32_t coordinate)
@@ -93,6 +105,12 @@ static se3d_status draft_rate(se3d_system *system, const se3d_driver_def *def, u
         return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
                           "function and outputs of states that it takes must be expressions of the "
                           "time and of signals: their derivatives are needed");
+    }
+    if (!is_continuous(&system->model, law)) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function may jump, which a rate of signals must not: instead of if, "
+                          "comparisons, sign, floor, ceil, round and mod, use step, min, max or "
+                          "abs");
     }
     SE3DI_TRY(check_leaves(system, law, joint, def->coordinate));
     if (!se3di_driver_rate_draft(&system->model, joint, def->coordinate, function, def->name,

@@ -413,6 +413,28 @@ static void rates_that_no_velocities_have_are_refused(void)
     }
 }
 
+/* What jumps within a step would be found by nobody: positions were off by 17 %. */
+static void rates_that_may_jump_are_refused(void)
+{
+    static const char *const laws[] = {"\"if(t < 0.503, 1, 2)*pin.rate\"", "\"sign(pin.angle)\"",
+                                       "\"(pin.angle > 1)*pin.rate\"",     "\"mod(pin.angle, 1)\"",
+                                       "\"max(-1, min(1, pin.angle))\"",   "\"abs(pin.rate)\""};
+    for (size_t k = 0; k < sizeof laws / sizeof *laws; ++k) {
+        char text[2000];
+        se3d_model *model = NULL;
+        se3d_model_error error;
+        snprintf(text, sizeof text, "%s%s%s%s",
+                 CAM "drivers: [{name: cam, joint: rail, rate: ", laws[k], "}]\n", TAIL);
+        const se3d_status status =
+            se3d_model_read_text(text, strlen(text), "x.yaml", NULL, &model, &error);
+        CHECK(status == (k < 4 ? SE3D_ERR_MODEL : SE3D_OK));
+        if (k < 4) {
+            CHECK_CONTAINS(error.message, "function may jump");
+        }
+        se3d_model_destroy(model);
+    }
+}
+
 #define CHAIN                                                                                      \
     "se3d: 1\nbodies:\n  - {name: arm, mass: 1, inertia: [1, 1, 2]}\n"                             \
     "  - {name: cart, mass: 2, inertia: [1, 1, 1]}\n"                                              \
@@ -537,6 +559,7 @@ int main(void)
     RUN(a_rate_of_a_free_angle_is_a_gear);
     RUN(rates_are_refused_where_positions_come_first);
     RUN(rates_that_no_velocities_have_are_refused);
+    RUN(rates_that_may_jump_are_refused);
     RUN(drivers_follow_lengths_positions_and_followers);
     RUN(a_follower_takes_its_part_in_frequencies);
     RUN(followers_are_checked_and_given_back);

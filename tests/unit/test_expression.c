@@ -427,6 +427,18 @@ static void what_may_have_kinks_is_known(void)
     check_all(kinked, sizeof kinked / sizeof *kinked, se3di_expression_is_smooth, 0);
 }
 
+static void what_may_jump_is_known(void)
+{
+    static const char *const continuous[] = {
+        "3",          "abs(t) + sqrt(t)^1.5",  "if(1 < 2, t, 0)", "max(t, 1, min(l, 2))",
+        "hypot(t,l)", "step(t, 0, 2, 3, 4)/l", "atan2(t, l)"};
+    static const char *const jumping[] = {"if(t<1,0,t-1)", "mod(t, 1)", "floor(t)", "ceil(2*t)",
+                                          "sign(t)",       "round(t)",  "t < 1",    "(t != 2)*l"};
+    check_all(continuous, sizeof continuous / sizeof *continuous, se3di_expression_is_continuous,
+              1);
+    check_all(jumping, sizeof jumping / sizeof *jumping, se3di_expression_is_continuous, 0);
+}
+
 static void what_may_not_be_finite_is_known(void)
 {
     static const char *const total[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t", "if(t<1,0,t-1)",
@@ -907,6 +919,7 @@ int main(void)
     RUN(singular_derivatives_along_other_variables_do_not_matter);
     RUN(only_the_branch_taken_counts);
     RUN(what_may_have_kinks_is_known);
+    RUN(what_may_jump_is_known);
     RUN(what_may_not_be_finite_is_known);
     RUN(constants_are_folded);
     RUN(every_bad_text_is_named_with_its_column);
