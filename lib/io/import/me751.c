@@ -688,15 +688,30 @@ static bool put_points(se3di_machine *m, const se3di_node *map, se3di_entry *ent
            put_vector(m, map, &point_names[1], "point_j", false, entry);
 }
 
+/* Whether two directions give no plane. */
+static bool are_parallel(const double a[3], const double b[3])
+{
+    const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                         a[0] * b[1] - a[1] * b[0]};
+    return !(se3di_length(n) > 2e-6 * se3di_length(a) * se3di_length(b));
+}
+
 /* The axis on body i, and the directions that the angle is between, if they are given. */
 static bool put_axis(se3di_machine *m, const se3di_node *map, se3di_entry *entry)
 {
     static const char *const keys[2] = {"ref_i", "ref_j"};
-    if (!put_vector(m, map, &direction_names[0], "axis_i", true, entry)) {
+    double axis[3] = {0.0, 0.0, 0.0};
+    double ref[3] = {0.0, 0.0, 0.0};
+    const se3di_node *from = find(map, &reference_names[1]) ? find(map, &reference_names[0]) : NULL;
+    if (!put_vector(m, map, &direction_names[0], "axis_i", true, entry) ||
+        !read_member(m, map, &direction_names[0], axis, 3) ||
+        !read_member(m, map, &reference_names[0], ref, 3)) {
         return false;
     }
-    for (int k = 0; k < 2 && find(map, &reference_names[0]) && find(map, &reference_names[1]);
-         ++k) {
+    if (from && are_parallel(axis, ref)) {
+        return expect(m, from, "a direction across the axis");
+    }
+    for (int k = 0; k < 2 && from; ++k) {
         if (!put_vector(m, map, &reference_names[k], keys[k], true, entry)) {
             return false;
         }

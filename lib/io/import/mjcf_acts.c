@@ -264,6 +264,10 @@ static bool read_tendon(se3di_mjcf *f, const se3di_xml *node)
         (s.lengths == 2 && s.length[1] > s.length[0])) {
         return lose(f, node, "it is no spring between two sites");
     }
+    if (f->links.list[f->sites[s.sites[0]].link].body ==
+        f->links.list[f->sites[s.sites[1]].link].body) {
+        return lose(f, node, "both of its sites are on one body");
+    }
     return add_spring(f, node, &s);
 }
 
