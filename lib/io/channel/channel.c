@@ -229,11 +229,8 @@ static void offer_one(offer *o, const char *name, se3di_quantity quantity)
 /* Coordinates of a joint; `rate` is that of the angle if it has both. */
 static void offer_coordinates(offer *o, const se3d_system *system, se3d_constraint joint)
 {
-    double value[3];
-    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
-    const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+    const bool angle = se3di_joint_has(system, joint, SE3D_JOINT_COORDINATE_ANGLE);
+    const bool displacement = se3di_joint_has(system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT);
     if (angle) {
         offer_one(o, "angle", SE3DI_JOINT_ANGLE);
     }

@@ -145,6 +145,12 @@ se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
     return se3di_io_give(picture, size, &model->pictures[index], sizeof *picture);
 }
 
+bool se3di_joint_has(const se3d_system *system, se3d_constraint joint, se3d_joint_coordinate which)
+{
+    const se3d_status status = se3d_joint_get_coordinate(system, joint, which, NULL, NULL, NULL);
+    return !SE3D_FAILED(status) || status == SE3D_ERR_NOT_FINITE;
+}
+
 bool se3di_solver_takes_time(const se3d_solver_def *solver)
 {
     return solver->analysis == SE3D_ANALYSIS_KINEMATICS ||

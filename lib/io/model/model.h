@@ -165,4 +165,7 @@ struct se3d_model {
     void *log_ctx;
 };
 
+/* Whether a joint has such a coordinate, also if it has no value at the pose of now. */
+bool se3di_joint_has(const se3d_system *system, se3d_constraint joint, se3d_joint_coordinate which);
+
 #endif

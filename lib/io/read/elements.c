@@ -101,11 +101,8 @@ static bool read_coordinate(se3di_reader *reader, const se3di_node *node, se3d_c
     const se3d_system *system = reader->system;
     const se3di_node *child = se3di_node_get(node, "coordinate");
     size_t word = 0;
-    double value[3];
-    const bool angle = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_ANGLE, &value[0], &value[1], &value[2]));
-    const bool displacement = !SE3D_FAILED(se3d_joint_get_coordinate(
-        system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT, &value[0], &value[1], &value[2]));
+    const bool angle = se3di_joint_has(system, joint, SE3D_JOINT_COORDINATE_ANGLE);
+    const bool displacement = se3di_joint_has(system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT);
     if (!angle && !displacement) {
         return se3di_reader_fail_key(reader, node, "joint",
                                      "has no coordinate, must be a joint with an angle or a "

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/shortest.h"
+#include "io/model/model.h"
 #include "io/write/save.h"
 
 static bool fail(se3di_save *s, se3d_status status)
@@ -210,17 +211,11 @@ void se3di_save_constraint(se3di_save *s, const char *key, se3d_constraint const
     se3di_save_text(s, key, find(s, &s->constraints, constraint.index1));
 }
 
-static bool has(const se3d_system *system, se3d_constraint joint, se3d_joint_coordinate which)
-{
-    double value;
-    return !SE3D_FAILED(se3d_joint_get_coordinate(system, joint, which, &value, NULL, NULL));
-}
-
 void se3di_save_coordinate(se3di_save *s, se3d_constraint joint, int32_t coordinate)
 {
     se3di_save_constraint(s, "joint", joint);
-    if (has(s->system, joint, SE3D_JOINT_COORDINATE_ANGLE) &&
-        has(s->system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT)) {
+    if (se3di_joint_has(s->system, joint, SE3D_JOINT_COORDINATE_ANGLE) &&
+        se3di_joint_has(s->system, joint, SE3D_JOINT_COORDINATE_DISPLACEMENT)) {
         se3di_save_word(s, "coordinate",
                         coordinate == SE3D_JOINT_COORDINATE_ANGLE ? "angle" : "displacement");
     }
@@ -259,7 +254,7 @@ static const char *joint_channel(se3di_save *s, const se3d_signal *signal)
     if (signal->kind == SE3D_SIGNAL_JOINT_COORDINATE) {
         return join(s, name, angle ? "angle" : "displacement", "");
     }
-    const bool both = has(s->system, signal->joint, SE3D_JOINT_COORDINATE_ANGLE);
+    const bool both = se3di_joint_has(s->system, signal->joint, SE3D_JOINT_COORDINATE_ANGLE);
     return join(s, name, !angle && both ? "displacement_rate" : "rate", "");
 }
 

@@ -373,15 +373,12 @@ static void put_units(drawing *d)
         const se3di_element_entry *entry = &model->elements[k];
         const se3di_node *type = se3di_node_get(entry->node, "type");
         const char *text = type ? type->text : "";
-        double value[3];
         bool turns = entry->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         if (entry->kind == SE3DI_ELEMENT_DRIVER) {
             put_unit(d, entry, "value", turns ? "rad" : "m");
             put_unit(d, entry, "effort", turns ? "N m" : "N");
         } else if (entry->kind == SE3DI_ELEMENT_JOINT) {
-            turns = !SE3D_FAILED(se3d_joint_get_coordinate(model->system, entry->constraint,
-                                                           SE3D_JOINT_COORDINATE_ANGLE, &value[0],
-                                                           &value[1], &value[2]));
+            turns = se3di_joint_has(model->system, entry->constraint, SE3D_JOINT_COORDINATE_ANGLE);
         } else if (se3di_keys_contain(" friction stop ", text)) {
             put_unit(d, entry, "coordinate", turns ? "rad" : "m");
             put_unit(d, entry, "force", turns ? "N m" : "N");
