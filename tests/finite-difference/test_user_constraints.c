@@ -249,32 +249,40 @@ static void eval_displaced(world *w, int b, int c, double by, double *row)
     *frame = kept;
 }
 
+/* Curvature against differences of Jacobians, whose error falls by the square of the step. */
+static void check_curvature(world *w)
+{
+    enum { N = 6 * BODIES_MAX };
+    static const double steps[2] = {2e-3, 1e-3};
+    double H[N * N], g[N], worst[2] = {0.0, 0.0}, lambda = 1.7;
+    se3di_model *model = &w->system->model;
+    const se3di_constraint *driver = &model->constraints[model->constraint_slots.count - 1];
+    CHECK(!se3di_user_curvature(model, driver, 0.7, &lambda, H, g));
+    for (int k = 0; k < 2 * N; ++k) {
+        double before[N], after[N];
+        const double h = steps[k / N];
+        eval_displaced(w, k % N / 6, k % 6, -h, before);
+        eval_displaced(w, k % N / 6, k % 6, h, after);
+        for (int r = 0; r < N; ++r) {
+            const double slope = 0.5 * lambda * (after[r] - before[r]) / h;
+            worst[k / N] = fmax(worst[k / N], fabs(slope - H[N * r + k % N]));
+        }
+    }
+    CHECK(worst[1] < 1e-4 && worst[1] > 1e-10);
+    CHECK_NEAR(worst[0] / worst[1], 4.0, 0.1);
+}
+
 /* The curvature of a driver is the derivative of its Jacobian: no differences of its own. */
 static void curvatures_of_drivers_fit(void)
 {
     uint64_t seed = 1234567u;
     for (int trial = 0; trial < 6; ++trial) {
-        enum { N = 6 * BODIES_MAX };
-        static const double steps[2] = {2e-3, 1e-3};
-        double H[N * N], g[N], worst[2] = {0.0, 0.0}, lambda = 1.7;
         world w = {0};
         build_driver(&w, trial % 2, &seed);
         se3di_model *model = &w.system->model;
         const se3di_constraint *driver = &model->constraints[model->constraint_slots.count - 1];
         CHECK(driver->body_count == BODIES_MAX);
-        CHECK(!se3di_user_curvature(model, driver, 0.7, &lambda, H, g));
-        for (int k = 0; k < 2 * N; ++k) {
-            double before[N], after[N];
-            const double h = steps[k / N];
-            eval_displaced(&w, k % N / 6, k % 6, -h, before);
-            eval_displaced(&w, k % N / 6, k % 6, h, after);
-            for (int r = 0; r < N; ++r) {
-                const double slope = 0.5 * lambda * (after[r] - before[r]) / h;
-                worst[k / N] = fmax(worst[k / N], fabs(slope - H[N * r + k % N]));
-            }
-        }
-        CHECK(worst[1] < 1e-4 && worst[1] > 1e-10);
-        CHECK_NEAR(worst[0] / worst[1], 4.0, 0.1);
+        check_curvature(&w);
         se3d_system_destroy(w.system);
     }
 }
@@ -404,27 +412,11 @@ static void curvatures_of_rates_fit(void)
 {
     uint64_t seed = 1234567u;
     for (int trial = 0; trial < 6; ++trial) {
-        enum { N = 6 * BODIES_MAX };
-        static const double steps[2] = {2e-3, 1e-3};
-        double H[N * N], g[N], worst[2] = {0.0, 0.0}, lambda = 1.7, x, f, second;
+        double x, f, second;
         world w = {0};
         const uint32_t carrier = build_rate(&w, trial % 2, &seed);
-        se3di_model *model = &w.system->model;
-        const se3di_constraint *driver = &model->constraints[model->constraint_slots.count - 1];
         (void)eval_rate(&w, carrier, 0.7, 0.0, &x, &f, &second);
-        CHECK(!se3di_user_curvature(model, driver, 0.7, &lambda, H, g));
-        for (int k = 0; k < 2 * N; ++k) {
-            double before[N], after[N];
-            const double h = steps[k / N];
-            eval_displaced(&w, k % N / 6, k % 6, -h, before);
-            eval_displaced(&w, k % N / 6, k % 6, h, after);
-            for (int r = 0; r < N; ++r) {
-                const double slope = 0.5 * lambda * (after[r] - before[r]) / h;
-                worst[k / N] = fmax(worst[k / N], fabs(slope - H[N * r + k % N]));
-            }
-        }
-        CHECK(worst[1] < 1e-4 && worst[1] > 1e-10);
-        CHECK_NEAR(worst[0] / worst[1], 4.0, 0.1);
+        check_curvature(&w);
         se3d_system_destroy(w.system);
     }
 }
