@@ -209,8 +209,6 @@ static se3d_status eval(const se3di_model *model, const se3di_constraint *constr
                         int wanted, se3di_user_values *values)
 {
     rate_law l;
-    const int n = 6 * (int)constraint->body_count;
-    memset(values, 0, sizeof *values);
     if (!(wanted & ~SE3DI_USER_PHI)) {
         return SE3D_OK;
     }
@@ -221,12 +219,7 @@ static se3d_status eval(const se3di_model *model, const se3di_constraint *constr
     if (status == SE3D_OK && wanted & SE3DI_USER_JACOBIAN) {
         fill_jacobian(constraint, &l, values->jacobian);
     }
-    if (status == SE3D_OK && se3di_is_finite(values->nu, 1) && se3di_is_finite(values->gamma, 1) &&
-        se3di_is_finite(values->jacobian, n)) {
-        return SE3D_OK;
-    }
-    memset(values, 0, sizeof *values);
-    return SE3D_ERR_NOT_FINITE;
+    return status == SE3D_OK ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
 /* ---- the derivative of its force ---- */
@@ -297,30 +290,21 @@ static se3d_status add_products(const se3di_model *model, const se3di_constraint
 }
 
 static se3d_status curvature(const se3di_model *model, const se3di_constraint *constraint, double t,
-                             const double *lambda, double *H, double *g)
+                             double lambda, double *H, double *row)
 {
     rate_law l;
-    const uint32_t n = 6 * constraint->body_count;
-    memset(H, 0, (size_t)n * n * sizeof *H);
-    memset(g, 0, n * sizeof *g);
     if (begin(model, constraint, t, &l) < 0) {
         return SE3D_ERR_NOT_FINITE;
     }
-    fill_jacobian(constraint, &l, g);
-    for (uint32_t k = 0; k < n; ++k) {
-        g[k] *= lambda[0];
-    }
-    se3di_quantity_add_curvature(constraint, &l.own, lambda[0], H);
+    fill_jacobian(constraint, &l, row);
+    se3di_quantity_add_curvature(constraint, &l.own, lambda, H);
     for (uint32_t k = 0; k < l.count; ++k) {
         if (l.leaves[k].is_velocity) {
-            se3di_quantity_add_curvature(constraint, &l.leaves[k].of,
-                                         -lambda[0] * l.leaves[k].slope, H);
+            se3di_quantity_add_curvature(constraint, &l.leaves[k].of, -lambda * l.leaves[k].slope,
+                                         H);
         }
     }
-    return add_products(model, constraint, &l, lambda[0], H) == SE3D_OK &&
-                   se3di_is_finite(H, (int)(n * n))
-               ? SE3D_OK
-               : SE3D_ERR_NOT_FINITE;
+    return add_products(model, constraint, &l, lambda, H) < 0 ? SE3D_ERR_NOT_FINITE : SE3D_OK;
 }
 
 static const se3di_user_class driver_rate = {eval, curvature};

@@ -21,6 +21,23 @@ static void get_motion(const se3di_model *model, const se3di_constraint *constra
     }
 }
 
+/* Values that are not finite are a failure; on failure all are zero.
+ * @return OK, status, NOT_FINITE */
+static se3d_status take(const se3di_constraint *constraint, se3d_status status,
+                        se3di_user_values *values)
+{
+    const int rows = (int)constraint->row_count;
+    const int numbers = 6 * rows * (int)se3di_user_body_count(constraint);
+    const int is_finite = se3di_is_finite(values->phi, rows) && se3di_is_finite(values->nu, rows) &&
+                          se3di_is_finite(values->gamma, rows) &&
+                          se3di_is_finite(values->jacobian, numbers);
+    if (status < 0 || !is_finite) {
+        memset(values, 0, sizeof *values);
+        return status < 0 ? status : SE3D_ERR_NOT_FINITE;
+    }
+    return SE3D_OK;
+}
+
 /* Call with `motion`; what is not wanted is zero, and so is all on failure.
  * @return OK, CALLBACK, NOT_FINITE */
 static se3d_status call(const se3di_constraint *constraint, double t,
@@ -32,16 +49,7 @@ static se3d_status call(const se3di_constraint *constraint, double t,
         wanted & SE3DI_USER_JACOBIAN ? values->jacobian : NULL,
         wanted & SE3DI_USER_NU ? values->nu : NULL,
         wanted & SE3DI_USER_GAMMA ? values->gamma : NULL);
-    int rows = (int)constraint->row_count;
-    int numbers = 6 * rows * (int)se3di_user_body_count(constraint);
-    int is_finite = se3di_is_finite(values->phi, rows) && se3di_is_finite(values->nu, rows) &&
-                    se3di_is_finite(values->gamma, rows) &&
-                    se3di_is_finite(values->jacobian, numbers);
-    if (status < 0 || !is_finite) {
-        memset(values, 0, sizeof *values);
-        return status < 0 ? SE3D_ERR_CALLBACK : SE3D_ERR_NOT_FINITE;
-    }
-    return SE3D_OK;
+    return take(constraint, status < 0 ? SE3D_ERR_CALLBACK : SE3D_OK, values);
 }
 
 se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *constraint, double t,
@@ -49,7 +57,9 @@ se3d_status se3di_user_eval(const se3di_model *model, const se3di_constraint *co
 {
     se3d_body_motion motion[SE3D_USER_BODIES_MAX];
     if (constraint->law_class) {
-        return constraint->law_class->eval(model, constraint, t, wanted, values);
+        memset(values, 0, sizeof *values);
+        return take(constraint, constraint->law_class->eval(model, constraint, t, wanted, values),
+                    values);
     }
     get_motion(model, constraint, motion);
     return call(constraint, t, motion, wanted, values);
@@ -82,6 +92,20 @@ static void add_forces(const se3di_constraint *constraint, const se3di_user_valu
     }
 }
 
+/* Of a law, whose Jacobian is one row. */
+static se3d_status law_curvature(const se3di_model *model, const se3di_constraint *constraint,
+                                 double t, double lambda, double *H, double *g)
+{
+    const uint32_t n = 6 * se3di_user_body_count(constraint);
+    memset(H, 0, (size_t)n * n * sizeof *H);
+    memset(g, 0, n * sizeof *g);
+    SE3DI_TRY(constraint->law_class->curvature(model, constraint, t, lambda, H, g));
+    for (uint32_t k = 0; k < n; ++k) {
+        g[k] *= lambda;
+    }
+    return se3di_is_finite(H, (int)(n * n)) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
 se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constraint *constraint,
                                  double t, const double *lambda, double *H, double *g)
 {
@@ -90,7 +114,7 @@ se3d_status se3di_user_curvature(const se3di_model *model, const se3di_constrain
     se3d_body_motion moved[SE3D_USER_BODIES_MAX];
     se3di_user_values values;
     if (constraint->law_class) {
-        return constraint->law_class->curvature(model, constraint, t, lambda, H, g);
+        return law_curvature(model, constraint, t, lambda[0], H, g);
     }
     get_motion(model, constraint, motion);
     SE3DI_TRY(call(constraint, t, motion, SE3DI_USER_JACOBIAN, &values));

@@ -24,13 +24,14 @@ typedef struct se3di_user_values {
     double jacobian[SE3D_USER_EQUATIONS_MAX * SE3D_USER_BODIES_MAX * 6]; /* as the callback's */
 } se3di_user_values;
 
-/* How equations that are a function of signals are computed, see se3di_user_eval and
- * se3di_user_curvature; signals are of the layers below. */
+/* How one equation that is a function of signals is computed, see se3di_user_eval and
+ * se3di_user_curvature; signals are of the layers below. All that they fill is zero before, and
+ * tested for finite numbers after: H, and as `row` [n] the Jacobian. */
 typedef struct se3di_user_class {
     se3d_status (*eval)(const se3di_model *model, const se3di_constraint *constraint, double t,
                         int wanted, se3di_user_values *values);
     se3d_status (*curvature)(const se3di_model *model, const se3di_constraint *constraint, double t,
-                             const double *lambda, double *H, double *g);
+                             double lambda, double *H, double *row);
 } se3di_user_class;
 
 /* Whether its equations are not made of terms. */
