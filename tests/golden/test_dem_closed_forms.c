@@ -408,6 +408,77 @@ static void sliding_impact_obeys_coulomb(void)
     bed_close(&b);
 }
 
+/* One that comes down at speed `in` along z, with speed along x and spin about y, on a wall
+ * (`other` = 0) or on a sphere at rest; `out` has the same three afterwards. */
+static void glance(const se3d_material_def *def, double radius, double other, const double in[3],
+                   double out[3])
+{
+    bed b;
+    open_bed(&b, SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.0, def);
+    const double v[3] = {in[1], 0.0, -in[0]}, w[3] = {0.0, in[2], 0.0};
+    add(&b, 0.0, radius, radius, v, w);
+    if (other > 0.0) {
+        add(&b, 0.0, -other, other, NULL, NULL);
+    } else {
+        floor_at(&b, 0.0, 0.0, 1.0);
+    }
+    double step, u[6], s[6];
+    CHECK(se3d_particles_get_step(b.particles, &step) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.particles, step / 8.0) == SE3D_OK);
+    long steps = 0;
+    do {
+        CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+    } while (++steps < 100000 && se3d_particles_count_contacts(b.particles) > 0);
+    CHECK(se3d_particles_get_all(b.particles, se3d_particles_count(b.particles), NULL, u, s) ==
+          SE3D_OK);
+    out[0] = u[2];
+    out[1] = u[0];
+    out[2] = s[1];
+    bed_close(&b);
+}
+
+/* The kinds of Chung and Ooi's tests 3 to 8. Slip of more than 7/2 mu (1 + e) vn lasts all the
+ * impact: the tangential impulse is mu times the normal one; less slip: it is smaller. */
+static void oblique_and_spinning_impacts_are_those_of_coulomb(void)
+{
+    static const struct {
+        double young, poisson, density, radius, other, mu, e, in[3];
+        int slides;
+    } rows[] = {
+        {380e9, 0.23, 4000.0, 0.0025, 0.0, 0.092, 0.98, {3.9, 0.0, 0.0}, 0},       /* normal */
+        {380e9, 0.23, 4000.0, 0.0025, 0.0, 0.092, 0.98, {1.95, 3.3775, 0.0}, 1},   /* 60 deg */
+        {380e9, 0.23, 4000.0, 0.0025, 0.0, 0.092, 0.98, {3.8408, 0.6772, 0.0}, 0}, /* 10 deg */
+        {208e9, 0.30, 7850.0, 1e-5, 0.0, 0.3, 1.0, {5.0, 13.737, 0.0}, 1},         /* 70 deg */
+        {70e9, 0.33, 2700.0, 0.1, 0.0, 0.4, 0.5, {0.2, 0.0, 12.0}, 1},             /* spin */
+        {120e9, 0.35, 8900.0, 0.1, 0.0, 0.4, 0.5, {0.2, 0.0, -12.0}, 1},           /* other way */
+        {70e9, 0.33, 2700.0, 0.1, 0.1, 0.4, 0.5, {0.2, 0.0, 12.0}, 1},             /* a pair */
+        {70e9, 0.33, 2700.0, 0.1, 0.5, 0.4, 0.5, {0.2, 0.0, 12.0}, 1},             /* unequal */
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
+        se3d_material_def def = stuff();
+        def.young = rows[k].young;
+        def.poisson = rows[k].poisson;
+        def.density = rows[k].density;
+        def.friction = rows[k].mu;
+        def.restitution = rows[k].e;
+        const double R = rows[k].radius, *in = rows[k].in;
+        const double ratio = rows[k].other > 0.0 ? pow(R / rows[k].other, 3.0) : 0.0;
+        const double dv = (1.0 + rows[k].e) * in[0] / (1.0 + ratio); /* of the first, along z */
+        const double slip = in[1] - R * in[2];
+        double out[3];
+        glance(&def, R, rows[k].other, in, out);
+        CHECK_NEAR((out[0] + in[0]) / dv, 1.0, 2e-3);
+        double share = (in[1] - out[1]) / (copysign(rows[k].mu, slip) * dv);
+        double turned = 0.4 * R * (out[2] - in[2]);
+        CHECK_NEAR(turned / dv, (in[1] - out[1]) / dv, 8e-3 * rows[k].mu); /* R - delta */
+        if (rows[k].slides) {
+            CHECK_NEAR(share, 1.0, 2e-3);
+        } else {
+            CHECK(share > -1e-9 && share < 0.99);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(restitution_typed_is_restitution_obtained);
@@ -426,5 +497,6 @@ int main(void)
     RUN(stack_does_not_creep);
     RUN(impact_without_slip_reverses_the_contact_point);
     RUN(sliding_impact_obeys_coulomb);
+    RUN(oblique_and_spinning_impacts_are_those_of_coulomb);
     return check_finish();
 }
