@@ -59,6 +59,50 @@ for fmi in 2 3; do
         "$dir/coarse" "$dir/fine"
 done
 
+# A unit that leaves the processor rounding upwards and small numbers as zeros changes no bit of the host.
+cat >"$dir/rude.c" <<'END_OF_C'
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fenv.h>
+#include <stddef.h>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+__attribute__((constructor)) static void spoil(void)
+{
+    fesetround(FE_UPWARD);
+#if defined(__SSE2__)
+    _mm_setcsr(_mm_getcsr() | 0x8040u);
+#endif
+}
+int fmi2SetReal(void *c, const unsigned *at, size_t n, const double *values)
+{
+    int (*call)(void *, const unsigned *, size_t, const double *);
+    *(void **)&call = dlsym(RTLD_NEXT, "fmi2SetReal");
+    const int status = call(c, at, n, values);
+    spoil();
+    return status;
+}
+int fmi3SetFloat64(void *c, const unsigned *at, size_t n, const double *values, size_t count)
+{
+    int (*call)(void *, const unsigned *, size_t, const double *, size_t);
+    *(void **)&call = dlsym(RTLD_NEXT, "fmi3SetFloat64");
+    const int status = call(c, at, n, values, count);
+    spoil();
+    return status;
+}
+END_OF_C
+for fmi in 2 3; do
+    cp -r "$dir/spring.$fmi" "$dir/rude.$fmi"
+    object=$(ls "$dir/rude.$fmi/binaries/"*/*.so)
+    mv "$object" "${object%/*}/polite.so"
+    expect "a rude unit, FMI $fmi" 0 "${CC:-cc}" -shared -fPIC -o "$object" "$dir/rude.c" -lm -ldl \
+        -Wl,--no-as-needed "${object%/*}/polite.so" "-Wl,-rpath,${object%/*}"
+    host $fmi 0.002 | sed "s/file: spring/file: rude/" >"$dir/host.yaml"
+    expect "a rude unit runs, FMI $fmi" 0 "$program" run -q "$dir/host.yaml" -o "$dir/rude.run.$fmi"
+    holds 'the unit changed the host' cmp "$dir/rude.run.$fmi/a.csv" "$dir/run.$fmi.0.002/a.csv"
+done
+
 # The order of units does not matter: all are told before any acts.
 both() {
     echo 'se3d: 1

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/floats.h"
 #include "io/base/pool.h"
 #include "io/model/settable.h"
 #include "io/run/guest_description.h"
@@ -137,9 +138,16 @@ static se3d_status fail(const guest *g, se3d_status status, char *problem, const
     return status;
 }
 
+/* A unit may have set how the processor rounds and whether it keeps small numbers. */
+static void settle(void)
+{
+    (void)se3di_floats_set();
+}
+
 /* Whether a call went well. */
 static bool good(guest *g, int status)
 {
+    settle();
     g->is_broken = g->is_broken || status == FATAL;
     return status >= 0 && status <= GOOD_MOST;
 }
@@ -188,6 +196,7 @@ static se3d_status load_object(guest *g, char *problem)
              g->entry->path, g->description.version == 2 ? PLATFORM2 : PLATFORM3,
              g->description.identifier);
     g->object = dlopen(path, NOW);
+    settle();
     if (!g->object) {
         const char *why = dlerror ? dlerror() : NULL;
         snprintf(g->told, sizeof g->told, "%.290s", why ? why : path);
@@ -327,6 +336,7 @@ static bool instantiate(guest *g)
             ? g->f.instantiate_2(g->entry->name, 1, d->token, resources, &g->callbacks, 0, 0)
             : g->f.instantiate_3(g->entry->name, d->token, resources, false, false, false, false,
                                  NULL, 0, g, hear_3, NULL);
+    settle();
     return g->instance != NULL;
 }
 
@@ -417,6 +427,7 @@ se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3d
     }
     *made = (se3di_guests){.pool = pool, .model = model, .list = list};
     se3d_status status = SE3D_OK;
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < model->guest_count && status >= 0; ++k) {
         guest *g = &list[made->count++];
         memset(g, 0, sizeof *g);
@@ -424,6 +435,7 @@ se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3d
         g->start = g->time = start;
         status = open_guest(list, g, &made->pool, stop, problem);
     }
+    se3di_floats_restore(host);
     if (status < 0) {
         se3di_guests_close(made);
         return status;
@@ -437,6 +449,7 @@ void se3di_guests_close(se3di_guests *guests)
     if (!guests) {
         return;
     }
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < guests->count; ++k) {
         guest *g = &guests->list[k];
         if (g->instance && !g->is_broken) {
@@ -447,6 +460,8 @@ void se3di_guests_close(se3di_guests *guests)
         }
         unload(g);
     }
+    settle();
+    se3di_floats_restore(host);
     se3di_iopool pool = guests->pool;
     se3di_iopool_destroy(&pool);
 }
@@ -556,6 +571,7 @@ se3d_status se3di_guests_meet(se3di_guests *guests, se3di_sample *sample, double
                               char problem[SE3DI_GUEST_PROBLEM])
 {
     se3d_status status = SE3D_OK;
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < guests->count && status >= 0; ++k) {
         if (is_due(&guests->list[k], time)) {
             status = hear(&guests->list[k], sample, time, problem);
@@ -568,6 +584,7 @@ se3d_status se3di_guests_meet(se3di_guests *guests, se3di_sample *sample, double
             g->points += 1.0;
         }
     }
+    se3di_floats_restore(host);
     guests->has_failed = status < 0;
     return status;
 }
