@@ -4,6 +4,7 @@
 #include "analysis/breaks.h"
 #include "analysis/run.h"
 #include "base/busy.h"
+#include "base/floats.h"
 #include "contact/bodies/body_contacts.h"
 #include "integrator/state.h"
 #include "math/quaternion.h"
@@ -125,6 +126,7 @@ static se3d_status call_value(se3di_events *events, const se3di_event *event, do
     se3di_run *run = events->run;
     const int32_t level = se3di_busy_raise(run->model->busy, SE3DI_BUSY_VALUE);
     const se3d_status status = event->value(event->ctx, events->system, value);
+    se3di_floats_resume();
     se3di_busy_restore(run->model->busy, level);
     return status >= 0 ? SE3D_OK
                        : se3di_error_set(run->error, SE3D_ERR_CALLBACK,
@@ -526,6 +528,7 @@ static se3d_status call_back(se3di_events *events, const se3di_event *event,
     }
     const int32_t level = se3di_busy_raise(model->busy, SE3DI_BUSY_EVENT);
     const se3d_status status = event->callback(event->callback_ctx, events->system, record);
+    se3di_floats_resume();
     se3di_busy_restore(model->busy, level);
     *changed = model->history_stamp != stamp || model->inputs_version != inputs;
     if (shows && !*changed) {

@@ -60,6 +60,13 @@ static inline void se3di_floats_restore(se3di_floats before)
 #endif
 }
 
+/* As in work again, after code that is not the library's: it may have left its own setting, or may
+ * have loaded what sets one. */
+static inline void se3di_floats_resume(void)
+{
+    (void)se3di_floats_set();
+}
+
 /* The integer nearest to x, of two the even one, however the processor rounds: nearbyint that
  * rounds up would make a turn of an angle that is a little above zero. |x| below 2^52. */
 static inline double se3di_nearest(double x)

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "base/floats.h"
+
 #define HALF_FIRST 4096.0 /* steps until the time is noted first, and again as many for a pace */
 #define MARGIN     1.01   /* of what is foreseen: fixed steps may be as many as are allowed */
 
@@ -19,6 +21,7 @@ int se3di_guard_ask(se3di_guard *guard)
 {
     if (guard && guard->interrupt && !guard->muted && !guard->came) {
         guard->came = guard->interrupt(guard->ctx) != 0;
+        se3di_floats_resume();
     }
     return guard && !guard->muted && guard->came;
 }

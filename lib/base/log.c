@@ -4,6 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "base/floats.h"
+
 /* To a log with a callback. From within, all calls on the system but readers are refused. What they
  * record there is not left behind. */
 static void tell(se3di_error *error, se3d_log_level level, se3d_log_kind kind, const char *text)
@@ -14,7 +16,10 @@ static void tell(se3di_error *error, se3d_log_level level, se3d_log_kind kind, c
     }
     const se3di_error before = *error;
     const int32_t busy = se3di_busy_raise(log->busy, SE3DI_BUSY_CALL);
+    const se3di_floats host = se3di_floats_set();
     log->callback(log->ctx, level, kind, text);
+    se3di_floats_resume();
+    se3di_floats_restore(host);
     atomic_store(&log->writing, 0);
     se3di_busy_restore(log->busy, busy);
     *error = before;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Force callbacks: a user-defined wrench on two bodies. Without a user-defined Jacobian, central
  * differences stand in: enough for Newton, not for an exact linearisation.  docs/theory/loads.md */
+#include "base/floats.h"
 #include "force/measure.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -40,6 +41,7 @@ static se3d_status call(const se3di_force *force, double t, const se3d_body_moti
     memset(wrench, 0, 12 * sizeof *wrench);
     se3d_status status = force->callback(force->ctx, t, motion, wrench, derivatives,
                                          derivatives ? derivatives + 144 : NULL);
+    se3di_floats_resume();
     if (status < 0) {
         return SE3D_ERR_CALLBACK;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "joint/user.h"
 
+#include "base/floats.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -49,6 +50,7 @@ static se3d_status call(const se3di_constraint *constraint, double t,
         wanted & SE3DI_USER_JACOBIAN ? values->jacobian : NULL,
         wanted & SE3DI_USER_NU ? values->nu : NULL,
         wanted & SE3DI_USER_GAMMA ? values->gamma : NULL);
+    se3di_floats_resume();
     return take(constraint, status < 0 ? SE3D_ERR_CALLBACK : SE3D_OK, values);
 }
 

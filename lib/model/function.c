@@ -3,6 +3,7 @@
  * docs/theory/functions.md */
 #include "model/function.h"
 
+#include "base/floats.h"
 #include "expression/expression.h"
 #include "model/integral.h"
 
@@ -73,6 +74,7 @@ static se3d_status eval_content(const se3di_function *function, const double *x,
     }
     if (function->callback) {
         se3d_status status = function->callback(function->ctx, x, jet, gradient);
+        se3di_floats_resume();
         if (status < 0) {
             return SE3D_ERR_CALLBACK;
         }

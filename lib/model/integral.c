@@ -9,6 +9,7 @@
  * computed in the same order, with the same bits.                    docs/theory/functions.md */
 #include "model/integral.h"
 
+#include "base/floats.h"
 #include "expression/expression.h"
 #include "model/function.h"
 
@@ -41,6 +42,7 @@ static int eval_rate(const se3di_function *function, double t, double *value)
         status = se3d_expression_eval(function->expression, &t, value);
     } else {
         status = function->callback(function->ctx, &t, jet, NULL);
+        se3di_floats_resume();
         *value = jet[0];
     }
     return status >= 0 && isfinite(*value);

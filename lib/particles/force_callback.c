@@ -64,7 +64,9 @@ static int respond(const se3di_force_task *task, const touch *t, double xi[3], d
     input_of(task, t, xi, &in);
     memset(&out, 0, sizeof out);
     se3di_copy(in.spring, out.spring);
-    if (task->callback(task->ctx, &in, &out) < 0) {
+    const se3d_status status = task->callback(task->ctx, &in, &out);
+    se3di_floats_resume();
+    if (status < 0) {
         return 0;
     }
     se3di_add_scaled(-se3di_dot(out.tangential, t->n), t->n, out.tangential);

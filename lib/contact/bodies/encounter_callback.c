@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* A user-defined law at one point where two bodies touch, and its derivatives by differences.
  * docs/theory/contact-laws.md */
+#include "base/floats.h"
 #include "contact/bodies/encounter.h"
 #include "math/vec3.h"
 
@@ -42,7 +43,9 @@ static int call(const se3di_model *model, const se3d_contact_input *in, double f
     se3d_contact_output out;
     memset(&out, 0, sizeof out);
     se3di_copy(in->spring, out.spring);
-    if (model->contact.callback(model->contact.ctx, in, &out) < 0) {
+    const se3d_status status = model->contact.callback(model->contact.ctx, in, &out);
+    se3di_floats_resume();
+    if (status < 0) {
         return 0;
     }
     se3di_add_scaled(-se3di_dot(out.tangential, in->normal), in->normal, out.tangential);

@@ -138,16 +138,10 @@ static se3d_status fail(const guest *g, se3d_status status, char *problem, const
     return status;
 }
 
-/* A unit may have set how the processor rounds and whether it keeps small numbers. */
-static void settle(void)
-{
-    (void)se3di_floats_set();
-}
-
 /* Whether a call went well. */
 static bool good(guest *g, int status)
 {
-    settle();
+    se3di_floats_resume();
     g->is_broken = g->is_broken || status == FATAL;
     return status >= 0 && status <= GOOD_MOST;
 }
@@ -196,7 +190,7 @@ static se3d_status load_object(guest *g, char *problem)
              g->entry->path, g->description.version == 2 ? PLATFORM2 : PLATFORM3,
              g->description.identifier);
     g->object = dlopen(path, NOW);
-    settle();
+    se3di_floats_resume();
     if (!g->object) {
         const char *why = dlerror ? dlerror() : NULL;
         snprintf(g->told, sizeof g->told, "%.290s", why ? why : path);
@@ -336,7 +330,7 @@ static bool instantiate(guest *g)
             ? g->f.instantiate_2(g->entry->name, 1, d->token, resources, &g->callbacks, 0, 0)
             : g->f.instantiate_3(g->entry->name, d->token, resources, false, false, false, false,
                                  NULL, 0, g, hear_3, NULL);
-    settle();
+    se3di_floats_resume();
     return g->instance != NULL;
 }
 
@@ -460,7 +454,7 @@ void se3di_guests_close(se3di_guests *guests)
         }
         unload(g);
     }
-    settle();
+    se3di_floats_resume();
     se3di_floats_restore(host);
     se3di_iopool pool = guests->pool;
     se3di_iopool_destroy(&pool);

@@ -493,11 +493,14 @@ static se3d_status sample_stop(se3di_runner *r, double time)
 
 static void show_progress(se3di_runner *r, size_t index, double time, double start, double duration)
 {
-    if (r->options->progress &&
-        r->options->progress(r->options->ctx, index, time,
+    if (!r->options->progress) {
+        return;
+    }
+    if (r->options->progress(r->options->ctx, index, time,
                              duration > 0.0 ? (time - start) / duration : 1.0)) {
         r->stopped = true;
     }
+    se3di_floats_resume();
 }
 
 static se3d_status collect_events(se3di_runner *r, size_t index, se3d_status status)
