@@ -640,6 +640,9 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
 se3d_status se3di_multipliers_reduce(se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
+    if (assembly->row_count == 0) {
+        return SE3D_OK;
+    }
     SE3DI_TRY(se3di_equations_factor(equations));
     se3di_assembly_get_acceleration(assembly, equations->x);
     se3di_assembly_mul_mass(assembly, equations->x, equations->b);

@@ -132,7 +132,8 @@ static se3d_status make_room(const se3di_coder *c, saved_array arrays[ARRAYS],
                              const uint64_t count[ARRAYS], const se3d_allocator *allocator)
 {
     for (int k = 0; k < ARRAYS; ++k) {
-        if (count[k] > (c->size - c->at) / 8) { /* an element has a word at least */
+        const size_t left = c->at < c->size ? c->size - c->at : 0; /* bytes may have ended */
+        if (count[k] > left / SE3DI_CODER_WORD) { /* an element has a word at least */
             return SE3D_ERR_INVALID_ARGUMENT;
         }
         se3di_saved_array *a = arrays[k].array;
