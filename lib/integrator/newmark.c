@@ -313,18 +313,22 @@ static void accept(se3di_newmark_step *step)
     past.header->at.renewed = 0.0;
     past.header->redundant = step->equations->redundant ? 1.0 : 0.0;
     se3di_angles_accept(model);
-    se3di_loads_accept(model);
+    if (step->settles) { /* force elements: have */
+        se3di_contacts_accept(model);
+    } else {
+        se3di_loads_accept(model);
+    }
     ++step->equations->counters.steps;
 }
 
-/* What follows from the accepted state. */
-static se3d_status conclude(se3di_newmark_step *step)
+/* What follows from the accepted state; `jumps`: the accelerations have. */
+static se3d_status conclude(se3di_newmark_step *step, int jumps)
 {
     se3di_assembly *assembly = step->assembly;
     se3di_model *model = assembly->model;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
     se3d_status status = SE3D_OK;
-    if (se3di_contacts_changed(model)) { /* accelerations have jumped */
+    if (jumps || se3di_contacts_changed(model)) {
         status = restart(step->integration, step->h);
     }
     status = status < 0 ? status : se3di_work_accept(model, step->h);
@@ -336,14 +340,52 @@ static se3d_status conclude(se3di_newmark_step *step)
 
 /* An impact on a stop begins within the step, and not at the speed that the step begins with:
  * integration->fraction is the part to where it begins. */
-static int misses_impact(const se3di_newmark_step *step)
+static int misses_impact(const se3di_newmark_step *step, double tolerance)
 {
     se3di_integration *integration = step->integration;
     const se3di_state_scale *scale = &header_of(integration)->scale;
-    const double tolerance = fmax(integration->settings.tolerance, SE3DI_NEWMARK_REACH);
     const double error = se3di_memory_review_stops(step->assembly->model, step->h, tolerance, scale,
                                                    &integration->fraction);
     return error > 1.0;
+}
+
+/* What friction remembers of the end; *jumps: accelerations have by that. */
+static se3d_status settle(se3di_newmark_step *step, double tolerance, int *jumps)
+{
+    se3di_integration *integration = step->integration;
+    const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
+    const se3di_memory_step memory = {.t = step->t,
+                                      .h = step->h,
+                                      .tolerance = tolerance,
+                                      .begin = past.y,
+                                      .lambda = step->lambda,
+                                      .scale = &past.header->scale,
+                                      .memory = integration->newton.memory,
+                                      .work = step->dz};
+    se3di_memory_end end;
+    SE3DI_TRY(se3di_memory_settle(step->equations, &memory, &end));
+    *jumps = end.has_changed;
+    if (end.error <= 1.0) {
+        return SE3D_OK;
+    }
+    integration->fraction = end.fraction;
+    integration->error = end.error;
+    return SE3D_ERR_STEP_SIZE;
+}
+
+/* A step with an error above `most`, or whose forces act otherwise within it, is made again, up to
+ * where they do if that is known: STEP_SIZE. */
+static se3d_status review(se3di_newmark_step *step, double most, int *jumps)
+{
+    const se3di_integration *integration = step->integration;
+    const double tolerance = fmax(integration->settings.tolerance, SE3DI_NEWMARK_REACH);
+    if (most > 0.0 && misses_impact(step, tolerance)) {
+        return SE3D_ERR_STEP_SIZE;
+    }
+    if (!(integration->error <= most)) {
+        return SE3D_ERR_STEP_SIZE;
+    }
+    return step->settles ? settle(step, tolerance, jumps) : SE3D_OK;
 }
 
 /* One step of h to t from the accepted state; on failure that is the model's. With an error, as
@@ -355,7 +397,9 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     se3di_model *model = assembly->model;
     SE3DI_TRY(se3di_equations_keep(equations));
     se3di_newmark_step step = begin_step(integration, h);
+    int jumps = 0;
     step.t = t;
+    step.settles = most > 0.0 && equations->friction.count > 0;
     se3di_contacts_begin(model, h, step.velocity / h, 0);
     se3di_equations_save(equations);
     se3d_status status = se3di_newmark_solve(&step);
@@ -365,14 +409,15 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
         status = se3di_newmark_estimate(&step, most, &integration->error);
     }
     if (status >= 0) {
-        const int misses = most > 0.0 && misses_impact(&step);
-        const int is_refused = misses || !(integration->error <= most);
-        status = is_refused ? SE3D_ERR_STEP_SIZE : se3di_state_prepare(equations, t);
-        integration->error = status < 0 && !is_refused ? HUGE_VAL : integration->error;
+        status = review(&step, most, &jumps);
+        if (status >= 0) {
+            status = se3di_state_prepare(equations, t);
+            integration->error = status < 0 ? HUGE_VAL : integration->error;
+        }
     }
     if (status >= 0) {
         accept(&step);
-        status = conclude(&step);
+        status = conclude(&step, jumps);
     }
     if (status < 0) {
         se3di_equations_come_back(equations);

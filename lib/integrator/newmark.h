@@ -70,6 +70,7 @@ typedef struct se3di_newmark_step {
     int opens;                            /* there is a gap to close */
     int is_finite;                        /* the last correction */
     int exact;                            /* the Newton matrix has stiffness, damping, curvature */
+    int settles;                          /* friction changes its modes at the end of the step */
 } se3di_newmark_step;
 
 size_t se3di_newmark_history_count(const se3di_assembly *assembly);

@@ -376,7 +376,8 @@ static se3d_status iterate_to_convergence(se3di_newmark_step *step)
     return status;
 }
 
-/* Elements with a memory may have assumed wrong what comes out: again until none has. */
+/* Elements with a memory may have assumed wrong what comes out: again until none has, unless the
+ * step is made again up to where they change. */
 static se3d_status iterate_with_memory(se3di_newmark_step *step)
 {
     se3di_model *model = step->assembly->model;
@@ -385,7 +386,7 @@ static se3d_status iterate_with_memory(se3di_newmark_step *step)
         if (step->assembly->row_count > 0) {
             memcpy(model->lambda, step->lambda, step->assembly->row_count * sizeof *model->lambda);
         }
-        if (se3di_forces_revise(model) == 0) {
+        if (step->settles || se3di_forces_revise(model) == 0) {
             return SE3D_OK;
         }
     }
