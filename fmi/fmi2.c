@@ -222,12 +222,16 @@ static fmi2Status discard(fmi_instance *i, const void *value)
     return fmi2Discard;
 }
 
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
-{
-    INSTANCE(c)
-    (void)kind;
-    return discard(i, value);
-}
+#define NO_ANSWER(name, type)                                                                      \
+    fmi2Status fmi2Get##name(fmi2Component c, const fmi2StatusKind kind, type *value)              \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        (void)kind;                                                                                \
+        return discard(i, value);                                                                  \
+    }
+NO_ANSWER(Status, fmi2Status)
+NO_ANSWER(IntegerStatus, fmi2Integer)
+NO_ANSWER(StringStatus, fmi2String)
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
 {
@@ -237,13 +241,6 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
     }
     *value = se3di_fmi_unit_get_time(i->unit);
     return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
-{
-    INSTANCE(c)
-    (void)kind;
-    return discard(i, value);
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
@@ -256,13 +253,6 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
     return fmi2OK;
 }
 
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
-{
-    INSTANCE(c)
-    (void)kind;
-    return discard(i, value);
-}
-
 /* ---- model exchange -------------------------------------------------------------------------*/
 
 static fmi2Status exchanged(const fmi_instance *i, bool good)
@@ -270,11 +260,13 @@ static fmi2Status exchanged(const fmi_instance *i, bool good)
     return (fmi2Status)fmi_done(i, good);
 }
 
-fmi2Status fmi2EnterEventMode(fmi2Component c)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_enter_event(i->unit));
-}
+#define COMMON(name, parameters, good)                                                             \
+    fmi2Status fmi2##name parameters                                                               \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        return exchanged(i, good);                                                                 \
+    }
+FMI_COMMON_LIST(COMMON)
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 {
@@ -287,12 +279,6 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
     const fmi2Status status = exchanged(i, se3di_fmi_unit_update_event(i->unit, &ends, &moved));
     *info = (fmi2EventInfo){.terminateSimulation = ends, .valuesOfContinuousStatesChanged = moved};
     return status;
-}
-
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_enter_continuous(i->unit));
 }
 
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_state_before,
@@ -311,40 +297,10 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_state_bef
     return status;
 }
 
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_set_time(i->unit, time));
-}
-
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_set_states(i->unit, x, count));
-}
-
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t count)
 {
     INSTANCE(c)
     return exchanged(i, se3di_fmi_unit_get_derivatives(i->unit, dx, count));
-}
-
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real values[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_indicators(i->unit, values, count));
-}
-
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_states(i->unit, x, count));
-}
-
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_nominals(i->unit, x, count));
 }
 
 /* ---- states ---------------------------------------------------------------------------------*/
@@ -352,12 +308,7 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
 {
     INSTANCE(c)
-    fmi_state *s = state ? *state : NULL;
-    const int status = fmi_get_state(i, state ? &s : NULL);
-    if (state) {
-        *state = s;
-    }
-    return (fmi2Status)status;
+    return (fmi2Status)fmi_get_state(i, state);
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
@@ -369,38 +320,24 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
 {
     INSTANCE(c)
-    if (state) {
-        fmi_free_state(*state);
-        *state = NULL;
-    }
-    return fmi2OK;
+    return (fmi2Status)fmi_free_state(state);
 }
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
 {
     INSTANCE(c)
-    if (!state || !size) {
-        return (fmi2Status)fmi_refuse(i, "fmi2SerializedFMUstateSize",
-                                      "the state or the place for the size is NULL");
-    }
-    *size = ((const fmi_state *)state)->size;
-    return fmi2OK;
+    return (fmi2Status)fmi_get_state_size(i, state, size);
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte *bytes, size_t size)
 {
     INSTANCE(c)
-    return (fmi2Status)fmi_write_state(i, state, (unsigned char *)bytes, size);
+    return (fmi2Status)fmi_write_state(i, state, bytes, size);
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte *bytes, size_t size,
                                    fmi2FMUstate *state)
 {
     INSTANCE(c)
-    fmi_state *s = state ? *state : NULL;
-    const int status = fmi_read_state(i, (const unsigned char *)bytes, size, state ? &s : NULL);
-    if (state) {
-        *state = s;
-    }
-    return (fmi2Status)status;
+    return (fmi2Status)fmi_read_state(i, bytes, size, state);
 }

@@ -254,12 +254,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 h, fmi3Boole
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state)
 {
     INSTANCE(c)
-    fmi_state *s = state ? *state : NULL;
-    const int status = fmi_get_state(i, state ? &s : NULL);
-    if (state) {
-        *state = s;
-    }
-    return (fmi3Status)status;
+    return (fmi3Status)fmi_get_state(i, state);
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
@@ -271,22 +266,13 @@ fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state)
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *state)
 {
     INSTANCE(c)
-    if (state) {
-        fmi_free_state(*state);
-        *state = NULL;
-    }
-    return fmi3OK;
+    return (fmi3Status)fmi_free_state(state);
 }
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t *size)
 {
     INSTANCE(c)
-    if (!state || !size) {
-        return (fmi3Status)fmi_refuse(i, "fmi3SerializedFMUStateSize",
-                                      "the state or the place for the size is NULL");
-    }
-    *size = ((const fmi_state *)state)->size;
-    return fmi3OK;
+    return (fmi3Status)fmi_get_state_size(i, state, size);
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size)
@@ -299,12 +285,7 @@ fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_
                                    fmi3FMUState *state)
 {
     INSTANCE(c)
-    fmi_state *s = state ? *state : NULL;
-    const int status = fmi_read_state(i, bytes, size, state ? &s : NULL);
-    if (state) {
-        *state = s;
-    }
-    return (fmi3Status)status;
+    return (fmi3Status)fmi_read_state(i, bytes, size, state);
 }
 
 /* ---- model exchange and derivatives ---------------------------------------------------------*/
@@ -314,11 +295,13 @@ static fmi3Status exchanged(const fmi_instance *i, bool good)
     return (fmi3Status)fmi_done(i, good);
 }
 
-fmi3Status fmi3EnterEventMode(fmi3Instance c)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_enter_event(i->unit));
-}
+#define COMMON(name, parameters, good)                                                             \
+    fmi3Status fmi3##name parameters                                                               \
+    {                                                                                              \
+        INSTANCE(c)                                                                                \
+        return exchanged(i, good);                                                                 \
+    }
+FMI_COMMON_LIST(COMMON)
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needs_update,
                                     fmi3Boolean *terminate, fmi3Boolean *nominals,
@@ -335,12 +318,6 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needs_update,
     return exchanged(i, se3di_fmi_unit_update_event(i->unit, terminate, values));
 }
 
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_enter_continuous(i->unit));
-}
-
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_state_before,
                                        fmi3Boolean *event, fmi3Boolean *terminate)
 {
@@ -354,40 +331,10 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_state_befo
     return exchanged(i, se3di_fmi_unit_complete_step(i->unit, event));
 }
 
-fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 time)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_set_time(i->unit, time));
-}
-
-fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_set_states(i->unit, x, count));
-}
-
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 dx[], size_t count)
 {
     INSTANCE(c)
     return exchanged(i, se3di_fmi_unit_get_derivatives(i->unit, dx, count));
-}
-
-fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 values[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_indicators(i->unit, values, count));
-}
-
-fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_states(i->unit, x, count));
-}
-
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 x[], size_t count)
-{
-    INSTANCE(c)
-    return exchanged(i, se3di_fmi_unit_get_nominals(i->unit, x, count));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *count)

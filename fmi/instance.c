@@ -209,7 +209,7 @@ int fmi_refuse_type(fmi_instance *instance, size_t count, const char *type)
 /* ---- states ---------------------------------------------------------------------------------*/
 
 /* Room for `size` bytes in *state, made if it is NULL. */
-static fmi_state *make_room(fmi_state **state, size_t size)
+static fmi_state *make_room(void **state, size_t size)
 {
     fmi_state *s = *state ? *state : calloc(1, sizeof *s);
     unsigned char *bytes = s && (s->size < size || !s->bytes) ? realloc(s->bytes, size) : NULL;
@@ -229,7 +229,7 @@ static fmi_state *make_room(fmi_state **state, size_t size)
     return s;
 }
 
-int fmi_get_state(fmi_instance *instance, fmi_state **state)
+int fmi_get_state(fmi_instance *instance, void **state)
 {
     size_t size = 0;
     if (!state) {
@@ -245,37 +245,50 @@ int fmi_get_state(fmi_instance *instance, fmi_state **state)
     return se3di_fmi_unit_write(instance->unit, s->bytes, &size) ? FMI_OK : FMI_ERROR;
 }
 
-int fmi_set_state(fmi_instance *instance, const fmi_state *state)
+int fmi_set_state(fmi_instance *instance, const void *state)
 {
-    if (!state) {
+    const fmi_state *s = state;
+    if (!s) {
         return fmi_refuse(instance, "SetFMUState", "the state is NULL");
     }
-    return se3di_fmi_unit_read(instance->unit, state->bytes, state->size) ? FMI_OK : FMI_ERROR;
+    return se3di_fmi_unit_read(instance->unit, s->bytes, s->size) ? FMI_OK : FMI_ERROR;
 }
 
-void fmi_free_state(fmi_state *state)
+int fmi_free_state(void **state)
 {
-    if (state) {
-        free(state->bytes);
-        free(state);
+    fmi_state *s = state ? *state : NULL;
+    if (s) {
+        free(s->bytes);
+        free(s);
+        *state = NULL;
     }
-}
-
-int fmi_write_state(fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
-                    size_t size)
-{
-    if (!state || !bytes) {
-        return fmi_refuse(instance, "SerializeFMUState", "the state or the place for it is NULL");
-    }
-    if (size < state->size) {
-        return fmi_refuse(instance, "SerializeFMUState", "the place for the state is too small");
-    }
-    memcpy(bytes, state->bytes, state->size);
     return FMI_OK;
 }
 
-int fmi_read_state(fmi_instance *instance, const unsigned char *bytes, size_t size,
-                   fmi_state **state)
+int fmi_get_state_size(fmi_instance *instance, const void *state, size_t *size)
+{
+    if (!state || !size) {
+        return fmi_refuse(instance, "SerializedFMUStateSize",
+                          "the state or the place for the size is NULL");
+    }
+    *size = ((const fmi_state *)state)->size;
+    return FMI_OK;
+}
+
+int fmi_write_state(fmi_instance *instance, const void *state, void *bytes, size_t size)
+{
+    const fmi_state *s = state;
+    if (!s || !bytes) {
+        return fmi_refuse(instance, "SerializeFMUState", "the state or the place for it is NULL");
+    }
+    if (size < s->size) {
+        return fmi_refuse(instance, "SerializeFMUState", "the place for the state is too small");
+    }
+    memcpy(bytes, s->bytes, s->size);
+    return FMI_OK;
+}
+
+int fmi_read_state(fmi_instance *instance, const void *bytes, size_t size, void **state)
 {
     if (!state || !bytes || size == 0) {
         return fmi_refuse(instance, "DeserializeFMUState", "the bytes or the state are missing");

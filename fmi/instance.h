@@ -63,13 +63,29 @@ typedef struct fmi_direction {
 
 int fmi_derive(fmi_instance *instance, const fmi_direction *d);
 
-/* One that *state has is used again. */
-int fmi_get_state(fmi_instance *instance, fmi_state **state);
-int fmi_set_state(fmi_instance *instance, const fmi_state *state);
-void fmi_free_state(fmi_state *state);
-int fmi_write_state(fmi_instance *instance, const fmi_state *state, unsigned char *bytes,
-                    size_t size);
-int fmi_read_state(fmi_instance *instance, const unsigned char *bytes, size_t size,
-                   fmi_state **state);
+/* A state is a pointer to an fmi_state, which the caller has as void *. One that *state has is used
+ * again. */
+int fmi_get_state(fmi_instance *instance, void **state);
+int fmi_set_state(fmi_instance *instance, const void *state);
+/* *state becomes NULL; no place: nothing. @return FMI_OK */
+int fmi_free_state(void **state);
+int fmi_get_state_size(fmi_instance *instance, const void *state, size_t *size);
+int fmi_write_state(fmi_instance *instance, const void *state, void *bytes, size_t size);
+int fmi_read_state(fmi_instance *instance, const void *bytes, size_t size, void **state);
+
+/* The functions of model exchange that both versions have with the same parameters: X(name, parameters, what the unit does),
+ * in which `i` is the instance of `c`. */
+#define FMI_COMMON_LIST(X)                                                                         \
+    X(EnterEventMode, (void *c), se3di_fmi_unit_enter_event(i->unit))                              \
+    X(EnterContinuousTimeMode, (void *c), se3di_fmi_unit_enter_continuous(i->unit))                \
+    X(SetTime, (void *c, double time), se3di_fmi_unit_set_time(i->unit, time))                     \
+    X(SetContinuousStates, (void *c, const double x[], size_t count),                              \
+      se3di_fmi_unit_set_states(i->unit, x, count))                                                \
+    X(GetContinuousStates, (void *c, double x[], size_t count),                                    \
+      se3di_fmi_unit_get_states(i->unit, x, count))                                                \
+    X(GetNominalsOfContinuousStates, (void *c, double x[], size_t count),                          \
+      se3di_fmi_unit_get_nominals(i->unit, x, count))                                              \
+    X(GetEventIndicators, (void *c, double values[], size_t count),                                \
+      se3di_fmi_unit_get_indicators(i->unit, values, count))
 
 #endif

@@ -55,31 +55,22 @@ void se3di_fmi_exchange_drop(se3di_fmi_unit *u)
 
 /* ---- the system and the states ----------------------------------------------------------------*/
 
-/* What the system is at, and its derivative. */
-static se3d_status read_states(se3di_fmi_unit *u, double *x)
+/* Read what the system is at into `out`, or, if that is NULL, set it to `in`. */
+static se3d_status pass_states(const se3di_fmi_unit *u, double *out, const double *in)
 {
     se3d_system *system = u->model->system;
-    const size_t first = u->variables.positions + u->variables.velocities;
-    se3d_status status =
-        se3d_coordinates_get(u->exchange->coordinates, x, x + u->variables.positions);
+    se3d_coordinates *coordinates = u->exchange->coordinates;
+    const size_t positions = u->variables.positions;
+    const size_t first = positions + u->variables.velocities;
+    se3d_status status = out ? se3d_coordinates_get(coordinates, out, out + positions)
+                             : se3d_coordinates_set(coordinates, in, in + positions);
     for (size_t k = first; k < u->variables.states && status >= 0; ++k) {
         se3d_state state;
         status = se3d_system_get_state(system, k - first, &state);
-        status = status < 0 ? status : se3d_state_get_value(system, state, SE3D_STATE_VALUE, &x[k]);
-    }
-    return status;
-}
-
-static se3d_status write_states(const se3di_fmi_unit *u, const double *x)
-{
-    se3d_system *system = u->model->system;
-    const size_t first = u->variables.positions + u->variables.velocities;
-    se3d_status status =
-        se3d_coordinates_set(u->exchange->coordinates, x, x + u->variables.positions);
-    for (size_t k = first; k < u->variables.states && status >= 0; ++k) {
-        se3d_state state;
-        status = se3d_system_get_state(system, k - first, &state);
-        status = status < 0 ? status : se3d_state_set_value(system, state, x[k]);
+        if (status >= 0) {
+            status = out ? se3d_state_get_value(system, state, SE3D_STATE_VALUE, &out[k])
+                         : se3d_state_set_value(system, state, in[k]);
+        }
     }
     return status;
 }
@@ -128,7 +119,7 @@ static se3d_status differentiate(se3di_fmi_unit *u)
     const se3di_fmi_variables *v = &u->variables;
     double *dx = u->exchange->dx;
     const size_t first = v->positions + v->velocities;
-    se3d_status status = read_states(u, u->exchange->shown);
+    se3d_status status = pass_states(u, u->exchange->shown, NULL);
     status = status < 0 ? status : differentiate_positions(u);
     status = status < 0 ? status
                         : se3d_coordinates_compute_accelerations(u->exchange->coordinates, NULL,
@@ -263,7 +254,7 @@ static se3d_status try_state(se3di_fmi_unit *u)
     se3d_status status = se3d_snapshot_restore(u->exchange->base, system);
     status = status < 0 ? status : apply_inputs(u);
     status = status < 0 ? status : se3d_system_set_time(system, u->time);
-    status = status < 0 ? status : write_states(u, u->exchange->x);
+    status = status < 0 ? status : pass_states(u, NULL, u->exchange->x);
     status = status < 0 ? status : write_impacts(u);
     status = status < 0 ? status : se3d_solver_set_shown(u->solver, SE3D_SHOWN_ALL);
     status = status < 0 ? status : se3d_solver_run(u->solver, u->time);
