@@ -185,7 +185,7 @@ static bool create(se3di_reader *reader, const se3di_node *node, const se3di_men
     law.signal_count = m->count - own;
     const se3d_status status = se3d_function_create(reader->system, &law, function);
     se3d_expression_destroy(expression);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, status);
 }
 
 bool se3di_read_law(se3di_reader *reader, const se3di_node *node, const char *const *variables,

@@ -49,38 +49,41 @@ bool se3di_reader_propose(se3di_reader *reader, const char *meant)
     return false;
 }
 
-bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...)
+/* About a key of a map, which may have it or not; NULL: about the node itself. */
+static bool fail_about(se3di_reader *reader, const se3di_node *node, const char *key,
+                       const char *format, va_list arguments)
 {
     char path[256];
     char text[640];
+    vsnprintf(text, sizeof text, format, arguments);
+    const se3di_node *child = key ? se3di_node_get(node, key) : NULL;
+    const se3di_node *at = child ? child : node;
+    reader->fault = se3di_fault_of(at);
+    se3di_node_format_path(at, path, sizeof path);
+    if (key && !child) {
+        const size_t used = strlen(path);
+        snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", key);
+    }
+    return se3di_reader_fail_at(reader, at, at->line, at->column, path, text);
+}
+
+bool se3di_reader_fail(se3di_reader *reader, const se3di_node *node, const char *format, ...)
+{
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    (void)fail_about(reader, node, NULL, format, arguments);
     va_end(arguments);
-    se3di_node_format_path(node, path, sizeof path);
-    reader->fault = se3di_fault_of(node);
-    return se3di_reader_fail_at(reader, node, node->line, node->column, path, text);
+    return false;
 }
 
 bool se3di_reader_fail_key(se3di_reader *reader, const se3di_node *map, const char *key,
                            const char *format, ...)
 {
-    char path[256];
-    char text[640];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    (void)fail_about(reader, map, key, format, arguments);
     va_end(arguments);
-    const se3di_node *child = se3di_node_get(map, key);
-    reader->fault = se3di_fault_of(child ? child : map);
-    if (child) {
-        se3di_node_format_path(child, path, sizeof path);
-        return se3di_reader_fail_at(reader, child, child->line, child->column, path, text);
-    }
-    se3di_node_format_path(map, path, sizeof path);
-    const size_t used = strlen(path);
-    snprintf(path + used, sizeof path - used, "%s%.80s", used > 0 ? "." : "", key);
-    return se3di_reader_fail_at(reader, map, map->line, map->column, path, text);
+    return false;
 }
 
 bool se3di_reader_fail_memory(se3di_reader *reader)
@@ -109,4 +112,9 @@ bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_
         return se3di_reader_fail_key(reader, map, field, "is %s", rest + 3);
     }
     return se3di_reader_fail_key(reader, map, field, "%s", rest[0] == ' ' ? rest + 1 : message);
+}
+
+bool se3di_reader_check(se3di_reader *reader, const se3di_node *map, se3d_status status)
+{
+    return status < 0 ? se3di_reader_fail_system(reader, map, status) : true;
 }

@@ -11,8 +11,7 @@
 static bool create(se3di_reader *reader, const se3di_node *node, const se3d_function_def *def,
                    se3d_function *function)
 {
-    const se3d_status status = se3d_function_create(reader->system, def, function);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, se3d_function_create(reader->system, def, function));
 }
 
 /* Errors of the table as a whole are told at what says it. */

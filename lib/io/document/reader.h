@@ -56,6 +56,8 @@ bool se3di_reader_propose(se3di_reader *reader, const char *meant);
 bool se3di_reader_fail_memory(se3di_reader *reader);
 /* Report the system's message about the element that `map` describes, at the key it names. */
 bool se3di_reader_fail_system(se3di_reader *reader, const se3di_node *map, se3d_status status);
+/* The same if `status` is one of a failure, else true. */
+bool se3di_reader_check(se3di_reader *reader, const se3di_node *map, se3d_status status);
 
 /* `node` must be a map whose keys are those of `object` (and, if it has types, of its type). */
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object);

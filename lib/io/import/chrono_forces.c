@@ -14,12 +14,10 @@ static se3di_entry *begin(se3di_chrono *c, const se3di_node *map, const char *ty
     se3di_machine *m = c->m;
     const char *wanted = se3di_chrono_need(c, map, "name");
     const char *name = wanted ? se3di_machine_name(m, wanted, "force", map->line) : NULL;
-    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    se3di_entry *entry = se3di_machine_add_force(m, name, type);
     if (!entry) {
         return NULL;
     }
-    se3di_entry_put_text(m, entry, "name", name);
-    se3di_entry_put(m, entry, "type", type);
     se3di_entry_put_text(m, entry, "body_i", se3di_machine_body_name(m, bodies[0]->body));
     se3di_entry_put_text(m, entry, "body_j", se3di_machine_body_name(m, bodies[1]->body));
     return entry;

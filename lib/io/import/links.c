@@ -35,6 +35,16 @@ bool se3di_links_add_shape(se3di_links *links, size_t link, const se3di_machine_
     return added != NULL;
 }
 
+bool se3di_links_read_shape(se3di_links *links, size_t link, const se3di_xml *geometry,
+                            se3di_read_geometry *read, se3di_machine_shape *shape)
+{
+    bool good = false;
+    if (geometry && geometry->first && !read(links->m, geometry->first, shape, &good)) {
+        return false;
+    }
+    return !good || se3di_links_add_shape(links, link, shape);
+}
+
 se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t line)
 {
     se3di_link_joint *grown = se3di_iopool_grow(links->m->pool, links->joints, links->joint_count,

@@ -5,6 +5,7 @@
 #define SE3D_IO_IMPORT_LINKS_H
 
 #include "io/import/machine.h"
+#include "io/import/xml.h"
 
 typedef enum se3di_link_joint_type {
     SE3DI_LINK_FIXED,
@@ -61,6 +62,12 @@ typedef struct se3di_links {
 se3di_link *se3di_links_add(se3di_links *links, const char *name, size_t line);
 /* Add a shape to a link. */
 bool se3di_links_add_shape(se3di_links *links, size_t link, const se3di_machine_shape *shape);
+/* Read what a format says of a geometry: *good if it is a shape that we have. */
+typedef bool se3di_read_geometry(se3di_machine *m, const se3di_xml *node,
+                                 se3di_machine_shape *shape, bool *good);
+/* Add what is in a geometry (NULL: nothing) to a link. `shape`: what is known of it. */
+bool se3di_links_read_shape(se3di_links *links, size_t link, const se3di_xml *geometry,
+                            se3di_read_geometry *read, se3di_machine_shape *shape);
 se3di_link_joint *se3di_links_join(se3di_links *links, const char *name, size_t line);
 /* Make bodies, joints, stops, dampers and friction of all. */
 bool se3di_links_emit(se3di_links *links);

@@ -29,12 +29,10 @@ static se3di_entry *add_force(se3di_machine *m, const se3di_link_joint *joint, c
 {
     const char *wanted = se3di_machine_extend(m, joint->made, suffix);
     const char *name = wanted ? se3di_machine_name(m, wanted, "force", joint->line) : NULL;
-    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    se3di_entry *entry = se3di_machine_add_force(m, name, type);
     if (!entry) {
         return NULL;
     }
-    se3di_entry_put_text(m, entry, "name", name);
-    se3di_entry_put(m, entry, "type", type);
     se3di_entry_put_text(m, entry, "joint", joint->made);
     if (kinds[joint->type].several) {
         se3di_entry_put(m, entry, "coordinate", kinds[joint->type].coordinate);

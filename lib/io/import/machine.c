@@ -424,6 +424,16 @@ se3di_entry *se3di_machine_add(se3di_machine *m, se3di_section section)
     return entry;
 }
 
+se3di_entry *se3di_machine_add_force(se3di_machine *m, const char *name, const char *type)
+{
+    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    if (entry) {
+        se3di_entry_put_text(m, entry, "name", name);
+        se3di_entry_put(m, entry, "type", type);
+    }
+    return entry;
+}
+
 void se3di_entry_put(se3di_machine *m, se3di_entry *entry, const char *key, const char *value)
 {
     se3di_pair *pair = entry && value ? se3di_iopool_alloc(m->pool, sizeof *pair) : NULL;

@@ -150,6 +150,8 @@ se3di_machine_marker *se3di_parts_add_marker(se3di_machine *m, se3di_machine_par
 se3di_machine_marker *se3di_machine_add_marker(se3di_machine *m, size_t body, const char *name,
                                                const se3di_frame *frame);
 se3di_entry *se3di_machine_add(se3di_machine *m, se3di_section section);
+/* A force element of that name, which is free; no name: nothing.  @return NULL: none was added */
+se3di_entry *se3di_machine_add_force(se3di_machine *m, const char *name, const char *type);
 /* Add a key to an entry; NULL is fine for an entry that could not be had. */
 void se3di_entry_put(se3di_machine *m, se3di_entry *entry, const char *key, const char *value);
 void se3di_entry_put_text(se3di_machine *m, se3di_entry *entry, const char *key, const char *text);

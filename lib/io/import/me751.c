@@ -659,12 +659,7 @@ static bool put_number(se3di_machine *m, const se3di_node *map, const member *wa
 static se3di_entry *begin_force(se3di_machine *m, const se3di_node *map, const char *type)
 {
     const char *name = se3di_machine_name(m, text_of(se3di_node_get(map, "name")), type, map->line);
-    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
-    if (entry) {
-        se3di_entry_put_text(m, entry, "name", name);
-        se3di_entry_put(m, entry, "type", type);
-    }
-    return entry;
+    return se3di_machine_add_force(m, name, type);
 }
 
 /* What a spring has beside its points or axes. */

@@ -208,12 +208,10 @@ static bool add_spring(se3di_mjcf *f, const se3di_xml *node, const spring *s)
     static const char *const bodies[] = {"body_i", "body_j"};
     static const char *const at[] = {"at", "at_2"};
     const char *name = se3di_machine_name(m, se3di_xml_get(node, "name"), "tendon", node->line);
-    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    se3di_entry *entry = se3di_machine_add_force(m, name, "tsda");
     if (!entry) {
         return false;
     }
-    se3di_entry_put_text(m, entry, "name", name);
-    se3di_entry_put(m, entry, "type", "tsda");
     for (int k = 0; k < 2; ++k) {
         const se3di_mjcf_place *site = &f->sites[s->sites[k]];
         const se3di_link *link = &f->links.list[site->link];
@@ -287,12 +285,10 @@ static bool read_actuator(se3di_mjcf *f, const se3di_xml *node)
     const char *joint = f->links.joints[index].made;
     const char *wanted = own ? own : se3di_machine_extend(m, joint, "_effort");
     const char *name = wanted ? se3di_machine_name(m, wanted, "effort", node->line) : NULL;
-    se3di_entry *entry = name ? se3di_machine_add(m, SE3DI_SECTION_FORCES) : NULL;
+    se3di_entry *entry = se3di_machine_add_force(m, name, "effort");
     if (!entry) {
         return false;
     }
-    se3di_entry_put_text(m, entry, "name", name);
-    se3di_entry_put(m, entry, "type", "effort");
     se3di_entry_put_text(m, entry, "joint", joint);
     if (!se3di_xml_is(node, "motor")) {
         se3di_machine_note_of(m, SE3D_IMPORT_LOST, node->line,

@@ -214,14 +214,8 @@ bool se3di_sdf_shapes(se3di_links *links, size_t link, const se3di_xml *node)
     for (const se3di_xml *at = se3di_xml_child(node, which); at; at = se3di_xml_again(at)) {
         const se3di_xml *geometry = se3di_xml_child(at, "geometry");
         se3di_machine_shape read = {.scale = 1.0};
-        bool good = false;
-        if (!se3di_sdf_pose(m, at, &read.frame) || !read_color(m, at, read.color)) {
-            return false;
-        }
-        if (geometry && geometry->first && !read_shape(m, geometry->first, &read, &good)) {
-            return false;
-        }
-        if (good && !se3di_links_add_shape(links, link, &read)) {
+        if (!se3di_sdf_pose(m, at, &read.frame) || !read_color(m, at, read.color) ||
+            !se3di_links_read_shape(links, link, geometry, read_shape, &read)) {
             return false;
         }
     }

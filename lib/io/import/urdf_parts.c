@@ -110,15 +110,9 @@ bool se3di_urdf_shapes(se3di_links *links, size_t link, const se3di_xml *root,
     for (const se3di_xml *at = se3di_xml_child(node, which); at; at = se3di_xml_again(at)) {
         const se3di_xml *geometry = se3di_xml_child(at, "geometry");
         se3di_machine_shape read = {.scale = 1.0, .color = {-1.0, 0.0, 0.0}};
-        bool good = false;
         if (!se3di_urdf_origin(m, at, &read.frame) ||
-            !read_color(m, root, se3di_xml_child(at, "material"), read.color)) {
-            return false;
-        }
-        if (geometry && geometry->first && !read_shape(m, geometry->first, &read, &good)) {
-            return false;
-        }
-        if (good && !se3di_links_add_shape(links, link, &read)) {
+            !read_color(m, root, se3di_xml_child(at, "material"), read.color) ||
+            !se3di_links_read_shape(links, link, geometry, read_shape, &read)) {
             return false;
         }
     }

@@ -99,7 +99,7 @@ static bool create_end(se3di_reader *reader, const se3di_node *body, const end_j
     memcpy(entry->point_i, def.point_i, sizeof def.point_i);
     memcpy(entry->point_j, def.point_j, sizeof def.point_j);
     memcpy(entry->axis_j, def.axis_j, sizeof def.axis_j);
-    return status < 0 ? se3di_reader_fail_system(reader, body, status) : true;
+    return se3di_reader_check(reader, body, status);
 }
 
 /* The axes of a cross at the end of a bar along z: horizontal, and perpendicular to both, so that

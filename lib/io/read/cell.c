@@ -77,8 +77,8 @@ static bool read_stage(se3di_reader *reader, const se3di_node *node)
         }
     }
     particles->cell = true;
-    const se3d_status status = se3d_particles_add_cell_stage(particles->set, &def, NULL);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_particles_add_cell_stage(particles->set, &def, NULL));
 }
 
 bool se3di_read_cell(se3di_reader *reader, const se3di_node *list)

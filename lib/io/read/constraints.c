@@ -126,8 +126,8 @@ static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_e
     if (!read_geometry(reader, node, bodies, &def) || !read_value(reader, node, &def)) {
         return false;
     }
-    const se3d_status status = se3d_primitive_create(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_primitive_create(reader->system, &def, &entry->constraint));
 }
 
 bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)

@@ -88,8 +88,7 @@ static bool read_settings(se3di_reader *reader, const se3di_node *contact)
                            &settings)) {
         return false;
     }
-    const se3d_status status = se3d_system_set_contact(reader->system, &settings);
-    return status < 0 ? se3di_reader_fail_system(reader, contact, status) : true;
+    return se3di_reader_check(reader, contact, se3d_system_set_contact(reader->system, &settings));
 }
 
 static const char *text_of(const se3di_node *map, const char *key)
@@ -204,7 +203,7 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node, se3di_sha
         status = se3d_body_get_fixed(reader->system, shape->body, &fixed);
     }
     reader->model->moving_shapes = reader->model->moving_shapes || !fixed;
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, status);
 }
 
 /* Each in the part that has it. */

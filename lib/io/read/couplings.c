@@ -28,52 +28,52 @@ const se3di_object se3di_object_term = {
     NULL};
 /* clang-format on */
 
+/* The joints of a pair, the first of which has an angle. */
+static bool read_pair(se3di_reader *reader, const se3di_node *node, const char *first,
+                      const char *second, se3d_constraint joint[2])
+{
+    return se3di_read_key_joint(reader, node, first, &joint[0]) &&
+           se3di_read_key_joint(reader, node, second, &joint[1]) &&
+           se3di_check_angle(reader, node, joint[0]);
+}
+
+/* A number that has no default; `why`: what it is for. */
+static bool read_needed(se3di_reader *reader, const se3di_node *node, const char *key,
+                        const char *why, double *number)
+{
+    return (se3di_node_get(node, key) ||
+            se3di_reader_fail_key(reader, node, key, "is missing: %s", why)) &&
+           se3di_read_key_number(reader, node, key, SE3DI_ANY, number);
+}
+
 bool se3di_read_gear(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
-    se3d_constraint first;
-    se3d_constraint second;
+    se3d_constraint joint[2];
     double ratio = 0.0;
-    if (!se3di_read_key_joint(reader, node, "joint_1", &first) ||
-        !se3di_read_key_joint(reader, node, "joint_2", &second) ||
-        !se3di_check_angle(reader, node, first) || !se3di_check_angle(reader, node, second)) {
+    if (!read_pair(reader, node, "joint_1", "joint_2", joint) ||
+        !se3di_check_angle(reader, node, joint[1])) {
         return false;
     }
-    if (first.index1 == second.index1) {
+    if (joint[0].index1 == joint[1].index1) {
         return se3di_reader_fail_key(reader, node, "joint_2",
                                      "is the same as joint_1, must be another joint");
     }
-    if (!se3di_node_get(node, "ratio")) {
-        return se3di_reader_fail_key(reader, node, "ratio",
-                                     "is missing: ratio * angle 1 + angle 2 = constant");
-    }
-    if (!se3di_read_key_number(reader, node, "ratio", SE3DI_ANY, &ratio)) {
-        return false;
-    }
-    const se3d_status status = se3d_joint_create_gear(reader->system, entry->name, first, second,
-                                                      ratio, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return read_needed(reader, node, "ratio", "ratio * angle 1 + angle 2 = constant", &ratio) &&
+           se3di_reader_check(reader, node,
+                              se3d_joint_create_gear(reader->system, entry->name, joint[0],
+                                                     joint[1], ratio, &entry->constraint));
 }
 
 bool se3di_read_rack(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
-    se3d_constraint pinion;
-    se3d_constraint rack;
+    se3d_constraint joint[2];
     double radius = 0.0;
-    if (!se3di_read_key_joint(reader, node, "pinion", &pinion) ||
-        !se3di_read_key_joint(reader, node, "rack", &rack) ||
-        !se3di_check_angle(reader, node, pinion)) {
-        return false;
-    }
-    if (!se3di_node_get(node, "radius")) {
-        return se3di_reader_fail_key(reader, node, "radius",
-                                     "is missing: displacement = radius * angle + constant [m]");
-    }
-    if (!se3di_read_key_number(reader, node, "radius", SE3DI_ANY, &radius)) {
-        return false;
-    }
-    const se3d_status status = se3d_joint_create_rack_pinion(reader->system, entry->name, pinion,
-                                                             rack, radius, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return read_pair(reader, node, "pinion", "rack", joint) &&
+           read_needed(reader, node, "radius", "displacement = radius * angle + constant [m]",
+                       &radius) &&
+           se3di_reader_check(reader, node,
+                              se3d_joint_create_rack_pinion(reader->system, entry->name, joint[0],
+                                                            joint[1], radius, &entry->constraint));
 }
 
 bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
@@ -103,6 +103,6 @@ bool se3di_read_coupler(se3di_reader *reader, const se3di_node *node, se3di_elem
         return false;
     }
     def.name = entry->name;
-    const se3d_status status = se3d_joint_create_coupler(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_joint_create_coupler(reader->system, &def, &entry->constraint));
 }

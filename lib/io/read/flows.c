@@ -80,8 +80,7 @@ static bool read_flow(se3di_reader *reader, const se3di_node *node)
         return false;
     }
     particles->flows[particles->flow_count++] = text;
-    const se3d_status status = se3d_particles_add_flow(particles->set, &def, NULL);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, se3d_particles_add_flow(particles->set, &def, NULL));
 }
 
 bool se3di_read_flows(se3di_reader *reader, const se3di_node *list)

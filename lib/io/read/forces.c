@@ -224,8 +224,7 @@ static bool read_function(se3di_reader *reader, const se3di_node *node, const ch
     while (variables[def.variable_count]) {
         ++def.variable_count;
     }
-    const se3d_status status = se3d_function_create(reader->system, &def, function);
-    return status < 0 ? se3di_reader_fail_system(reader, child, status) : true;
+    return se3di_reader_check(reader, child, se3d_function_create(reader->system, &def, function));
 }
 
 /* A coefficient: a number, or the table of what it gives: {spline: [[x, force], ...]}. */
@@ -245,24 +244,23 @@ static bool read_coefficient(se3di_reader *reader, const se3di_node *node, const
     return se3di_read_function(reader, child, x_only, value, function);
 }
 
-/* What tsda and rsda have in common. */
-typedef struct spring_values {
-    double k, c, preload;
-    se3d_function h, spring, damper;
-} spring_values;
+/* What tsda and rsda have in common: members of their definitions. */
+typedef struct spring_places {
+    double *k, *c, *preload;
+    se3d_function *h, *spring, *damper;
+} spring_places;
 
 static bool read_spring(se3di_reader *reader, const se3di_node *node, const char *const *variables,
-                        spring_values *v)
+                        const spring_places *v)
 {
     static const char *const elastic[] = {"x", NULL};
     static const char *const viscous[] = {"v", NULL};
-    memset(v, 0, sizeof *v);
-    return read_function(reader, node, "spring", elastic, &v->spring) &&
-           read_function(reader, node, "damper", viscous, &v->damper) &&
-           read_coefficient(reader, node, "k", "spring", &v->k, &v->spring) &&
-           read_coefficient(reader, node, "c", "damper", &v->c, &v->damper) &&
-           se3di_read_key(reader, node, &se3di_object_force, "tsda", "preload", &v->preload) &&
-           read_function(reader, node, "h", variables, &v->h);
+    return read_function(reader, node, "spring", elastic, v->spring) &&
+           read_function(reader, node, "damper", viscous, v->damper) &&
+           read_coefficient(reader, node, "k", "spring", v->k, v->spring) &&
+           read_coefficient(reader, node, "c", "damper", v->c, v->damper) &&
+           se3di_read_key(reader, node, &se3di_object_force, "tsda", "preload", v->preload) &&
+           read_function(reader, node, "h", variables, v->h);
 }
 
 static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
@@ -270,7 +268,7 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     static const char *const variables[] = {"t", "l", "ldot", NULL};
     const se3di_body_entry *bodies[2] = {NULL, NULL};
     se3d_tsda_def def = se3d_tsda_def_default();
-    spring_values v;
+    const spring_places v = {&def.k, &def.c, &def.preload, &def.h, &def.spring, &def.damper};
     if (!se3di_read_bodies_ij(reader, node, "a spring", bodies) ||
         !se3di_read_key_place(reader, node, "point_i", "at", bodies[0], def.point_i) ||
         !se3di_read_key_place(reader, node, "point_j", "at_2", bodies[1], def.point_j) ||
@@ -281,19 +279,13 @@ static bool read_tsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
     def.name = entry->name;
     def.body_i = bodies[0]->body;
     def.body_j = bodies[1]->body;
-    def.k = v.k;
-    def.c = v.c;
-    def.preload = v.preload;
-    def.h = v.h;
-    def.spring = v.spring;
-    def.damper = v.damper;
     entry->body_i = def.body_i;
     entry->body_j = def.body_j;
     entry->drawn = 3;
     memcpy(entry->point_i, def.point_i, sizeof def.point_i);
     memcpy(entry->point_j, def.point_j, sizeof def.point_j);
-    const se3d_status status = se3d_force_create_tsda(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_tsda(reader->system, &def, &entry->force));
 }
 
 /* Directions of an rsda without a joint: in the ground frame, or in those of the bodies. */
@@ -363,7 +355,7 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
 {
     static const char *const variables[] = {"t", "theta", "thetadot", NULL};
     se3d_rsda_def def = se3d_rsda_def_default();
-    spring_values v;
+    const spring_places v = {&def.k, &def.c, &def.preload, &def.h, &def.spring, &def.damper};
     reader->alternative = 1;
     if (!read_rsda_place(reader, node, &def) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "rsda", "se3d_rsda_def", &def) ||
@@ -371,21 +363,26 @@ static bool read_rsda(se3di_reader *reader, const se3di_node *node, se3di_elemen
         return false;
     }
     def.name = entry->name;
-    def.k = v.k;
-    def.c = v.c;
-    def.preload = v.preload;
-    def.h = v.h;
-    def.spring = v.spring;
-    def.damper = v.damper;
-    const se3d_status status = se3d_force_create_rsda(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_rsda(reader->system, &def, &entry->force));
+}
+
+/* The joint that an element acts on, and which of its coordinates. */
+static bool read_joint(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry,
+                       se3d_constraint *joint, int32_t *coordinate)
+{
+    if (!se3di_read_key_joint(reader, node, "joint", joint) ||
+        !se3di_read_key_coordinate(reader, node, *joint, coordinate)) {
+        return false;
+    }
+    entry->coordinate = *coordinate;
+    return true;
 }
 
 static bool read_friction(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     se3d_friction_def def = se3d_friction_def_default();
-    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+    if (!read_joint(reader, node, entry, &def.joint, &def.coordinate) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "friction", "se3d_friction_def",
                            &def)) {
         return false;
@@ -397,24 +394,21 @@ static bool read_friction(se3di_reader *reader, const se3di_node *node, se3di_el
                                      "of the bearing [m] > 0");
     }
     def.name = entry->name;
-    entry->coordinate = def.coordinate;
-    const se3d_status status = se3d_force_create_friction(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_friction(reader->system, &def, &entry->force));
 }
 
 static bool read_armature(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
 {
     se3d_armature_def def = se3d_armature_def_default();
-    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+    if (!read_joint(reader, node, entry, &def.joint, &def.coordinate) ||
         !se3di_read_fields(reader, node, &se3di_object_force, "armature", "se3d_armature_def",
                            &def)) {
         return false;
     }
     def.name = entry->name;
-    entry->coordinate = def.coordinate;
-    const se3d_status status = se3d_force_create_armature(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_armature(reader->system, &def, &entry->force));
 }
 
 static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_element_entry *entry)
@@ -422,17 +416,15 @@ static bool read_effort(se3di_reader *reader, const se3di_node *node, se3di_elem
     static const char *const variables[] = {"t", "q", "qdot", NULL};
     const se3di_node *value = se3di_node_get(node, "value");
     se3d_effort_def def = se3d_effort_def_default();
-    if (!se3di_read_key_joint(reader, node, "joint", &def.joint) ||
-        !se3di_read_key_coordinate(reader, node, def.joint, &def.coordinate) ||
+    if (!read_joint(reader, node, entry, &def.joint, &def.coordinate) ||
         (value && !se3di_read_law(reader, value, variables, &def.value, &def.function))) {
         return false;
     }
     def.name = entry->name;
-    entry->coordinate = def.coordinate;
     entry->settable = def.function.index1 == 0;
     entry->value[0] = def.value;
-    const se3d_status status = se3d_force_create_effort(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_effort(reader->system, &def, &entry->force));
 }
 
 /* The coordinate of a joint, or two points whose distance it is. */
@@ -478,8 +470,8 @@ static bool read_stop(se3di_reader *reader, const se3di_node *node, se3di_elemen
     def.name = entry->name;
     entry->coordinate =
         se3di_node_get(node, "joint") ? def.coordinate : SE3D_JOINT_COORDINATE_DISPLACEMENT;
-    const se3d_status status = se3d_force_create_stop(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_stop(reader->system, &def, &entry->force));
 }
 
 /* The components in the frame that the part is put in: sums of the given ones, M f. */
@@ -567,10 +559,10 @@ static bool read_load(se3di_reader *reader, const se3di_node *node, const char *
     }
     def.name = entry->name;
     def.body = body->body;
-    const se3d_status status = strcmp(type, "force") == 0
-                                   ? se3d_force_create_load(reader->system, &def, &entry->force)
-                                   : se3d_force_create_torque(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              strcmp(type, "force") == 0
+                                  ? se3d_force_create_load(reader->system, &def, &entry->force)
+                                  : se3d_force_create_torque(reader->system, &def, &entry->force));
 }
 
 typedef bool (*read_element)(se3di_reader *reader, const se3di_node *node,

@@ -176,6 +176,6 @@ bool se3di_read_bushing(se3di_reader *reader, const se3di_node *node, se3di_elem
     def.body_j = bodies[1]->body;
     entry->body = def.body_j;
     memcpy(entry->point, def.point_j, sizeof entry->point);
-    const se3d_status status = se3d_force_create_bushing(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_bushing(reader->system, &def, &entry->force));
 }

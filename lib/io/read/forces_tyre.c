@@ -170,6 +170,6 @@ bool se3di_read_tyre(se3di_reader *reader, const se3di_node *node, se3di_element
     entry->body_i = def.road;
     memcpy(entry->point_i, def.point, sizeof entry->point_i);
     memcpy(entry->axis_i, def.normal, sizeof entry->axis_i);
-    const se3d_status status = se3d_force_create_tyre(reader->system, &def, &entry->force);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              se3d_force_create_tyre(reader->system, &def, &entry->force));
 }

@@ -160,7 +160,7 @@ static bool read_gravity(se3di_reader *reader, const se3di_node *root)
     if (status >= 0) {
         status = se3d_system_set_gravity_function(system, function);
     }
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, status);
 }
 
 static bool create_system(se3di_reader *reader, const se3di_node *root)

@@ -48,8 +48,7 @@ static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_
                            &def)) {
         return false;
     }
-    const se3d_status status = se3d_material_create(reader->system, &def, material);
-    return status < 0 ? se3di_reader_fail_system(reader, entry, status) : true;
+    return se3di_reader_check(reader, entry, se3d_material_create(reader->system, &def, material));
 }
 
 bool se3di_reader_find_material(se3di_reader *reader, const char *name, se3d_material *material)

@@ -236,6 +236,5 @@ bool se3di_read_pair(se3di_reader *reader, const se3di_node *node, const char *n
     memcpy(entry->point_j, def.point_j, sizeof def.point_j);
     memcpy(entry->axis_i, def.axis_i, sizeof def.axis_i);
     memcpy(entry->axis_j, def.axis_j, sizeof def.axis_j);
-    const se3d_status status = type->create(reader->system, &def, &entry->constraint);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, type->create(reader->system, &def, &entry->constraint));
 }

@@ -353,8 +353,7 @@ static bool read_source(se3di_reader *reader, const se3di_node *node, se3d_fill_
     }
     particles->source_tags = grown;
     particles->source_tags[particles->source_count++] = fill->tag;
-    const se3d_status status = se3d_particles_add_source(particles->set, &def, NULL);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, se3d_particles_add_source(particles->set, &def, NULL));
 }
 
 /* Of an entry that fills a region, at once or as a source. */
@@ -382,9 +381,9 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_de
     if (se3di_node_get(node, "source")) {
         return read_source(reader, node, def);
     }
-    const se3d_status status = packing == LATTICE ? se3d_particles_fill_lattice(set, def, NULL)
-                                                  : se3d_particles_fill_random(set, def);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node,
+                              packing == LATTICE ? se3d_particles_fill_lattice(set, def, NULL)
+                                                 : se3d_particles_fill_random(set, def));
 }
 
 static bool read_entry(se3di_reader *reader, const se3di_node *node)
@@ -424,8 +423,7 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
                                  "must have `lower` and `upper`, or the `normal` of a plane");
     }
     particles->sinks[particles->sink_count++] = text;
-    const se3d_status status = se3d_particles_add_sink(particles->set, &def, NULL);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, se3d_particles_add_sink(particles->set, &def, NULL));
 }
 
 static bool read_sinks(se3di_reader *reader, const se3di_node *list)

@@ -217,8 +217,7 @@ static bool read_road(se3di_reader *reader, const se3di_node *node)
     memcpy(entry->point_i, def.point, sizeof entry->point_i);
     memcpy(entry->axis_i, def.normal, sizeof entry->axis_i);
     memcpy(entry->axis_j, def.forward, sizeof entry->axis_j);
-    const se3d_status status = se3d_road_create(reader->system, &def, &entry->road);
-    return status < 0 ? se3di_reader_fail_system(reader, node, status) : true;
+    return se3di_reader_check(reader, node, se3d_road_create(reader->system, &def, &entry->road));
 }
 
 bool se3di_read_roads(se3di_reader *reader, const se3di_node *root)
