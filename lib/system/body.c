@@ -69,12 +69,9 @@ se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def, se3d
         data.mass = full.mass;
         memcpy(data.J, full.inertia, sizeof data.J);
     }
-    se3di_handle handle;
-    if (se3di_model_add_body(&system->model, &data, &frame, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a body");
-    }
-    *body = (se3d_body){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_body(&system->model, &data, &frame, &handle);
+    return se3di_give_created(system, added, "a body", handle, body);
 }
 
 se3d_status se3d_body_destroy(se3d_system *system, se3d_body body)
@@ -176,55 +173,56 @@ se3d_status se3d_body_set_mass(se3d_system *system, se3d_body body, double mass,
     return SE3D_OK;
 }
 
-se3d_status se3d_body_get_position(const se3d_system *system, se3d_body body, double r[3])
+/* `count` numbers at `offset` in the frame of a body. */
+static inline se3d_status give_of_frame(const se3d_system *system, se3d_body body, size_t offset,
+                                        size_t count, double *out)
 {
     uint32_t index;
-    SE3DI_TRY(find_reader(system, body, r, &index));
-    se3di_copy(system->model.frames[index].r, r);
+    SE3DI_TRY(find_reader(system, body, out, &index));
+    memcpy(out, (const char *)&system->model.frames[index] + offset, count * sizeof *out);
     return SE3D_OK;
+}
+
+/* Three of the six accelerations of a body, from `first` on. */
+static inline se3d_status give_acceleration(const se3d_system *system, se3d_body body, size_t first,
+                                            double *out)
+{
+    uint32_t index;
+    SE3DI_TRY(find_reader(system, body, out, &index));
+    SE3DI_TRY(se3di_check_solved(system));
+    se3di_copy(system->model.acceleration + 6 * (size_t)index + first, out);
+    return SE3D_OK;
+}
+
+se3d_status se3d_body_get_position(const se3d_system *system, se3d_body body, double r[3])
+{
+    return give_of_frame(system, body, offsetof(se3di_frame, r), 3, r);
 }
 
 se3d_status se3d_body_get_orientation(const se3d_system *system, se3d_body body, double p[4])
 {
-    uint32_t index;
-    SE3DI_TRY(find_reader(system, body, p, &index));
-    memcpy(p, system->model.frames[index].p, 4 * sizeof *p);
-    return SE3D_OK;
+    return give_of_frame(system, body, offsetof(se3di_frame, p), 4, p);
 }
 
 se3d_status se3d_body_get_velocity(const se3d_system *system, se3d_body body, double v[3])
 {
-    uint32_t index;
-    SE3DI_TRY(find_reader(system, body, v, &index));
-    se3di_copy(system->model.frames[index].v, v);
-    return SE3D_OK;
+    return give_of_frame(system, body, offsetof(se3di_frame, v), 3, v);
 }
 
 se3d_status se3d_body_get_angular_velocity(const se3d_system *system, se3d_body body, double w[3])
 {
-    uint32_t index;
-    SE3DI_TRY(find_reader(system, body, w, &index));
-    se3di_copy(system->model.frames[index].w, w);
-    return SE3D_OK;
+    return give_of_frame(system, body, offsetof(se3di_frame, w), 3, w);
 }
 
 se3d_status se3d_body_get_acceleration(const se3d_system *system, se3d_body body, double a[3])
 {
-    uint32_t index;
-    SE3DI_TRY(find_reader(system, body, a, &index));
-    SE3DI_TRY(se3di_check_solved(system));
-    se3di_copy(system->model.acceleration + 6 * (size_t)index, a);
-    return SE3D_OK;
+    return give_acceleration(system, body, 0, a);
 }
 
 se3d_status se3d_body_get_angular_acceleration(const se3d_system *system, se3d_body body,
                                                double alpha[3])
 {
-    uint32_t index;
-    SE3DI_TRY(find_reader(system, body, alpha, &index));
-    SE3DI_TRY(se3di_check_solved(system));
-    se3di_copy(system->model.acceleration + 6 * (size_t)index + 3, alpha);
-    return SE3D_OK;
+    return give_acceleration(system, body, 3, alpha);
 }
 
 se3d_status se3d_body_get_point(const se3d_system *system, se3d_body body, const double local[3],

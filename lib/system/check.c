@@ -107,41 +107,13 @@ static se3d_status find(se3d_system *system, const se3di_slots *slots, const cha
     return SE3DI_FAIL_OF(system, what, SE3D_ERR_STALE_HANDLE, " %s", reason);
 }
 
-se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body handle,
-                            uint32_t *index)
-{
-    return find(system, &system->model.body_slots, what, SE3DI_HANDLE(handle), index);
-}
-
-se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker handle,
-                              uint32_t *index)
-{
-    return find(system, &system->model.marker_slots, what, SE3DI_HANDLE(handle), index);
-}
-
-se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material handle,
-                                uint32_t *index)
-{
-    return find(system, &system->model.material_slots, what, SE3DI_HANDLE(handle), index);
-}
-
-se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel handle,
-                             uint32_t *index)
-{
-    return find(system, &system->model.wheel_slots, what, SE3DI_HANDLE(handle), index);
-}
-
-se3d_status se3di_find_road(se3d_system *system, const char *what, se3d_road handle,
-                            uint32_t *index)
-{
-    return find(system, &system->model.road_slots, what, SE3DI_HANDLE(handle), index);
-}
-
-se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint handle,
-                                  uint32_t *index)
-{
-    return find(system, &system->model.constraint_slots, what, SE3DI_HANDLE(handle), index);
-}
+#define FIND_PLAIN(kind)                                                                           \
+    se3d_status se3di_find_##kind(se3d_system *system, const char *what, se3d_##kind handle,       \
+                                  uint32_t *index)                                                 \
+    {                                                                                              \
+        return find(system, &system->model.kind##_slots, what, SE3DI_HANDLE(handle), index);       \
+    }
+SE3DI_PLAIN_LIST(FIND_PLAIN)
 
 se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force handle,
                              uint32_t *index)
@@ -237,6 +209,16 @@ se3d_status se3di_read_named(const se3di_slots *slots, const char *name, void *h
     }
     return slots && name && handle ? give(slots, se3di_slots_find_name(slots, 0, name), handle)
                                    : SE3D_ERR_NULL;
+}
+
+se3d_status se3di_give_created(se3d_system *system, se3d_status added, const char *what,
+                               se3di_handle created, void *handle)
+{
+    if (added < 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for %s", what);
+    }
+    memcpy(handle, &created, sizeof created);
+    return SE3D_OK;
 }
 
 se3d_status se3di_read_handle(const se3di_slots *slots, size_t index, void *handle)

@@ -67,15 +67,21 @@ se3d_status se3d_constraint_get_type(const se3d_system *system, se3d_constraint 
     return status;
 }
 
+/* Of what was found, 0 if nothing was. */
+static se3d_status give_count(se3d_status found, size_t own, size_t *count)
+{
+    if (count) {
+        *count = own;
+    }
+    return found;
+}
+
 se3d_status se3d_constraint_count_equations(const se3d_system *system, se3d_constraint constraint,
                                             size_t *count)
 {
     const se3di_constraint *found;
-    se3d_status status = find_for(system, constraint, count, &found);
-    if (count) {
-        *count = found ? found->row_count : 0;
-    }
-    return status;
+    const se3d_status status = find_for(system, constraint, count, &found);
+    return give_count(status, found ? found->row_count : 0, count);
 }
 
 se3d_status se3d_constraint_get_equation_name(const se3d_system *system, se3d_constraint constraint,
@@ -97,11 +103,8 @@ se3d_status se3d_constraint_count_bodies(const se3d_system *system, se3d_constra
                                          size_t *count)
 {
     const se3di_constraint *found;
-    se3d_status status = find_for(system, constraint, count, &found);
-    if (count) {
-        *count = found ? found->body_count : 0;
-    }
-    return status;
+    const se3d_status status = find_for(system, constraint, count, &found);
+    return give_count(status, found ? found->body_count : 0, count);
 }
 
 se3d_status se3d_constraint_get_body(const se3d_system *system, se3d_constraint constraint,

@@ -483,14 +483,22 @@ static se3d_status finish(se3d_coordinates *c, se3d_status status, const char *w
     return se3di_work_end(c->system, status);
 }
 
+/* What is computed from has finite numbers, or none, and there is a place for what comes of it. */
+static se3d_status begin_work(se3d_coordinates *c, const char *from, const double *given,
+                              const char *what, const double *values)
+{
+    SE3DI_TRY(se3di_check_pointer(c->system, what, values));
+    SE3DI_TRY(check_numbers(c->system, from, given, c->velocities));
+    se3di_work_begin(c->system);
+    return SE3D_OK;
+}
+
 se3d_status se3d_coordinates_compute_accelerations(se3d_coordinates *coordinates,
                                                    const double *effort, double *qddot)
 {
     se3d_coordinates *c = coordinates;
     SE3DI_EDIT_PAST_OF(c);
-    SE3DI_TRY(se3di_check_pointer(c->system, "qddot", qddot));
-    SE3DI_TRY(check_numbers(c->system, "effort", effort, c->velocities));
-    se3di_work_begin(c->system);
+    SE3DI_TRY(begin_work(c, "effort", effort, "qddot", qddot));
     return finish(c, accelerate(c, effort, qddot), "qddot", qddot);
 }
 
@@ -513,9 +521,7 @@ se3d_status se3d_coordinates_compute_efforts(se3d_coordinates *coordinates, cons
 {
     se3d_coordinates *c = coordinates;
     SE3DI_EDIT_PAST_OF(c);
-    SE3DI_TRY(se3di_check_pointer(c->system, "effort", effort));
-    SE3DI_TRY(check_numbers(c->system, "qddot", qddot, c->velocities));
-    se3di_work_begin(c->system);
+    SE3DI_TRY(begin_work(c, "qddot", qddot, "effort", effort));
     return finish(c, find_efforts(c, qddot, effort), "effort", effort);
 }
 

@@ -91,6 +91,17 @@ static se3d_status check_leaves(se3d_system *system, const se3di_function *law, 
     return SE3D_OK;
 }
 
+static se3d_status check_drafted(se3d_system *system, int is_drafted)
+{
+    if (!is_drafted) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
+                          "function has signals of too many bodies, with those of the joint at "
+                          "most %d",
+                          SE3DI_NODE_BODIES_MAX);
+    }
+    return SE3D_OK;
+}
+
 static se3d_status draft_rate(se3d_system *system, const se3d_driver_def *def, uint32_t joint,
                               int32_t function, se3di_draft *draft)
 {
@@ -113,14 +124,8 @@ static se3d_status draft_rate(se3d_system *system, const se3d_driver_def *def, u
                           "abs");
     }
     SE3DI_TRY(check_leaves(system, law, joint, def->coordinate));
-    if (!se3di_driver_rate_draft(&system->model, joint, def->coordinate, function, def->name,
-                                 draft)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "function has signals of too many bodies, with those of the joint at "
-                          "most %d",
-                          SE3DI_NODE_BODIES_MAX);
-    }
-    return SE3D_OK;
+    return check_drafted(system, se3di_driver_rate_draft(&system->model, joint, def->coordinate,
+                                                         function, def->name, draft));
 }
 
 static se3d_status draft_law(se3d_system *system, const se3d_driver_def *def, uint32_t joint,
@@ -135,14 +140,8 @@ static se3d_status draft_law(se3d_system *system, const se3d_driver_def *def, ui
     for (uint32_t k = 0; k < law->signal_count; ++k) {
         SE3DI_TRY(check_signal(system, &law->signals[k], joint, def->coordinate));
     }
-    if (!se3di_driver_law_draft(&system->model, joint, def->coordinate, function, def->name,
-                                draft)) {
-        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT,
-                          "function has signals of too many bodies, with those of the joint at "
-                          "most %d",
-                          SE3DI_NODE_BODIES_MAX);
-    }
-    return SE3D_OK;
+    return check_drafted(system, se3di_driver_law_draft(&system->model, joint, def->coordinate,
+                                                        function, def->name, draft));
 }
 
 se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_def *user,

@@ -47,12 +47,9 @@ se3di_force se3di_force_blank(int32_t type, const char *name)
 
 se3d_status se3di_force_add(se3d_system *system, const se3di_force *data, se3d_force *force)
 {
-    se3di_handle handle;
-    if (se3di_model_add_force(&system->model, data, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a force element");
-    }
-    *force = (se3d_force){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_force(&system->model, data, &handle);
+    return se3di_give_created(system, added, "a force element", handle, force);
 }
 
 se3d_status se3d_force_create_tsda(se3d_system *system, const se3d_tsda_def *def, se3d_force *force)
@@ -135,12 +132,10 @@ static se3d_status use_angle(se3d_system *system, const se3d_rsda_def *def, se3d
 static se3d_status add_with_angle(se3d_system *system, const se3di_force *data,
                                   const se3di_angle *angle, se3d_force *force)
 {
-    se3di_handle handle;
-    if (se3di_model_add_force_with_angle(&system->model, data, angle, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a force element");
-    }
-    *force = (se3d_force){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added =
+        se3di_model_add_force_with_angle(&system->model, data, angle, &handle);
+    return se3di_give_created(system, added, "a force element", handle, force);
 }
 
 se3d_status se3d_force_create_rsda(se3d_system *system, const se3d_rsda_def *def, se3d_force *force)

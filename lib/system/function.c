@@ -325,13 +325,12 @@ se3d_status se3d_function_create(se3d_system *system, const se3d_function_def *d
         se3di_function_release(&system->model.allocator, &data);
         return status;
     }
-    se3di_handle handle;
-    if (se3di_model_add_function(&system->model, &data, &handle) < 0) {
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_function(&system->model, &data, &handle);
+    if (added < 0) {
         se3di_function_release(&system->model.allocator, &data);
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a function");
     }
-    *function = (se3d_function){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_give_created(system, added, "a function", handle, function);
 }
 
 se3d_status se3d_function_create_expression(se3d_system *system, const char *text,

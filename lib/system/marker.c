@@ -26,12 +26,9 @@ se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_def *def, 
     SE3DI_TRY(se3di_check_orientation(system, "orientation", full.orientation, data.p));
     se3di_copy(full.position, data.s);
     memcpy(&data.name, &full.name, sizeof data.name); /* copied by the model */
-    se3di_handle handle;
-    if (se3di_model_add_marker(&system->model, &data, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a marker");
-    }
-    *marker = (se3d_marker){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_marker(&system->model, &data, &handle);
+    return se3di_give_created(system, added, "a marker", handle, marker);
 }
 
 se3d_status se3d_marker_destroy(se3d_system *system, se3d_marker marker)

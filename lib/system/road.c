@@ -129,7 +129,7 @@ se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *def, se3d
     SE3DI_CREATE(system, road);
     se3d_road_def full = se3d_road_def_default();
     se3di_road data = {.kind = SE3DI_ROAD_PLANE};
-    se3di_handle handle;
+    se3di_handle handle = {0, 0};
     SE3DI_TRY(se3di_check_def(system, "road def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_new_name(system, &system->model.road_slots, 0, "road", full.name));
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body));
@@ -138,11 +138,8 @@ se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *def, se3d
     SE3DI_TRY(take_surface(system, &full, &data));
     se3di_copy(full.point, data.point);
     memcpy(&data.name, &full.name, sizeof data.name); /* copied by the model */
-    if (se3di_model_add_road(&system->model, &data, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a road");
-    }
-    *road = (se3d_road){handle.index1, handle.generation};
-    return SE3D_OK;
+    const se3d_status added = se3di_model_add_road(&system->model, &data, &handle);
+    return se3di_give_created(system, added, "a road", handle, road);
 }
 
 se3d_status se3d_road_destroy(se3d_system *system, se3d_road road)

@@ -64,15 +64,11 @@ static se3d_status create(se3d_system *system, const char *function, const se3d_
     if (status < 0) {
         return se3di_log_error(&system->error, status);
     }
-    se3di_handle handle;
+    se3di_handle handle = {0, 0};
     status = se3di_model_add_shape(&system->model, &shape, &handle);
     shape.name = NULL; /* the caller's */
     se3di_shape_release(&system->model.allocator, &shape);
-    if (status < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a shape");
-    }
-    *out = (se3d_shape){handle.index1, handle.generation};
-    return SE3D_OK;
+    return se3di_give_created(system, status, "a shape", handle, out);
 }
 
 #define CREATE(KIND, name, traits)                                                                 \

@@ -49,12 +49,9 @@ se3d_status se3d_state_create(se3d_system *system, const se3d_state_def *def, se
                              " = %g, must be finite and > 0", full.size);
     }
     data.rest = full.size;
-    se3di_handle handle;
-    if (se3di_model_add_state(&system->model, &data, full.initial, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a state");
-    }
-    *state = (se3d_state){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_state(&system->model, &data, full.initial, &handle);
+    return se3di_give_created(system, added, "a state", handle, state);
 }
 
 /* Whether a function asks at once for the output or input (place) of a state. */

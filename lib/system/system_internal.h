@@ -126,21 +126,17 @@ se3d_status se3di_check_def(se3d_system *system, const char *what, const void *d
  * beyond them. Nothing happens if def is NULL or too small for its struct_size. */
 void se3di_def_init(void *def, size_t size, const void *defaults, size_t full);
 
-/* Dense index of a handle; fails with STALE_HANDLE and a message. */
-se3d_status se3di_find_body(se3d_system *system, const char *what, se3d_body body, uint32_t *index);
-se3d_status se3di_find_marker(se3d_system *system, const char *what, se3d_marker marker,
-                              uint32_t *index);
-se3d_status se3di_find_constraint(se3d_system *system, const char *what, se3d_constraint constraint,
+/* Dense index of a handle: se3di_find_body(system, "body", body, &index) and its like; fails with
+ * STALE_HANDLE and a message. Of elements whose handles name nothing else; a state is a force. */
+#define SE3DI_PLAIN_LIST(X) X(body) X(marker) X(constraint) X(material) X(wheel) X(road)
+#define SE3DI_FIND_PLAIN(kind)                                                                     \
+    se3d_status se3di_find_##kind(se3d_system *system, const char *what, se3d_##kind handle,       \
                                   uint32_t *index);
+SE3DI_PLAIN_LIST(SE3DI_FIND_PLAIN)
 se3d_status se3di_find_force(se3d_system *system, const char *what, se3d_force force,
                              uint32_t *index);
 se3d_status se3di_find_state(se3d_system *system, const char *what, se3d_state state,
                              uint32_t *index);
-se3d_status se3di_find_material(se3d_system *system, const char *what, se3d_material material,
-                                uint32_t *index);
-se3d_status se3di_find_wheel(se3d_system *system, const char *what, se3d_wheel wheel,
-                             uint32_t *index);
-se3d_status se3di_find_road(se3d_system *system, const char *what, se3d_road road, uint32_t *index);
 /* A null handle gives -1; a function of other than `variables` variables is an error. */
 se3d_status se3di_find_law(se3d_system *system, const char *what, se3d_function function,
                            uint32_t variables, int32_t *index);
@@ -182,6 +178,11 @@ static inline se3d_status se3di_give_name(se3d_status found, const char *own, co
     }
     return found;
 }
+
+/* The end of what creates an element: its handle to the public `handle`, or "no memory for a ...".
+ * @return OK, NO_MEMORY */
+se3d_status se3di_give_created(se3d_system *system, se3d_status added, const char *what,
+                               se3di_handle created, void *handle);
 
 /* A public handle as an internal one. */
 #define SE3DI_HANDLE(handle) ((se3di_handle){(handle).index1, (handle).generation})

@@ -141,12 +141,9 @@ se3d_status se3d_wheel_create(se3d_system *system, const se3d_wheel_def *def, se
     SE3DI_TRY(take_relations(system, &full, &data));
     se3di_wheel_place(&system->model, &data, data.center0, data.contact0);
     memcpy(&data.name, &full.name, sizeof data.name); /* copied by the model */
-    se3di_handle handle;
-    if (se3di_model_add_wheel(&system->model, &data, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a wheel");
-    }
-    *wheel = (se3d_wheel){handle.index1, handle.generation};
-    return SE3D_OK;
+    se3di_handle handle = {0, 0};
+    const se3d_status added = se3di_model_add_wheel(&system->model, &data, &handle);
+    return se3di_give_created(system, added, "a wheel", handle, wheel);
 }
 
 se3d_status se3d_wheel_destroy(se3d_system *system, se3d_wheel wheel)
