@@ -74,6 +74,16 @@ se3d_status se3di_array_reserve(const se3d_allocator *allocator, void **data, si
     return SE3D_OK;
 }
 
+se3d_status se3di_array_reserve_at(const se3d_allocator *allocator, void *place, size_t *capacity,
+                                   size_t needed, size_t size)
+{
+    void *data;
+    memcpy(&data, place, sizeof data);
+    const se3d_status status = se3di_array_reserve(allocator, &data, capacity, needed, size);
+    memcpy(place, &data, sizeof data);
+    return status;
+}
+
 se3d_status se3di_arrays_alloc(const se3d_allocator *allocator, const se3di_array *list, int count)
 {
     for (int k = 0; k < count; ++k) {

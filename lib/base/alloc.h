@@ -19,6 +19,9 @@ void se3di_free(const se3d_allocator *allocator, void *memory, size_t count, siz
  * zeroed. On failure nothing changed. Growth is geometric. */
 se3d_status se3di_array_reserve(const se3d_allocator *allocator, void **data, size_t *capacity,
                                 size_t needed, size_t size);
+/* The same for an array of any type: `place` is the address of the pointer to it. */
+se3d_status se3di_array_reserve_at(const se3d_allocator *allocator, void *place, size_t *capacity,
+                                   size_t needed, size_t size);
 
 /* An array that is made once: where its address is kept, its elements and their bytes. */
 typedef struct se3di_array {

@@ -292,24 +292,27 @@ static se3d_status parse_right(parser *p, se3d_status (*parse)(parser *, se3di_o
     return check_finite(p, &sign, se3di_program_binary(p->program, op, 0, out, right));
 }
 
-static se3d_status parse_product(parser *p, se3di_operand *out)
+/* Operands that `parse` reads, joined from left to right by the one sign or the other. */
+static se3d_status parse_chain(parser *p, se3d_status (*parse)(parser *, se3di_operand *),
+                               const char marks[2], const se3di_op ops[2], se3di_operand *out)
 {
-    SE3DI_TRY(parse_unary(p, out));
-    while (at_mark(p, '*') || at_mark(p, '/')) {
-        se3di_op op = at_mark(p, '*') ? SE3DI_OP_MULTIPLY : SE3DI_OP_DIVIDE;
-        SE3DI_TRY(parse_right(p, parse_unary, op, out));
+    SE3DI_TRY(parse(p, out));
+    while (at_mark(p, marks[0]) || at_mark(p, marks[1])) {
+        SE3DI_TRY(parse_right(p, parse, ops[at_mark(p, marks[0]) ? 0 : 1], out));
     }
     return SE3D_OK;
 }
 
+static se3d_status parse_product(parser *p, se3di_operand *out)
+{
+    static const se3di_op ops[2] = {SE3DI_OP_MULTIPLY, SE3DI_OP_DIVIDE};
+    return parse_chain(p, parse_unary, "*/", ops, out);
+}
+
 static se3d_status parse_sum(parser *p, se3di_operand *out)
 {
-    SE3DI_TRY(parse_product(p, out));
-    while (at_mark(p, '+') || at_mark(p, '-')) {
-        se3di_op op = at_mark(p, '+') ? SE3DI_OP_ADD : SE3DI_OP_SUBTRACT;
-        SE3DI_TRY(parse_right(p, parse_product, op, out));
-    }
-    return SE3D_OK;
+    static const se3di_op ops[2] = {SE3DI_OP_ADD, SE3DI_OP_SUBTRACT};
+    return parse_chain(p, parse_product, "+-", ops, out);
 }
 
 static se3d_status parse_comparison(parser *p, se3di_operand *out)

@@ -60,12 +60,14 @@ extern const se3di_formulation se3di_formulation_rp_tangent;
 /* By se3d_formulation; NULL if there is none. */
 const se3di_formulation *se3di_formulation_find(int32_t id);
 /* What formulations with unknowns (v, w) or their equal share: no normalisation, accelerations that
- * are the unknowns' own. */
+ * are the unknowns' own, wrenches that act on them as they are. */
 double se3di_formulation_no_normalisation(const se3di_frame *frame);
 void se3di_formulation_get_plain(const se3di_frame *frame, const double *qddot,
                                  double acceleration[6]);
 void se3di_formulation_set_plain(const se3di_frame *frame, const double acceleration[6],
                                  double *qddot);
+void se3di_formulation_add_plain(const se3di_frame *frame, const double force[3],
+                                 const double torque[3], double *Q);
 /* The same formulation in the fewest unknowns, for methods whose state is (r, p, v, w). */
 const se3di_formulation *se3di_formulation_reduce(const se3di_formulation *formulation);
 

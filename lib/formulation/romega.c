@@ -39,14 +39,6 @@ static void velocity_terms(const se3di_body *body, const se3di_frame *frame, dou
     se3di_cross(momentum, w, b + 3);
 }
 
-static void add_wrench(const se3di_frame *frame, const double force[3], const double torque[3],
-                       double *Q)
-{
-    (void)frame;
-    se3di_add(Q, force, Q);
-    se3di_add(Q + 3, torque, Q + 3);
-}
-
 static void jacobian(const se3di_term *term, const se3di_frame *i, const se3di_frame *j,
                      double *phi_i, double *phi_j)
 {
@@ -105,10 +97,18 @@ void se3di_formulation_set_plain(const se3di_frame *frame, const double accelera
     memcpy(qddot, acceleration, 6 * sizeof *qddot);
 }
 
+void se3di_formulation_add_plain(const se3di_frame *frame, const double force[3],
+                                 const double torque[3], double *Q)
+{
+    (void)frame;
+    se3di_add(Q, force, Q);
+    se3di_add(Q + 3, torque, Q + 3);
+}
+
 #define ROMEGA_TABLE                                                                               \
     .size = 6, .block = 6, .mass = mass, .velocity_terms = velocity_terms,                         \
-    .add_wrench = add_wrench, .jacobian = jacobian, .gamma = gamma_of, .curvature = curvature,     \
-    .move = move, .normalisation = se3di_formulation_no_normalisation,                             \
+    .add_wrench = se3di_formulation_add_plain, .jacobian = jacobian, .gamma = gamma_of,            \
+    .curvature = curvature, .move = move, .normalisation = se3di_formulation_no_normalisation,     \
     .get_velocity = get_velocity, .set_velocity = set_velocity,                                    \
     .get_acceleration = se3di_formulation_get_plain,                                               \
     .set_acceleration = se3di_formulation_set_plain

@@ -9,7 +9,7 @@
  *     (1/2 Phi_p G^T) alpha = gamma + (pdot.pdot) Phi_p p
  *
  * The unknowns are those of r-omega, alpha = wdot; the Jacobians, velocity terms and the way p
- * moves are those of r-p.  docs/theory/formulations.md */
+ * moves are those of r-p; torques act as they are: 1/2 G (2 G^T n) = n.  docs/theory/formulations.md */
 #include "formulation/formulation.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
@@ -46,15 +46,6 @@ static void velocity_terms(const se3di_body *body, const se3di_frame *frame, dou
     b[0] = b[1] = b[2] = 0.0;
     project(frame->p, turned, b + 3);
     se3di_scale(-4.0, b + 3, b + 3);
-}
-
-/* 1/2 G (2 G^T n) = n */
-static void add_wrench(const se3di_frame *frame, const double force[3], const double torque[3],
-                       double *Q)
-{
-    (void)frame;
-    se3di_add(Q, force, Q);
-    se3di_add(Q + 3, torque, Q + 3);
 }
 
 static void jacobian(const se3di_term *term, const se3di_frame *i, const se3di_frame *j,
@@ -116,7 +107,7 @@ const se3di_formulation se3di_formulation_rp_tangent = {
     .block = 6,
     .mass = mass,
     .velocity_terms = velocity_terms,
-    .add_wrench = add_wrench,
+    .add_wrench = se3di_formulation_add_plain,
     .jacobian = jacobian,
     .gamma = gamma_of,
     .curvature = curvature,

@@ -8,43 +8,25 @@
 
 #include <string.h>
 
-static se3d_status reserve(const se3d_allocator *allocator, void **data, size_t *capacity,
-                           size_t count, size_t size)
-{
-    return se3di_array_reserve(allocator, data, capacity, count, size);
-}
-
 static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
 {
-    const se3d_allocator *allocator = &assembly->model->allocator;
     const size_t bodies = assembly->body_count, contacts = c->contact_count;
-    void *islands = c->islands, *place = c->place, *root = c->root, *order = c->order;
-    void *number = c->number, *pairs = c->pairs, *mobility = c->mobility, *own = c->own;
-    se3d_status status =
-        reserve(allocator, &islands, &c->island_capacity, bodies + 1, sizeof *c->islands);
-    c->islands = islands;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &place, &c->place_capacity, bodies + 1, sizeof *c->place);
-    c->place = place;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &root, &c->root_capacity, bodies + 1, sizeof *c->root);
-    c->root = root;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &number, &c->number_capacity, bodies + 1, sizeof *c->number);
-    c->number = number;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &order, &c->order_capacity, contacts + 1, sizeof *c->order);
-    c->order = order;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs);
-    c->pairs = pairs;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof(double));
-    c->mobility = mobility;
-    SE3DI_TRY(status);
-    status = reserve(allocator, &own, &c->own_capacity, 36 * bodies + 1, sizeof(double));
-    c->own = own;
-    return status;
+    const struct {
+        void *place;
+        size_t *capacity, count, size;
+    } arrays[] = {{&c->islands, &c->island_capacity, bodies + 1, sizeof *c->islands},
+                  {&c->place, &c->place_capacity, bodies + 1, sizeof *c->place},
+                  {&c->root, &c->root_capacity, bodies + 1, sizeof *c->root},
+                  {&c->number, &c->number_capacity, bodies + 1, sizeof *c->number},
+                  {&c->order, &c->order_capacity, contacts + 1, sizeof *c->order},
+                  {&c->pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs},
+                  {&c->mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof *c->mobility},
+                  {&c->own, &c->own_capacity, 36 * bodies + 1, sizeof *c->own}};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) {
+        SE3DI_TRY(se3di_array_reserve_at(&assembly->model->allocator, arrays[k].place,
+                                         arrays[k].capacity, arrays[k].count, arrays[k].size));
+    }
+    return SE3D_OK;
 }
 
 static int32_t find_root(se3di_convex *c, int32_t body)

@@ -88,6 +88,15 @@ static double visit_blocks(const se3di_assembly *assembly, const se3di_force *fo
     return sum;
 }
 
+/* The next element, and the coordinate that it acts on. */
+static const se3di_force *next_measured(const se3di_lie_friction *f, size_t *at,
+                                        se3di_measure *measure)
+{
+    const se3di_force *force = next_element(f, at);
+    (void)se3di_measure_force(f->equations->assembly.model, force, 0, measure);
+    return force;
+}
+
 /* Forces are evaluated without it at the present positions. */
 static void silence(const se3di_lie_friction *f)
 {
@@ -112,9 +121,8 @@ void se3di_lie_friction_add_wrenches(const se3di_lie_friction *f)
     const se3di_assembly *assembly = &f->equations->assembly;
     size_t at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {
-        const se3di_force *force = next_element(f, &at);
         se3di_measure measure;
-        (void)se3di_measure_force(assembly->model, force, 0, &measure);
+        const se3di_force *force = next_measured(f, &at, &measure);
         for (uint32_t c = 0; c < 6; ++c) {
             assembly->wrench[6 * force->body_i + c] -= f->n[k] * measure.g[c];
             assembly->wrench[6 * force->body_j + c] -= f->n[k] * measure.g[6 + c];
@@ -191,12 +199,10 @@ static uint32_t set_modes(se3di_lie_friction *f)
 
 void se3di_lie_friction_solve_velocities(se3di_lie_friction *f, double h)
 {
-    const se3di_assembly *assembly = &f->equations->assembly;
     size_t at = 0;
     for (uint32_t k = 0; k < f->count; ++k) {
-        const se3di_force *force = next_element(f, &at);
         se3di_measure measure;
-        (void)se3di_measure_force(assembly->model, force, 0, &measure);
+        const se3di_force *force = next_measured(f, &at, &measure);
         f->free[k] = 2.0 / h * measure.rate;
         f->load[k] = force->state[1];
     }

@@ -54,13 +54,20 @@ static void add_row_of(se3di_draft *draft, const char *name, double value, const
     se3di_draft_add_term(draft, term, 1.0);
 }
 
-void se3di_row_add_dp1(se3di_draft *draft, const char *name, const double a_i[3],
-                       const double a_j[3])
+/* A row of two directions. */
+static void add_row_between(se3di_draft *draft, se3di_primitive_type type, const char *name,
+                            const double a_i[3], const double a_j[3])
 {
-    se3di_term term = term_between(draft, SE3DI_PRIMITIVE_DP1);
+    se3di_term term = term_between(draft, type);
     se3di_copy(a_i, term.a_i);
     se3di_copy(a_j, term.a_j);
     add_row_of(draft, name, 0.0, &term);
+}
+
+void se3di_row_add_dp1(se3di_draft *draft, const char *name, const double a_i[3],
+                       const double a_j[3])
+{
+    add_row_between(draft, SE3DI_PRIMITIVE_DP1, name, a_i, a_j);
 }
 
 void se3di_row_add_dp2(se3di_draft *draft, const char *name, const double a_i[3])
@@ -73,10 +80,7 @@ void se3di_row_add_dp2(se3di_draft *draft, const char *name, const double a_i[3]
 void se3di_row_add_triple(se3di_draft *draft, const char *name, const double a_i[3],
                           const double a_j[3])
 {
-    se3di_term term = term_between(draft, SE3DI_PRIMITIVE_TRIPLE);
-    se3di_copy(a_i, term.a_i);
-    se3di_copy(a_j, term.a_j);
-    add_row_of(draft, name, 0.0, &term);
+    add_row_between(draft, SE3DI_PRIMITIVE_TRIPLE, name, a_i, a_j);
 }
 
 void se3di_row_add_d(se3di_draft *draft, double distance)

@@ -318,22 +318,24 @@ static void both(double x, big *up, big *down)
     *down = DIV(one, *up);
 }
 
-double se3di_big_sinh(double x)
+/* (e^x + sign e^-x)/2 */
+static double half_sum(double x, int32_t sign)
 {
     big up, down;
     both(x, &up, &down);
-    up = SUB(up, down);
+    up = sign < 0 ? SUB(up, down) : ADD(up, down);
     up = SHIFT(up, -1);
     return se3di_big_round(&up);
 }
 
+double se3di_big_sinh(double x)
+{
+    return half_sum(x, -1);
+}
+
 double se3di_big_cosh(double x)
 {
-    big up, down;
-    both(x, &up, &down);
-    up = ADD(up, down);
-    up = SHIFT(up, -1);
-    return se3di_big_round(&up);
+    return half_sum(x, 1);
 }
 
 double se3di_big_tanh(double x)

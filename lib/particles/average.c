@@ -22,8 +22,6 @@
 
 #define PI 3.1415926535897932384626433832795
 
-static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-
 typedef struct averaging {
     const se3di_particles *set;
     const se3di_average_box *box;
@@ -166,7 +164,8 @@ static void add_fluctuation(averaging *a)
             se3di_sub(v, out->velocity, v);
             out->temperature += se3di_dot(v, v) / 3.0;
             for (int c = 0; c < 6; ++c) {
-                out->kinetic_stress[c] += mass * v[row[c]] * v[column[c]] / a->volume;
+                out->kinetic_stress[c] +=
+                    mass * v[se3di_stress_row[c]] * v[se3di_stress_column[c]] / a->volume;
             }
         }
     }
@@ -219,8 +218,10 @@ static void add_branch(averaging *a, const double x[3], const double l[3], const
         part += is_one ? part_of_branch(a, at, l) : 0.0;
     }
     for (int c = 0; c < 6; ++c) { /* of rolling moments it is not symmetric: the mean */
-        a->out->contact_stress[c] +=
-            0.5 * part * (force[row[c]] * l[column[c]] + force[column[c]] * l[row[c]]) / a->volume;
+        a->out->contact_stress[c] += 0.5 * part *
+                                     (force[se3di_stress_row[c]] * l[se3di_stress_column[c]] +
+                                      force[se3di_stress_column[c]] * l[se3di_stress_row[c]]) /
+                                     a->volume;
     }
 }
 

@@ -13,6 +13,10 @@ typedef struct se3di_average_box {
     int32_t contacts; /* 0: without what they give */
 } se3di_average_box;
 
+/* The components of a symmetric tensor: xx, yy, zz, xy, yz, xz. */
+static const int se3di_stress_row[6] = {0, 1, 2, 0, 1, 0};
+static const int se3di_stress_column[6] = {0, 1, 2, 1, 2, 2};
+
 void se3di_particles_average(const se3di_particles *set, const se3di_average_box *box,
                              se3d_average *average);
 

@@ -23,8 +23,6 @@
 
 #define SAMPLES 5
 
-static const int row[6] = {0, 1, 2, 0, 1, 0}, column[6] = {0, 1, 2, 1, 2, 2};
-
 typedef struct gridding {
     const se3di_particles *set;
     const se3d_field_grid *grid;
@@ -165,7 +163,7 @@ static void add_motion(const gridding *g)
             const double p[3] = {mass * v[0], mass * v[1], mass * v[2]};
             double flux[6];
             for (int c = 0; c < 6; ++c) {
-                flux[c] = p[row[c]] * v[column[c]];
+                flux[c] = p[se3di_stress_row[c]] * v[se3di_stress_column[c]];
             }
             spread(g, x, SE3D_FIELD_DENSITY, 1, &mass);
             spread(g, x, SE3D_FIELD_VELOCITY, 3, p);
@@ -197,7 +195,8 @@ static void add_contact(void *ctx, const se3d_particles_contact *contact)
     se3di_particles_wrap(set, l);
     for (int c = 0; c < 6; ++c) { /* of rolling moments it is not symmetric: the mean */
         stress[c] = 0.5 / SAMPLES *
-                    (contact->force[row[c]] * l[column[c]] + contact->force[column[c]] * l[row[c]]);
+                    (contact->force[se3di_stress_row[c]] * l[se3di_stress_column[c]] +
+                     contact->force[se3di_stress_column[c]] * l[se3di_stress_row[c]]);
     }
     for (int k = 0; k < SAMPLES; ++k) {
         se3di_copy(x, at);
@@ -216,7 +215,7 @@ static void finish_cell(double *values)
     }
     se3di_scale(1.0 / rho, u, u);
     for (int c = 0; c < 6; ++c) {
-        kinetic[c] -= rho * u[row[c]] * u[column[c]];
+        kinetic[c] -= rho * u[se3di_stress_row[c]] * u[se3di_stress_column[c]];
         kinetic[c] = c < 3 && kinetic[c] < 0.0 ? 0.0 : kinetic[c]; /* rounding */
     }
     values[SE3D_FIELD_TEMPERATURE] = (kinetic[0] + kinetic[1] + kinetic[2]) / (3.0 * rho);

@@ -19,6 +19,7 @@
 #include "particles/mesh.h"
 #include "particles/passage.h"
 #include "particles/share.h"
+#include "particles/slabs.h"
 
 #include <math.h>
 #include <string.h>
@@ -124,40 +125,36 @@ static void note_motion(se3di_particles *set, const se3di_particle_motion *motio
     }
 }
 
-#define PASS_PARTS 64
+/* What the parts of a cell that strains go by, and what they find. */
+typedef struct strain_work {
+    const se3di_particle_motion *motion;
+    const se3di_domain_map *change;
+    se3di_domain_sums sums[SE3DI_PARTS];
+} strain_work;
 
-/* The first of `count` things in part c, which ends before that of part c + 1. */
-static size_t part_begin(size_t count, size_t c)
+static void strain_part(se3di_particles *set, size_t c, void *ctx)
 {
-    const size_t begin = c * (count / PASS_PARTS + 1);
-    return begin < count ? begin : count;
+    strain_work *w = ctx;
+    se3di_domain_move(set, se3di_part_begin(set->count, c), se3di_part_begin(set->count, c + 1),
+                      w->motion, w->change, &w->sums[c]);
 }
 
 /* Half a kick in a cell that strains, and the drift: the one if it ends a step, the other if it
  * begins one. */
 static void strain(se3di_particles *set, double h, double drift)
 {
-    se3di_domain_sums sums_of[PASS_PARTS] = {{0.0, 0.0, {0.0}}};
     const se3di_particle_motion motion = {1, h, drift};
     const se3di_domain_map change =
         drift != 0.0 ? se3di_domain_open(set, h) : se3di_domain_rest(set);
-    const size_t count = set->count;
-#ifdef _OPENMP
-    const int32_t team = se3di_particles_team(set);
-#pragma omp parallel for if (team > 1) num_threads(team) schedule(static)
-#endif
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        const se3di_floats host = se3di_floats_set();
-        se3di_domain_move(set, part_begin(count, c), part_begin(count, c + 1), &motion, &change,
-                          &sums_of[c]);
-        se3di_floats_restore(host);
-    }
+    strain_work work = {&motion, &change, {{0.0, 0.0, {0.0}}}};
+    se3di_particles_each_part(set, strain_part, &work);
     haste most = {0.0, 0.0};
     double kinetic[6] = {0.0};
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        most = hastier(most, (haste){sums_of[c].fastest, sums_of[c].hasty});
+    for (size_t c = 0; c < SE3DI_PARTS; ++c) {
+        const se3di_domain_sums *sums = &work.sums[c];
+        most = hastier(most, (haste){sums->fastest, sums->hasty});
         for (int k = 0; k < 6; ++k) {
-            kinetic[k] += sums_of[c].kinetic[k];
+            kinetic[k] += sums->kinetic[k];
         }
     }
     if (drift != 0.0) {
@@ -180,6 +177,25 @@ static void strain_all(se3di_particles *set, const se3di_particle_motion *motion
     }
 }
 
+/* What the parts of a pass go by, and what they find. */
+typedef struct pass_work {
+    const se3di_particle_motion *motion;
+    haste most[SE3DI_PARTS];
+} pass_work;
+
+static void pass_part(se3di_particles *set, size_t c, void *ctx)
+{
+    pass_work *w = ctx;
+    const size_t count = set->count, clumps = set->clump_count;
+    const size_t first = se3di_part_begin(clumps, c), end = se3di_part_begin(clumps, c + 1);
+    w->most[c] =
+        move_range(set, se3di_part_begin(count, c), se3di_part_begin(count, c + 1), w->motion);
+    if (set->flow_count > 0) {
+        se3di_flows_mark_clumps(set, first, end);
+    }
+    se3di_clumps_move(set, first, end, w->motion, &w->most[c].fastest, &w->most[c].hasty);
+}
+
 static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
     if (se3di_domain_strains(set)) {
@@ -188,25 +204,11 @@ static void pass(se3di_particles *set, const se3di_particle_motion *motion)
         }
         return;
     }
-    haste most_of[PASS_PARTS];
-    const size_t count = set->count, clumps = set->clump_count;
-#ifdef _OPENMP
-    const int32_t team = se3di_particles_team(set);
-#pragma omp parallel for if (team > 1) num_threads(team) schedule(static)
-#endif
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        const se3di_floats host = se3di_floats_set();
-        most_of[c] = move_range(set, part_begin(count, c), part_begin(count, c + 1), motion);
-        if (set->flow_count > 0) {
-            se3di_flows_mark_clumps(set, part_begin(clumps, c), part_begin(clumps, c + 1));
-        }
-        se3di_clumps_move(set, part_begin(clumps, c), part_begin(clumps, c + 1), motion,
-                          &most_of[c].fastest, &most_of[c].hasty);
-        se3di_floats_restore(host);
-    }
+    pass_work work = {.motion = motion};
+    se3di_particles_each_part(set, pass_part, &work);
     haste most = {0.0, 0.0};
-    for (size_t c = 0; c < PASS_PARTS; ++c) {
-        most = hastier(most, most_of[c]);
+    for (size_t c = 0; c < SE3DI_PARTS; ++c) {
+        most = hastier(most, work.most[c]);
     }
     note_motion(set, motion, most);
 }

@@ -28,36 +28,39 @@ static SE3DI_EITHER void se3di_dot_gradient(se3di_way way, const se3di_frame *i,
     se3di_gradient(way, j, a_j, u, phi_j);
 }
 
+/* Both directions in the ground frame, and their rates. */
+typedef struct se3di_dot_motion {
+    double u[3], v[3], udot[3], vdot[3];
+} se3di_dot_motion;
+
+static SE3DI_EITHER void se3di_dot_move(se3di_way way, const se3di_frame *i, const double a_i[3],
+                                        const se3di_frame *j, const double a_j[3],
+                                        se3di_dot_motion *m)
+{
+    se3di_mul(i->A, a_i, m->u);
+    se3di_mul(j->A, a_j, m->v);
+    se3di_rate(way, i, a_i, m->udot);
+    se3di_rate(way, j, a_j, m->vdot);
+}
+
 static SE3DI_EITHER double se3di_dot_rate(se3di_way way, const se3di_frame *i, const double a_i[3],
                                           const se3di_frame *j, const double a_j[3])
 {
-    double u[3];
-    double v[3];
-    double udot[3];
-    double vdot[3];
-    se3di_mul(i->A, a_i, u);
-    se3di_mul(j->A, a_j, v);
-    se3di_rate(way, i, a_i, udot);
-    se3di_rate(way, j, a_j, vdot);
-    return se3di_dot(udot, v) + se3di_dot(u, vdot);
+    se3di_dot_motion m;
+    se3di_dot_move(way, i, a_i, j, a_j, &m);
+    return se3di_dot(m.udot, m.v) + se3di_dot(m.u, m.vdot);
 }
 
 static SE3DI_EITHER double se3di_dot_gamma(se3di_way way, const se3di_frame *i, const double a_i[3],
                                            const se3di_frame *j, const double a_j[3])
 {
-    double u[3];
-    double v[3];
-    double udot[3];
-    double vdot[3];
+    se3di_dot_motion m;
     double u_term[3];
     double v_term[3];
-    se3di_mul(i->A, a_i, u);
-    se3di_mul(j->A, a_j, v);
-    se3di_rate(way, i, a_i, udot);
-    se3di_rate(way, j, a_j, vdot);
+    se3di_dot_move(way, i, a_i, j, a_j, &m);
     se3di_velocity_term(way, i, a_i, u_term);
     se3di_velocity_term(way, j, a_j, v_term);
-    return -se3di_dot(v, u_term) - se3di_dot(u, v_term) - 2.0 * se3di_dot(udot, vdot);
+    return -se3di_dot(m.v, u_term) - se3di_dot(m.u, v_term) - 2.0 * se3di_dot(m.udot, m.vdot);
 }
 
 static SE3DI_EITHER void se3di_dot_curvature(se3di_way way, const se3di_frame *i,

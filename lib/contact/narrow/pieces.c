@@ -25,11 +25,9 @@ int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
     se3di_sub(x, piece->x, d);
     for (size_t k = 0; k < piece->triangle_count; ++k) {
         const double *corner[3];
-        double u[3], v[3], n[3];
+        double u[3], n[3];
         se3di_triangle_corners(piece, k, corner);
-        se3di_sub(corner[1], corner[0], u);
-        se3di_sub(corner[2], corner[0], v);
-        se3di_cross(u, v, n);
+        se3di_triangle_span(corner, n);
         se3di_sub(d, corner[0], u);
         if (!(se3di_dot(u, n) < slack * se3di_norm(n))) {
             return 0;

@@ -305,11 +305,9 @@ static int is_part_of(const cutter *c, const se3di_shape *a, const se3di_shape *
 {
     for (size_t k = 0; k < b->triangle_count; ++k) {
         const double *corner[3];
-        double u[3], v[3], n[3];
+        double u[3], n[3];
         se3di_triangle_corners(b, k, corner);
-        se3di_sub(corner[1], corner[0], u);
-        se3di_sub(corner[2], corner[0], v);
-        se3di_cross(u, v, n);
+        se3di_triangle_span(corner, n);
         for (size_t i = 0; i < a->vertex_count; ++i) {
             for (int axis = 0; axis < 3; ++axis) {
                 u[axis] =

@@ -73,10 +73,7 @@ double se3di_triangle_nearest(const double *const corner[3], const double p[3], 
 
 void se3di_triangle_normal(const double *const corner[3], double normal[3])
 {
-    double ab[3], ac[3];
-    se3di_sub(corner[1], corner[0], ab);
-    se3di_sub(corner[2], corner[0], ac);
-    se3di_cross(ab, ac, normal);
+    se3di_triangle_span(corner, normal);
     double length = se3di_norm(normal);
     se3di_scale(length > 0.0 ? 1.0 / length : 0.0, normal, normal);
 }

@@ -4,6 +4,7 @@
 #define SE3DI_CONTACT_TRIANGLES_H
 
 #include "contact/shape/shape.h"
+#include "math/vec3.h"
 
 /* The point of a triangle nearest to p; its barycentric coordinates to `weights` (zero on the far
  * side of an edge or vertex) or NULL. Returns the squared distance. */
@@ -15,6 +16,15 @@ static inline void se3di_triangle_corners(const se3di_shape *shape, size_t trian
     for (size_t k = 0; k < 3; ++k) {
         corner[k] = shape->vertices + 3 * (size_t)shape->triangles[3 * triangle + k];
     }
+}
+
+/* A normal, counter-clockwise, as long as twice the area. */
+static inline void se3di_triangle_span(const double *const corner[3], double normal[3])
+{
+    double u[3], v[3];
+    se3di_sub(corner[1], corner[0], u);
+    se3di_sub(corner[2], corner[0], v);
+    se3di_cross(u, v, normal);
 }
 
 /* The unit normal, counter-clockwise; zero of a triangle without area. */
