@@ -73,8 +73,8 @@ int fmi_get_state_size(fmi_instance *instance, const void *state, size_t *size);
 int fmi_write_state(fmi_instance *instance, const void *state, void *bytes, size_t size);
 int fmi_read_state(fmi_instance *instance, const void *bytes, size_t size, void **state);
 
-/* The functions of model exchange that both versions have with the same parameters: X(name, parameters, what the unit does),
- * in which `i` is the instance of `c`. */
+/* The functions of model exchange that both versions have with the same parameters: X(name,
+ * parameters, what the unit does), in which `i` is the instance of `c`. */
 #define FMI_COMMON_LIST(X)                                                                         \
     X(EnterEventMode, (void *c), se3di_fmi_unit_enter_event(i->unit))                              \
     X(EnterContinuousTimeMode, (void *c), se3di_fmi_unit_enter_continuous(i->unit))                \

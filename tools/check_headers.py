@@ -100,7 +100,7 @@ class Code:
     """Which statuses the functions of lib/ can return, by the names that stand in their bodies."""
 
     def __init__(self, root):
-        self.shared, self.local, self.own = {}, {}, {}
+        self.shared, self.local, self.made = {}, {}, {}
         for path in [p for kind in ("c", "h", "inc") for p in sorted(root.glob(f"lib/**/*.{kind}"))]:
             text = path.read_text()
             lines, outside = text.split("\n"), []
@@ -121,6 +121,13 @@ class Code:
                 place = self.local.setdefault(path, {}) if is_static else self.shared
                 place[name] = (path, calls, found)
             self.add_tables(path, "\n".join(outside + lines[last:]))
+            self.add_made(path, text)
+
+    def add_made(self, path, text):
+        """Functions that a list makes, se3di_find_##kind(..) {..}, by the beginning of their names."""
+        for macro in re.findall(r"^#define \w+\(.*\n(?:.*\\\n)*.*", text, re.M):
+            for prefix in re.findall(r"\b(se3di_\w+_)##\w+\([^;{]*\{", macro.replace("\\\n", "")):
+                self.made[prefix] = (path, self.names(macro, r"\b([a-z]\w+)\b"), set())
 
     def add_tables(self, path, text):
         """Tables of functions, `const se3di_integrator se3di_integrator_rk4 = {..};`, call what they name."""
@@ -134,7 +141,8 @@ class Code:
     def look(self, path, name):
         if name.endswith("_") and name not in self.shared:  # se3di_force_class_##name of a list
             self.shared[name] = (path, {each for each in self.shared if each.startswith(name)}, set())
-        return self.local.get(path, {}).get(name) or self.shared.get(name)
+        made = next((self.made[each] for each in self.made if name.startswith(each)), None)
+        return self.local.get(path, {}).get(name) or self.shared.get(name) or made
 
     def reach(self, name):
         """All statuses that the function can return, and more: every path counts."""

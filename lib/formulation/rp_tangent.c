@@ -9,7 +9,8 @@
  *     (1/2 Phi_p G^T) alpha = gamma + (pdot.pdot) Phi_p p
  *
  * The unknowns are those of r-omega, alpha = wdot; the Jacobians, velocity terms and the way p
- * moves are those of r-p; torques act as they are: 1/2 G (2 G^T n) = n.  docs/theory/formulations.md */
+ * moves are those of r-p; torques act as they are: 1/2 G (2 G^T n) = n.
+ * docs/theory/formulations.md */
 #include "formulation/formulation.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
