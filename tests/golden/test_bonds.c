@@ -296,26 +296,31 @@ static void energy_of_bonded_clumps_stays(void)
     CHECK(whole < 1e-3 && half < 0.5 * whole);
 }
 
+/* A bed of a soft material, without gravity. */
+static void open_soft(bed *b, const se3d_particles_def *set)
+{
+    se3d_material_def material = se3d_material_def_default();
+    material.density = 1000.0;
+    material.stiffness = 1e4;
+    bed_open(b, SE3D_CONTACT_LAW_HOOKE, none, set, &material);
+}
+
 /* What a cell that shears does goes to motion and bonds: the error, as a part of the work. */
 static double shear_lattice(double part_of_step)
 {
-    se3d_material_def material = se3d_material_def_default();
     se3d_particles_def set = se3d_particles_def_default();
-    se3d_fill_def fill = se3d_fill_def_default();
-    se3d_bond_def def = se3d_bond_def_default();
-    se3d_cell_def stage = se3d_cell_def_default();
     se3d_cell_state cell;
     size_t added = 0;
     double v[3 * 64], step;
     bed b;
-    material.density = 1000.0;
-    material.stiffness = 1e4;
     for (int a = 0; a < 3; ++a) {
         set.boundary[a] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
-        set.upper[a] = fill.upper[a] = 0.1;
+        set.upper[a] = 0.1;
     }
-    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &set, &material);
+    open_soft(&b, &set);
+    se3d_fill_def fill = se3d_fill_def_default();
     fill.material = b.material;
+    fill.upper[0] = fill.upper[1] = fill.upper[2] = 0.1;
     fill.radius_min = fill.radius_max = 0.01;
     fill.spacing = 0.025;
     CHECK(!se3d_particles_fill_lattice(b.particles, &fill, NULL));
@@ -324,9 +329,11 @@ static double shear_lattice(double part_of_step)
         v[k] = 0.01 * (k * 37 % 64 / 31.5 - 1.0);
     }
     CHECK(!se3d_particles_set_all(b.particles, 64, NULL, v, NULL));
+    se3d_bond_def def = se3d_bond_def_default();
     def.young = 1e6;
     def.gap = 0.0051;
     CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL) && added == 192);
+    se3d_cell_def stage = se3d_cell_def_default();
     stage.shear_rate = 2.0;
     stage.rate[0] = -1.0;
     CHECK(!se3d_particles_add_cell_stage(b.particles, &stage, NULL));
@@ -436,18 +443,15 @@ static void images_that_are_near_are_bonded(void)
     const double r[9] = {-1.99, 0.0, 0.0, 0.03, 0.0, 0.0, 3.5, 0.0, 0.01};
     const double radius[3] = {0.01, 0.01, 0.01};
     se3d_particles_def set = se3d_particles_def_default();
-    se3d_material_def material = se3d_material_def_default();
-    se3d_bond_def def = se3d_bond_def_default();
     se3d_shape_def plane = se3d_shape_def_default();
     se3d_shape shape;
     size_t added = 0;
     bed b;
-    material.density = 1000.0;
-    material.stiffness = 1e4;
     set.boundary[0] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
     set.upper[0] = 1.0;
-    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, none, &set, &material);
+    open_soft(&b, &set);
     CHECK(!se3d_particles_add(b.particles, b.material, 3, r, radius, NULL, NULL, NULL));
+    se3d_bond_def def = se3d_bond_def_default();
     def.young = 1e6;
     CHECK(!se3d_particles_bond_near(b.particles, &def, -1, -1, &added, NULL) && added == 1);
     plane.material = b.material;

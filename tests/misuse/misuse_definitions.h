@@ -63,20 +63,12 @@ static void check_definitions_of_constraints(arguments *a)
 }
 
 /* One of a type; the others are refused by all readers but its own. */
-static void check_definitions_of_forces(arguments *a)
+static void check_definitions_of_springs(arguments *a, se3d_body ground)
 {
     const handles *u = &a->use;
     se3d_rsda_def rsda = se3d_rsda_def_default();
-    se3d_load_def load = se3d_load_def_default();
     se3d_bushing_def bushing = se3d_bushing_def_default();
-    se3d_friction_def friction = se3d_friction_def_default();
-    se3d_stop_def stop = se3d_stop_def_default();
-    se3d_effort_def effort = se3d_effort_def_default();
-    se3d_armature_def armature = se3d_armature_def_default();
-    se3d_tyre_def tyre = se3d_tyre_def_default();
     se3d_force made;
-    se3d_body ground;
-    CHECK(!se3d_system_get_ground(a->system, &ground));
     DEFINITION(force_get_tsda, se3d_force, se3d_tsda_def, u->force, ((se3d_force){9, 9}));
     MADE_AGAIN(force_get_tsda, force_create_tsda, se3d_force, se3d_tsda_def, u->force);
     rsda.body_i = ground;
@@ -88,12 +80,6 @@ static void check_definitions_of_forces(arguments *a)
     CHECK(!se3d_force_create_rsda(a->system, &rsda, &made));
     DEFINITION(force_get_rsda, se3d_force, se3d_rsda_def, made, u->force);
     MADE_AGAIN(force_get_rsda, force_create_rsda, se3d_force, se3d_rsda_def, made);
-    load.body = u->body;
-    load.value[1] = 3.0;
-    load.in_body_frame = 1;
-    CHECK(!se3d_force_create_torque(a->system, &load, &made));
-    DEFINITION(force_get_load, se3d_force, se3d_load_def, made, u->force);
-    MADE_AGAIN(force_get_load, force_create_load, se3d_force, se3d_load_def, made);
     bushing.body_i = ground;
     bushing.body_j = u->body;
     bushing.K[0] = 5.0;
@@ -101,21 +87,20 @@ static void check_definitions_of_forces(arguments *a)
     CHECK(!se3d_force_create_bushing(a->system, &bushing, &made));
     DEFINITION(force_get_bushing_def, se3d_force, se3d_bushing_def, made, u->force);
     MADE_AGAIN(force_get_bushing_def, force_create_bushing, se3d_force, se3d_bushing_def, made);
-    friction.joint = stop.joint = effort.joint = armature.joint = u->pin;
-    friction.limit = stop.k = effort.value = armature.inertia = 0.5;
-    CHECK(!se3d_force_create_friction(a->system, &friction, &made));
-    DEFINITION(force_get_friction, se3d_force, se3d_friction_def, made, u->force);
-    MADE_AGAIN(force_get_friction, force_create_friction, se3d_force, se3d_friction_def, made);
-    stop.upper = 1.0;
-    CHECK(!se3d_force_create_stop(a->system, &stop, &made));
-    DEFINITION(force_get_stop, se3d_force, se3d_stop_def, made, u->force);
-    MADE_AGAIN(force_get_stop, force_create_stop, se3d_force, se3d_stop_def, made);
-    CHECK(!se3d_force_create_effort(a->system, &effort, &made));
-    DEFINITION(force_get_effort, se3d_force, se3d_effort_def, made, u->force);
-    MADE_AGAIN(force_get_effort, force_create_effort, se3d_force, se3d_effort_def, made);
-    CHECK(!se3d_force_create_armature(a->system, &armature, &made));
-    DEFINITION(force_get_armature, se3d_force, se3d_armature_def, made, u->force);
-    MADE_AGAIN(force_get_armature, force_create_armature, se3d_force, se3d_armature_def, made);
+}
+
+static void check_definitions_on_bodies(arguments *a, se3d_body ground)
+{
+    const handles *u = &a->use;
+    se3d_load_def load = se3d_load_def_default();
+    se3d_tyre_def tyre = se3d_tyre_def_default();
+    se3d_force made;
+    load.body = u->body;
+    load.value[1] = 3.0;
+    load.in_body_frame = 1;
+    CHECK(!se3d_force_create_torque(a->system, &load, &made));
+    DEFINITION(force_get_load, se3d_force, se3d_load_def, made, u->force);
+    MADE_AGAIN(force_get_load, force_create_load, se3d_force, se3d_load_def, made);
     tyre.road = ground;
     tyre.wheel = u->body;
     tyre.side = SE3D_TYRE_RIGHT;
@@ -127,6 +112,46 @@ static void check_definitions_of_forces(arguments *a)
     CHECK(!se3d_force_create_tyre(a->system, &tyre, &made));
     DEFINITION(force_get_tyre, se3d_force, se3d_tyre_def, made, u->force);
     MADE_AGAIN(force_get_tyre, force_create_tyre, se3d_force, se3d_tyre_def, made);
+}
+
+static void check_definitions_on_joints(arguments *a)
+{
+    const handles *u = &a->use;
+    se3d_force made;
+    se3d_friction_def friction = se3d_friction_def_default();
+    friction.joint = u->pin;
+    friction.limit = 0.5;
+    CHECK(!se3d_force_create_friction(a->system, &friction, &made));
+    DEFINITION(force_get_friction, se3d_force, se3d_friction_def, made, u->force);
+    MADE_AGAIN(force_get_friction, force_create_friction, se3d_force, se3d_friction_def, made);
+    se3d_stop_def stop = se3d_stop_def_default();
+    stop.joint = u->pin;
+    stop.upper = 1.0;
+    stop.k = 0.5;
+    CHECK(!se3d_force_create_stop(a->system, &stop, &made));
+    DEFINITION(force_get_stop, se3d_force, se3d_stop_def, made, u->force);
+    MADE_AGAIN(force_get_stop, force_create_stop, se3d_force, se3d_stop_def, made);
+    se3d_effort_def effort = se3d_effort_def_default();
+    effort.joint = u->pin;
+    effort.value = 0.5;
+    CHECK(!se3d_force_create_effort(a->system, &effort, &made));
+    DEFINITION(force_get_effort, se3d_force, se3d_effort_def, made, u->force);
+    MADE_AGAIN(force_get_effort, force_create_effort, se3d_force, se3d_effort_def, made);
+    se3d_armature_def armature = se3d_armature_def_default();
+    armature.joint = u->pin;
+    armature.inertia = 0.5;
+    CHECK(!se3d_force_create_armature(a->system, &armature, &made));
+    DEFINITION(force_get_armature, se3d_force, se3d_armature_def, made, u->force);
+    MADE_AGAIN(force_get_armature, force_create_armature, se3d_force, se3d_armature_def, made);
+}
+
+static void check_definitions_of_forces(arguments *a)
+{
+    se3d_body ground;
+    CHECK(!se3d_system_get_ground(a->system, &ground));
+    check_definitions_of_springs(a, ground);
+    check_definitions_on_bodies(a, ground);
+    check_definitions_on_joints(a);
 }
 
 static se3d_status push_nothing(void *ctx, double t, const se3d_body_motion motion[2],

@@ -427,6 +427,17 @@ static se3d_status make_particles(workshop *w)
     return status;
 }
 
+/* A set of particles, and a material for them. */
+static se3d_status make_set(workshop *w, const se3d_particles_def *def, se3d_material *material,
+                            se3d_particles **set)
+{
+    se3d_material_def stuff = se3d_material_def_default();
+    stuff.density = 2500.0;
+    stuff.stiffness = 1e4;
+    const se3d_status status = se3d_particles_create(w->system, def, set);
+    return status < 0 ? status : se3d_material_create(w->system, &stuff, material);
+}
+
 /* A source with a table of radii and a sink, and copies of them; without memory there is neither,
  * and the set is as it was. */
 static se3d_status make_source_and_sink(workshop *w)
@@ -434,19 +445,11 @@ static se3d_status make_source_and_sink(workshop *w)
     static const double radii[2] = {0.01, 0.02}, weights[2] = {1.0, 3.0};
     se3d_particles *set = NULL;
     se3d_material material = {0, 0};
-    se3d_material_def stuff = se3d_material_def_default();
-    se3d_fill_def fill = se3d_fill_def_default();
-    se3d_particles_source_def source = se3d_particles_source_def_default();
-    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
-    se3d_flow_def flow = se3d_flow_def_default();
-    se3d_particles_source_stats stats;
-    se3d_flow_stats passed;
-    uint64_t count;
-    stuff.density = 2500.0;
-    stuff.stiffness = 1e4;
-    se3d_status status = se3d_particles_create(w->system, NULL, &set);
-    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    se3d_status status = make_set(w, NULL, &material, &set);
     if (status >= 0) {
+        se3d_particles_source_def source = se3d_particles_source_def_default();
+        se3d_particles_source_stats stats;
+        se3d_fill_def fill = se3d_fill_def_default();
         fill.material = material;
         fill.upper[0] = fill.upper[1] = fill.upper[2] = 1.0;
         fill.radii = radii;
@@ -458,11 +461,15 @@ static se3d_status make_source_and_sink(workshop *w)
         CHECK((status >= 0) == (se3d_particles_get_source_stats(set, 0, &stats) == SE3D_OK));
     }
     if (status >= 0) {
+        se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+        uint64_t count;
         sink.normal[2] = 1.0;
         status = se3d_particles_add_sink(set, &sink, NULL);
         CHECK((status >= 0) == (se3d_particles_get_sink_count(set, 0, &count) == SE3D_OK));
     }
     if (status >= 0) {
+        se3d_flow_def flow = se3d_flow_def_default();
+        se3d_flow_stats passed;
         flow.normal[2] = 1.0;
         status = se3d_particles_add_flow(set, &flow, NULL);
         CHECK((status >= 0) == (se3d_particles_get_flow(set, 0, &passed) == SE3D_OK));
@@ -482,20 +489,16 @@ static se3d_status make_cell(workshop *w)
     const double r[6] = {0.5, 0.5, 0.5, 0.69, 0.5, 0.5}, radius[2] = {0.1, 0.1};
     se3d_particles *set = NULL;
     se3d_material material = {0, 0};
-    se3d_material_def stuff = se3d_material_def_default();
     se3d_particles_def box = se3d_particles_def_default();
     se3d_cell_def stage = se3d_cell_def_default();
     se3d_cell_state state;
-    stuff.density = 2500.0;
-    stuff.stiffness = 1e4;
     for (int k = 0; k < 3; ++k) {
         box.boundary[k] = SE3D_DOMAIN_BOUNDARY_PERIODIC;
         box.upper[k] = 1.0;
     }
     box.mask = 0;
     stage.rate[0] = 0.5;
-    se3d_status status = se3d_particles_create(w->system, &box, &set);
-    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    se3d_status status = make_set(w, &box, &material, &set);
     status =
         status < 0 ? status : se3d_particles_add(set, material, 2, r, radius, NULL, NULL, NULL);
     status = status < 0 ? status : se3d_particles_step(set, 2);
@@ -521,14 +524,11 @@ static se3d_status make_bonds(workshop *w)
     se3d_particles *set = NULL;
     se3d_material material = {0, 0};
     se3d_shape plane = {0, 0};
-    se3d_material_def stuff = se3d_material_def_default();
     se3d_shape_def shape = se3d_shape_def_default();
     se3d_bond_def bond = se3d_bond_def_default();
-    stuff.density = 2500.0;
-    stuff.stiffness = bond.young = 1e4;
+    bond.young = 1e4;
     shape.normal[2] = 1.0;
-    se3d_status status = se3d_particles_create(w->system, NULL, &set);
-    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    se3d_status status = make_set(w, NULL, &material, &set);
     shape.material = material;
     status = status < 0 ? status : se3d_shape_create_plane(w->system, &shape, &plane);
     status =
@@ -558,16 +558,12 @@ static se3d_status make_clumps(workshop *w)
     static const double at[6] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0};
     se3d_particles *set = NULL;
     se3d_material material = {0, 0};
-    se3d_material_def stuff = se3d_material_def_default();
     se3d_clump_def def = se3d_clump_def_default();
     uint32_t index;
-    stuff.density = 2500.0;
-    stuff.stiffness = 1e4;
     def.count = 2;
     def.r = r;
     def.radius = radii;
-    se3d_status status = se3d_particles_create(w->system, NULL, &set);
-    status = status < 0 ? status : se3d_material_create(w->system, &stuff, &material);
+    se3d_status status = make_set(w, NULL, &material, &set);
     status = status < 0 ? status : se3d_particles_add_clump_template(set, &def, &index);
     if (status >= 0) {
         status = se3d_particles_add_clumps(set, 0, material, 2, at, NULL, NULL, NULL);

@@ -71,12 +71,7 @@ static void open_world(world *w, int rolling)
     static const uint32_t faces[6] = {0, 1, 2, 0, 2, 3};
     se3d_system_def def = se3d_system_def_default();
     se3d_material_def stuff = se3d_material_def_default();
-    se3d_body_def body = se3d_body_def_default();
-    se3d_tsda_def spring = se3d_tsda_def_default();
-    se3d_shape_def mesh = se3d_shape_def_default();
     se3d_material material;
-    se3d_force force;
-    se3d_shape shape;
     memset(w, 0, sizeof *w);
     w->allocator = support_counting_allocator(&w->counting);
     def.allocator = &w->allocator;
@@ -85,6 +80,7 @@ static void open_world(world *w, int rolling)
     stuff.stiffness = 2e3;
     stuff.rolling_friction = rolling ? 0.1 : 0.0;
     CHECK(se3d_material_create(w->system, &stuff, &material) == SE3D_OK);
+    se3d_body_def body = se3d_body_def_default();
     body.mass = 0.5;
     body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-3;
     CHECK(se3d_body_create(w->system, &body, &w->bucket) == SE3D_OK);
@@ -96,6 +92,8 @@ static void open_world(world *w, int rolling)
     for (int k = 0; k < 5; ++k) {
         add_shape(w, material, w->bucket, k == 0 ? bottom : k < 3 ? side : front, places[k]);
     }
+    se3d_shape_def mesh = se3d_shape_def_default();
+    se3d_shape shape;
     mesh.material = material;
     mesh.body = w->bucket;
     mesh.vertices = tray;
@@ -103,6 +101,8 @@ static void open_world(world *w, int rolling)
     mesh.triangles = faces;
     mesh.triangle_count = 2;
     CHECK(se3d_shape_create_mesh(w->system, &mesh, &shape) == SE3D_OK);
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    se3d_force force;
     CHECK(se3d_system_get_ground(w->system, &spring.body_i) == SE3D_OK);
     spring.body_j = w->bucket;
     spring.point_i[2] = 1.0;

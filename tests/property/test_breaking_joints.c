@@ -393,17 +393,34 @@ static void a_driver_of_signals_ends_with_its_joint(void)
     }
 }
 
+static void add_forces_on(world *w, se3d_constraint pin)
+{
+    se3d_force force;
+    se3d_rsda_def spring = se3d_rsda_def_default();
+    spring.joint = pin;
+    spring.k = 3.0;
+    MUST(w, se3d_force_create_rsda(w->system, &spring, &force));
+    se3d_friction_def friction = se3d_friction_def_default();
+    friction.joint = pin;
+    friction.limit = 1.0;
+    MUST(w, se3d_force_create_friction(w->system, &friction, &force));
+    se3d_stop_def stop = se3d_stop_def_default();
+    stop.joint = pin;
+    stop.upper = 0.01;
+    stop.k = 1e4;
+    MUST(w, se3d_force_create_stop(w->system, &stop, &force));
+    se3d_effort_def effort = se3d_effort_def_default();
+    effort.joint = pin;
+    effort.value = 4.0;
+    MUST(w, se3d_force_create_effort(w->system, &effort, &force));
+}
+
 /* All that can be made on the angle of a hinge, and a gear with another one. */
 static void load_hinge(world *w, se3d_constraint pin, se3d_constraint other,
                        se3d_constraint made[2])
 {
     se3d_driver_def drive = se3d_driver_def_default();
     se3d_coupler_def gear = se3d_coupler_def_default();
-    se3d_rsda_def spring = se3d_rsda_def_default();
-    se3d_friction_def friction = se3d_friction_def_default();
-    se3d_stop_def stop = se3d_stop_def_default();
-    se3d_effort_def effort = se3d_effort_def_default();
-    se3d_force force;
     drive.joint = pin;
     MUST(w, se3d_function_create_expression(w->system, "sin(t)", &drive.function));
     MUST(w, se3d_driver_create(w->system, &drive, &made[0]));
@@ -413,16 +430,7 @@ static void load_hinge(world *w, se3d_constraint pin, se3d_constraint other,
     gear.ratio[1] = -2.0;
     gear.count = 2;
     MUST(w, se3d_joint_create_coupler(w->system, &gear, &made[1]));
-    spring.joint = friction.joint = stop.joint = effort.joint = pin;
-    spring.k = 3.0;
-    MUST(w, se3d_force_create_rsda(w->system, &spring, &force));
-    friction.limit = 1.0;
-    MUST(w, se3d_force_create_friction(w->system, &friction, &force));
-    stop.upper = 0.01;
-    stop.k = 1e4;
-    MUST(w, se3d_force_create_stop(w->system, &stop, &force));
-    effort.value = 4.0;
-    MUST(w, se3d_force_create_effort(w->system, &effort, &force));
+    add_forces_on(w, pin);
 }
 
 /* A bar on a hinge that broke, and a pendulum. */

@@ -3,6 +3,7 @@
  * began it, a new one, one of a clone, or the first one after a snapshot was restored. By every
  * method, at equal steps and by error control, with redundant rows, friction and contact. */
 #include "check.h"
+#include "support/ball_on_floor.h"
 #include "support/models.h"
 
 #include <stdlib.h>
@@ -15,21 +16,8 @@ static const char *const mechanisms[MECHANISMS] = {"plain", "redundant", "fricti
 
 static void add_ball(se3d_system *system)
 {
-    se3d_material_def wood = se3d_material_def_default();
-    se3d_shape_def def = se3d_shape_def_default();
-    se3d_body_def ball = se3d_body_def_default();
-    se3d_shape shape;
-    wood.density = 1000.0;
-    wood.stiffness = 1e5;
-    CHECK(se3d_material_create(system, &wood, &def.material) == SE3D_OK);
-    CHECK(se3d_shape_create_plane(system, &def, &shape) == SE3D_OK);
-    ball.mass = 1.0;
-    ball.inertia[0] = ball.inertia[1] = ball.inertia[2] = 0.004;
-    ball.position[2] = 0.105;
-    ball.velocity[0] = 0.2;
-    CHECK(se3d_body_create(system, &ball, &def.body) == SE3D_OK);
-    def.radius = 0.1;
-    CHECK(se3d_shape_create_sphere(system, &def, &shape) == SE3D_OK);
+    const double v[3] = {0.2, 0.0, 0.0};
+    (void)add_ball_of(system, add_floor_of(system, 1000.0, 1e5, 0.0), 0.004, 0.105, v);
 }
 
 /* Two shafts behind each other on universal joints, a third on a ball, which turn many times. */

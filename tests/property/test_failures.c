@@ -3,6 +3,7 @@
  * bit, and the run goes on from it as if nothing had happened. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/ball_on_floor.h"
 #include "support/methods.h"
 
 /* Counts the calls of all callbacks, and fails at one of them, or from it on; or what it writes is
@@ -147,18 +148,7 @@ static void add_event(world *w)
 /* A floor under the second body, which it meets in the run. */
 static void add_floor(const world *w)
 {
-    se3d_material_def stuff = se3d_material_def_default();
-    se3d_shape_def shape = se3d_shape_def_default();
-    se3d_shape made;
-    stuff.density = 1.0;
-    stuff.stiffness = 1e4;
-    CHECK(!se3d_material_create(w->system, &stuff, &shape.material));
-    shape.position[2] = -0.3;
-    CHECK(!se3d_shape_create_plane(w->system, &shape, &made));
-    shape.position[2] = 0.0;
-    shape.body = w->b;
-    shape.radius = 0.2;
-    CHECK(!se3d_shape_create_sphere(w->system, &shape, &made));
+    add_sphere_on(w->system, w->b, add_floor_of(w->system, 1.0, 1e4, -0.3), 0.2);
 }
 
 /* Particles in two layers on the bar, which they leave in the run, and a mesh beside it. */

@@ -5,6 +5,7 @@
  */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/ball_on_floor.h"
 
 #include <stdlib.h>
 
@@ -83,25 +84,8 @@ static void add_slide(scene *s)
 
 static void add_ball(scene *s)
 {
-    se3d_material_def stuff = se3d_material_def_default();
-    se3d_shape_def shape = se3d_shape_def_default();
-    se3d_body_def body = se3d_body_def_default();
-    se3d_shape made;
-    stuff.density = 1000.0;
-    stuff.stiffness = 1e4;
-    CHECK(!se3d_material_create(s->system, &stuff, &shape.material));
-    shape.position[2] = -1.0;
-    CHECK(!se3d_shape_create_plane(s->system, &shape, &made));
-    body.mass = 1.0;
-    body.inertia[0] = body.inertia[1] = body.inertia[2] = 0.004;
-    body.position[2] = -0.8995;
-    body.velocity[0] = 0.1;
-    body.velocity[2] = -0.2;
-    CHECK(!se3d_body_create(s->system, &body, &s->ball));
-    shape.body = s->ball;
-    shape.position[2] = 0.0;
-    shape.radius = 0.1;
-    CHECK(!se3d_shape_create_sphere(s->system, &shape, &made));
+    const double v[3] = {0.1, 0.0, -0.2};
+    s->ball = add_ball_of(s->system, add_floor_of(s->system, 1000.0, 1e4, -1.0), 0.004, -0.8995, v);
 }
 
 static void query(const scene *s)

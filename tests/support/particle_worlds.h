@@ -192,41 +192,44 @@ static inline void particle_bonds(se3d_system *system, se3d_particles *set)
     CHECK(!se3d_particles_bond_shape(set, &def, floor, -1, &count, NULL) && count > 0);
 }
 
-/* A box that falls onto the particles, and a ram that moves as it is told. */
-static inline void particle_bodies(se3d_system *system, se3d_material material)
+static inline se3d_body particle_box(se3d_system *system, se3d_material material, double x)
 {
-    static const char *const variables[] = {"t"};
     se3d_body_def body = se3d_body_def_default();
     se3d_shape_def shape = se3d_shape_def_default();
-    se3d_joint_def joint = se3d_joint_def_default();
-    se3d_function_def f = se3d_function_def_default();
-    se3d_driver_def driver = se3d_driver_def_default();
-    se3d_constraint slide;
     se3d_shape made;
     body.mass = 0.5;
     body.inertia[0] = body.inertia[1] = body.inertia[2] = 1e-3;
+    body.position[0] = x;
     body.position[2] = 0.16;
     CHECK(!se3d_body_create(system, &body, &shape.body));
     shape.material = material;
     shape.size[0] = shape.size[1] = shape.size[2] = 0.06;
     CHECK(!se3d_shape_create_box(system, &shape, &made));
-    body.position[0] = -0.15;
-    CHECK(!se3d_body_create(system, &body, &shape.body));
-    CHECK(!se3d_shape_create_box(system, &shape, &made));
+    return shape.body;
+}
+
+/* A box that falls onto the particles, and a ram that moves as it is told. */
+static inline void particle_bodies(se3d_system *system, se3d_material material)
+{
+    static const char *const variables[] = {"t"};
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_function_def f = se3d_function_def_default();
+    se3d_driver_def driver = se3d_driver_def_default();
+    (void)particle_box(system, material, 0.0);
+    joint.body_j = particle_box(system, material, -0.15);
     CHECK(!se3d_system_get_ground(system, &joint.body_i));
-    joint.body_j = shape.body;
     joint.point_i[2] = 0.16;
     joint.point_i[0] = -0.15;
     joint.axis_i[0] = joint.axis_j[0] = 1.0;
     joint.axis_i[2] = joint.axis_j[2] = 0.0;
-    CHECK(!se3d_joint_create_prismatic(system, &joint, &slide));
+    CHECK(!se3d_joint_create_prismatic(system, &joint, &driver.joint));
     f.expression = "0.5*t";
     f.variables = variables;
     f.variable_count = 1;
-    driver.joint = slide;
     driver.coordinate = SE3D_JOINT_COORDINATE_DISPLACEMENT;
     CHECK(!se3d_function_create(system, &f, &driver.function));
-    CHECK(!se3d_driver_create(system, &driver, &slide));
+    se3d_constraint made;
+    CHECK(!se3d_driver_create(system, &driver, &made));
 }
 
 /* Spheres in a cell that is sheared and squeezed, and then keeps a pressure. */

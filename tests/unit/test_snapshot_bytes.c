@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "check.h"
 #include "model/model.h"
+#include "support/ball_on_floor.h"
 #include "support/damage.h"
 #include "support/models.h"
 
@@ -20,20 +21,8 @@ typedef struct world {
 
 static void add_ball(se3d_system *system, double height)
 {
-    se3d_material_def stuff = se3d_material_def_default();
-    se3d_shape_def shape = se3d_shape_def_default();
-    se3d_body_def ball = se3d_body_def_default();
-    se3d_shape made;
-    stuff.density = 1000.0;
-    stuff.stiffness = 1e4;
-    CHECK(!se3d_material_create(system, &stuff, &shape.material));
-    CHECK(!se3d_shape_create_plane(system, &shape, &made));
-    ball.mass = 1.0;
-    ball.inertia[0] = ball.inertia[1] = ball.inertia[2] = 0.01;
-    ball.position[2] = height;
-    CHECK(!se3d_body_create(system, &ball, &shape.body));
-    shape.radius = 0.1;
-    CHECK(!se3d_shape_create_sphere(system, &shape, &made));
+    const double v[3] = {0.0, 0.0, 0.0};
+    (void)add_ball_of(system, add_floor_of(system, 1000.0, 1e4, 0.0), 0.01, height, v);
 }
 
 static void open_world(world *w, int32_t method)
