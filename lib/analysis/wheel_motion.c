@@ -2,6 +2,7 @@
 #include "analysis/wheel_motion.h"
 
 #include "base/alloc.h"
+#include "force/driver_rate.h"
 #include "force/measure.h"
 #include "joint/equation.h"
 #include "joint/user.h"
@@ -159,6 +160,9 @@ static se3d_status eval_curve(const equations *e, const se3di_constraint *constr
 {
     double result[3];
     double jet[3] = {0.0, 0.0, 0.0};
+    if (se3di_is_driver_rate(constraint)) {
+        return se3di_driver_rate_curve(e->view, constraint, gamma);
+    }
     SE3DI_TRY(se3di_equation_eval(e->view, constraint, r, SE3D_FORMULATION_ROMEGA, result));
     if (!se3di_is_user(constraint)) {
         SE3DI_TRY(se3di_row_prescribed(e->view, &e->view->rows[constraint->row_begin + r], jet));

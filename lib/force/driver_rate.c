@@ -333,6 +333,28 @@ double se3di_driver_rate_coordinate(const se3di_model *model, const se3di_constr
     return own.value;
 }
 
+se3d_status se3di_driver_rate_curve(const se3di_model *model, const se3di_constraint *constraint,
+                                    double *gamma)
+{
+    rate_law l;
+    double bends[LEAVES] = {0.0}, moves[LEAVES] = {0.0}, speeds[LEAVES] = {0.0}, both[LEAVES];
+    double first[3], second[3][3];
+    SE3DI_TRY(begin(model, constraint, model->time, &l));
+    for (uint32_t k = 0; k < l.count; ++k) {
+        const leaf *one = &l.leaves[k];
+        bends[k] = one->is_velocity ? one->pace : 0.0;
+        speeds[k] = one->is_velocity ? one->of.rate : 0.0;
+        moves[k] = one->is_velocity || one->is_state ? 0.0 : one->pace;
+        both[k] = moves[k] + speeds[k];
+    }
+    SE3DI_TRY(along(model, l.function, l.t, 0.0, bends, first));
+    SE3DI_TRY(along(model, l.function, l.t, 0.0, moves, second[0]));
+    SE3DI_TRY(along(model, l.function, l.t, 0.0, speeds, second[1]));
+    SE3DI_TRY(along(model, l.function, l.t, 0.0, both, second[2]));
+    *gamma = first[1] - l.own.curve + 0.5 * (second[2][2] - second[0][2] - second[1][2]);
+    return SE3D_OK;
+}
+
 int se3di_driver_rate_draft(const se3di_model *model, uint32_t joint, int32_t coordinate,
                             int32_t function, const char *name, se3di_draft *draft)
 {

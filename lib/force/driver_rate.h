@@ -24,4 +24,9 @@ uint32_t se3di_find_driver_rate(const se3di_model *model);
 /* The coordinate that it drives, which counts turns. */
 double se3di_driver_rate_coordinate(const se3di_model *model, const se3di_constraint *constraint);
 
+/* gamma of the row in a motion at the velocities of the model in which velocities follow each other
+ * as in the row, x' = f_v v, and time and states stand: f_v v'|a=0 + (f_v)_s s' v - u.x_qq u */
+se3d_status se3di_driver_rate_curve(const se3di_model *model, const se3di_constraint *constraint,
+                                    double *gamma);
+
 #endif

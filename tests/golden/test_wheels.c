@@ -3,6 +3,7 @@
  * corners, the slope of what lifts a wheel at its equilibria. docs/theory/wheel.md */
 #include "support/text_model.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -315,6 +316,65 @@ static void ackermann_is_about_one_centre(void)
     text_model_close(&t);
 }
 
+static measures measure_rack(const char *rack)
+{
+    char text[3000];
+    snprintf(text, sizeof text,
+             "se3d: 1\n"
+             "states: [{name: s, type: ode, rate: '1', initial: 0}]\n"
+             "bodies:\n"
+             "  - {name: chassis, fixed: true}\n"
+             "  - {name: rack, mass: 1, inertia: [1, 1, 1], position: [0.1, 0.2, 0.2]}\n"
+             "  - {name: low, mass: 1, inertia: [1, 1, 1], position: [0, 0.4, 0.13]}\n"
+             "  - {name: up, mass: 1, inertia: [1, 1, 1], position: [0, 0.4, 0.34]}\n"
+             "  - {name: upright, mass: 8, inertia: [1, 1, 1], position: [0, 0.6, 0.25]}\n"
+             "joints:\n"
+             "  - {name: slide, type: prismatic, body_i: chassis, body_j: rack,\n"
+             "     at: [0.1, 0.2, 0.2], axis: [0, 1, 0]}\n"
+             "  - {name: pin, type: revolute, body_i: chassis, body_j: low, at: [0, 0.2, 0.14],\n"
+             "     axis: [1, 0, 0]}\n"
+             "  - {type: revolute, body_i: chassis, body_j: up, at: [0, 0.28, 0.33],\n"
+             "     axis: [1, 0, 0]}\n"
+             "  - {type: spherical, body_i: low, body_j: upright, at: [0, 0.55, 0.13]}\n"
+             "  - {type: spherical, body_i: up, body_j: upright, at: [0, 0.53, 0.36]}\n"
+             "  - {type: distance, body_i: rack, body_j: upright, at: [0.1, 0.2, 0.2],\n"
+             "     at_2: [0.1, 0.56, 0.2], distance: 0.36}\n"
+             "drivers: [{joint: slide, %s}]\n"
+             "forces:\n"
+             "  - {name: coil, type: tsda, body_i: chassis, body_j: upright, at: [0, 0.3, 0.5],\n"
+             "     at_2: [0.05, 0.6, 0.2], k: 30000, l0: 0.5}\n"
+             "wheels:\n"
+             "  - {name: w, body: upright, chassis: chassis, at: [0, 0.6, 0.25], radius: 0.25,\n"
+             "     lower: [0, 0.55, 0.13], upper: [0, 0.53, 0.36], spring: coil}\n"
+             "analysis: {type: dynamics, duration: 1, step: 0.1}\n",
+             rack);
+    text_model t = text_model_open(text, -1, -1, 0.0);
+    const measures found = measure(t.system, 0);
+    text_model_close(&t);
+    return found;
+}
+
+/* A rack that stands, and one that sets off from there at a rate: neither is part of the travel;
+ * one that follows the arm by its angle, and by its rate, is. */
+static void a_rack_on_a_rate_measures_as_one_on_a_value(void)
+{
+    static const char *const racks[][2] = {
+        {"value: 0", "rate: '(3 + s.value)*t + 2*s.value'"},
+        {"value: '0.1*sin(1 + pin.angle) - 0.1*sin(1)'",
+         "rate: '(0.1*cos(1 + pin.angle) + s.value)*pin.rate + 7*t'"}};
+    measures found[2][2];
+    for (int k = 0; k < 4; ++k) {
+        found[k / 2][k % 2] = measure_rack(racks[k / 2][k % 2]);
+    }
+    for (int k = 0; k < 2 * SE3D_WHEEL_MEASURES; ++k) {
+        const int m = k / 2;
+        const double a = found[k % 2][0].of[m], b = found[k % 2][1].of[m];
+        CHECK((isnan(a) && isnan(b)) || fabs(a - b) <= 1e-10 * (1.0 + fabs(a)));
+    }
+    CHECK(fabs(found[1][0].of[SE3D_WHEEL_TOE_GRADIENT] - found[0][0].of[SE3D_WHEEL_TOE_GRADIENT]) >
+          1e-3);
+}
+
 static void what_a_wheel_uses_stays(void)
 {
     text_model t = text_model_open(driven, -1, -1, 0.0);
@@ -380,6 +440,7 @@ int main(void)
     RUN(the_wheel_rate_is_the_slope_of_equilibria);
     RUN(a_trailing_arm_turns_about_its_pin);
     RUN(ackermann_is_about_one_centre);
+    RUN(a_rack_on_a_rate_measures_as_one_on_a_value);
     RUN(what_a_wheel_uses_stays);
     RUN(mistakes_of_wheels_are_named);
     return check_finish();
