@@ -134,6 +134,21 @@ typedef enum se3d_shown {
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown);
 
+/* Bring the system of a solver to where the solution that another system is at leads if its data
+ * become those of the first one, by one step of Newton's method with the Jacobian of the other: the
+ * systems have the same bodies, constraints and forces, with other masses, points or values. States
+ * that follow so have the derivatives with respect to these data of the exact solutions (implicit
+ * function theorem); the solutions themselves they approach as the data do. Kinematics, inverse
+ * dynamics (but works), and equilibria, in r-omega, without friction, contacts, particles and
+ * redundant constraints. docs/theory/sensitivities.md
+ * @param[in] from  a solver of the same analysis that has come to a solution, of another system,
+ *                  which stays as it is
+ * @return OK, NULL, INVALID_ARGUMENT (the same system), STATE (a system is gone, `from` has no
+ *         solution, another structure), UNSUPPORTED, NO_CONVERGENCE (an equilibrium leaves a
+ *         freedom), SINGULAR, NOT_FINITE, CALLBACK, NO_MEMORY; then the state is of no use.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_follow(se3d_solver *solver, se3d_solver *from);
+
 /* Make one step that moves the time on; n steps come to n h, to rounding. A step that is too long
  * for an impact on a stop or between shapes, and by explicit methods for what rests there, returns
  * STEP_SIZE with a length that would do: se3d_solver_run chooses its own. Shapes that convex finds

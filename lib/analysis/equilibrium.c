@@ -145,7 +145,7 @@ static int solve_step(statics *s, int *too_long)
     int32_t negative;
     *too_long = 0;
     if (se3di_static_newton_factor(&s->newton, s->damping, &negative) < 0 || negative > 0 ||
-        se3di_static_newton_solve(&s->newton, s->rho, s->step) < 0) {
+        se3di_static_newton_solve(&s->newton, s->rho, NULL, s->step) < 0) {
         return 0;
     }
     s->length = measure_step(s);

@@ -37,6 +37,8 @@ typedef struct se3di_run {
     se3di_start_change start; /* of the last start that the user gave */
     int32_t told_redundant;   /* the log was told of these equations, */
     int32_t told_left_out;    /* and that rows that are left out are off */
+    uint64_t followed_at;     /* factorisations there were when others followed this run, */
+    double followed_time;     /* and where [s] (analysis/follow.h) */
     const se3di_integrator *told_reach;  /* the log was told what this method reaches, */
     const se3di_integrator *told_bodies; /* that it integrates bodies, not joint coordinates, */
     const se3di_integrator *told_step;   /* which step it takes if none is given, */

@@ -418,7 +418,8 @@ int se3di_static_newton_is_strict(se3di_static_newton *newton)
     return status >= 0 && negative == 0;
 }
 
-se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho, double *dq)
+se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho,
+                                      const double *c, double *dq)
 {
     se3di_equations *equations = newton->equations;
     const se3di_kkt_values values = {.body = newton->tangent.M,
@@ -431,7 +432,7 @@ se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double 
     ++equations->counters.solves;
     SE3DI_TRY(se3di_kkt_factor(newton->full, &values, NULL));
     se3d_status status =
-        se3di_kkt_solve(newton->full, &values, rho, NULL, dq, newton->reaction, &info);
+        se3di_kkt_solve(newton->full, &values, rho, c, dq, newton->reaction, &info);
     return status == SE3D_ERR_NO_CONVERGENCE && !(info.residual_b > 1e-3) ? SE3D_OK : status;
 }
 

@@ -64,8 +64,10 @@ se3d_status se3di_static_newton_eval(se3di_static_newton *newton, double t, cons
 se3d_status se3di_static_newton_factor(se3di_static_newton *newton, double s, int32_t *negative);
 /* Whether every freedom has positive curvature, beyond rounding. What was factored is lost. */
 int se3di_static_newton_is_strict(se3di_static_newton *newton);
-/* dq for rho, with the damping last factored by. */
-se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho, double *dq);
+/* dq for rho, and c of the constraints (NULL: 0), with the damping last factored by; dlambda is
+ * `reaction`, with what P makes of c. */
+se3d_status se3di_static_newton_solve(se3di_static_newton *newton, const double *rho,
+                                      const double *c, double *dq);
 /* dq . (s W + F) dq */
 double se3di_static_newton_measure(const se3di_static_newton *newton, double s, const double *dq);
 

@@ -2,6 +2,8 @@
 /* Solvers: validation and delegation to a run. */
 #include "system/solver.h"
 
+#include "analysis/follow.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -195,6 +197,18 @@ se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown)
     }
     solver->run.shows_motion = shown == SE3D_SHOWN_MOTION;
     return SE3D_OK;
+}
+
+se3d_status se3d_solver_follow(se3d_solver *solver, se3d_solver *from)
+{
+    SE3DI_EDIT_OF(solver);
+    SE3DI_EDIT_OF(from);
+    if (solver->system == from->system) {
+        return SE3DI_FAIL_OF(solver->system, "from", SE3D_ERR_INVALID_ARGUMENT,
+                             " is a solver of the same system, must be of another one");
+    }
+    se3di_work_begin(solver->system);
+    return se3di_work_end(solver->system, se3di_run_follow(&solver->run, &from->run));
 }
 
 se3d_status se3d_solver_run(se3d_solver *solver, double t_end)

@@ -115,6 +115,25 @@ static se3d_status call_solver_create(arguments *a)
 }
 CALL(solver_run, a->solver, a->number)
 CALL(solver_set_shown, a->solver, (int32_t)a->index)
+/* Of two empty systems: those of the arguments have nothing that could be followed. */
+static se3d_status call_solver_follow(arguments *a)
+{
+    se3d_system *systems[2] = {NULL, NULL};
+    se3d_solver *solvers[2] = {NULL, NULL};
+    se3d_solver_def def = se3d_solver_def_default();
+    def.analysis = SE3D_ANALYSIS_KINEMATICS;
+    for (int k = 0; k < 2 && a->solver; ++k) {
+        CHECK(!se3d_system_create(NULL, &systems[k]));
+        CHECK(!se3d_solver_create(systems[k], &def, &solvers[k]));
+        CHECK(!se3d_solver_run(solvers[k], 0.0));
+    }
+    const se3d_status status = se3d_solver_follow(solvers[0], solvers[1]);
+    for (int k = 0; k < 2; ++k) {
+        se3d_solver_destroy(solvers[k]);
+        se3d_system_destroy(systems[k]);
+    }
+    return status;
+}
 CALL(solver_step, a->solver, a->number)
 CALL(solver_get_stats, a->solver, a->out[0])
 CALL(solver_get_start_change, a->solver, a->out[0])
@@ -581,6 +600,7 @@ static const row rows[] = {
     {"se3d_solver_create", call_solver_create, "SDh0", define_solver, solver_fields},
     {"se3d_solver_run", call_solver_run, "vn", NULL, NULL},
     {"se3d_solver_set_shown", call_solver_set_shown, "vx", NULL, NULL},
+    {"se3d_solver_follow", call_solver_follow, "v", NULL, NULL},
     {"se3d_solver_step", call_solver_step, "vn", NULL, NULL},
     {"se3d_solver_get_stats", call_solver_get_stats, "vo0", NULL, NULL},
     {"se3d_solver_get_start_change", call_solver_get_start_change, "vo0", NULL, NULL},

@@ -325,8 +325,10 @@ static se3d_status sample(se3di_runner *r, se3di_output_file *file, double time)
         return SE3D_OK;
     }
     if (r->watch) {
-        const se3d_status status = r->watch->take(r->watch->ctx, file->row);
-        return status < 0 ? fail(r, status, "out of memory") : status;
+        se3d_status status =
+            r->watch->reach ? r->watch->reach(r->watch->ctx, r->solver, time) : SE3D_OK;
+        status = status < 0 ? status : r->watch->take(r->watch->ctx, file->row);
+        return status < 0 ? fail(r, status, se3d_status_get_text(status)) : status;
     }
     se3di_csv_put_row(&file->csv, file->row);
     return file->csv.failure ? fail_file(r, file) : SE3D_OK;

@@ -12,6 +12,8 @@ typedef struct se3di_watch {
     size_t analysis;                  /* index of that whose rows are wanted */
     /* Take a row: the time, then the numbers of the channels. @return OK, NO_MEMORY */
     se3d_status (*take)(void *ctx, const double *row);
+    /* Told of the solver that has come to the state of a row, before it is taken; NULL: nobody. */
+    se3d_status (*reach)(void *ctx, se3d_solver *solver, double time);
     se3d_event_callback event; /* of the events of that analysis; NULL: none */
     /* Take a mode of that analysis, the slowest first, from 0; NULL: none. */
     void (*mode)(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue);

@@ -160,12 +160,15 @@ static se3d_status eval_beside(se3d_study *study, const se3di_study_point *point
 
 /* One more step in all tables. */
 static se3d_status take_step(se3d_study *study, const se3di_study_point *point, double h,
-                             const double *centre, tables *all, double *sides[2])
+                             const double *centre, tables *all, double *const sides[2])
 {
     const double p = point->values[point->which].value.v[0];
     const double apart[2] = {p - (p - h), (p + h) - p};
-    se3d_status status = eval_beside(study, point, p, -h, sides[0]);
-    if (status >= 0) {
+    se3d_status status = SE3D_OK;
+    if (!point->beside) {
+        status = eval_beside(study, point, p, -h, sides[0]);
+    }
+    if (!point->beside && status >= 0) {
         status = eval_beside(study, point, p, h, sides[1]);
     }
     for (size_t k = 0; k < study->entry->measure_count && status >= 0; ++k) {
@@ -176,14 +179,15 @@ static se3d_status take_step(se3d_study *study, const se3di_study_point *point, 
 }
 
 static se3d_status take_steps(se3d_study *study, const se3di_study_point *point,
-                              const double *centre, tables *all, double *sides[2])
+                              const double *centre, tables *all, double *const sides[2])
 {
-    double h = ldexp(1.0, ilogb(point->step));
+    double h = se3di_study_first_step(point);
     size_t rounds = point->levels;
     se3d_status status = SE3D_OK;
     bool open = true;
     for (size_t k = 0; k < rounds && open && status >= 0; ++k, h *= 0.5) {
-        status = take_step(study, point, h, centre, all, sides);
+        status =
+            take_step(study, point, h, centre, all, point->beside ? point->beside + 2 * k : sides);
         size_t failed = 0; /* on one side at least */
         open = false;
         for (size_t i = 0; i < study->entry->measure_count; ++i) {
@@ -191,9 +195,14 @@ static se3d_status take_steps(se3d_study *study, const se3di_study_point *point,
             open = open || wants;
             failed += wants && all[i].both.count == 0;
         }
-        rounds += failed > 0 && rounds < point->levels + RETRIES;
+        rounds += failed > 0 && !point->beside && rounds < point->levels + RETRIES;
     }
     return status;
+}
+
+double se3di_study_first_step(const se3di_study_point *point)
+{
+    return ldexp(1.0, ilogb(point->step));
 }
 
 static void begin_table(tables *t)

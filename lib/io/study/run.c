@@ -12,18 +12,11 @@
 #include "io/document/value.h"
 #include "io/run/watch.h"
 #include "io/study/inplace.h"
-#include "io/study/study.h"
+#include "io/study/trial.h"
 
 #define SHARP 1e-11 /* tolerance of runs whose differences count */
 
-typedef struct trial {
-    se3d_study *study;
-    se3d_model *model;
-    bool is_set;       /* the model is that of the study's prototype */
-    se3di_iopool pool; /* of this sample */
-    size_t *places;    /* [source_count] in a row */
-    se3d_model_error *error;
-} trial;
+typedef se3di_trial trial;
 
 static se3d_status fail(const trial *t, se3d_status status, const char *text)
 {
@@ -44,7 +37,7 @@ static se3d_status make_model(trial *t, const se3di_named *values, size_t count)
 }
 
 /* What a row is made of. */
-static se3d_status find_channels(trial *t, se3di_output_entry *output)
+se3d_status se3di_trial_find_channels(trial *t, se3di_output_entry *output)
 {
     const size_t count = t->study->entry->source_count;
     const se3di_study_channel *measured = t->model->measured;
@@ -64,12 +57,18 @@ static se3d_status find_channels(trial *t, se3di_output_entry *output)
     return SE3D_OK;
 }
 
-static se3d_status take_row(void *ctx, const double *row)
+void se3di_trial_begin(trial *t)
 {
-    const trial *t = ctx;
+    for (size_t k = 0; k < t->study->entry->measure_count; ++k) {
+        se3di_tally_begin(&t->tallies[k], &t->model->measures[k]);
+    }
+}
+
+se3d_status se3di_trial_take_row(trial *t, const double *row)
+{
     se3d_study *study = t->study;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
-        se3di_tally *tally = &study->tallies[k];
+        se3di_tally *tally = &t->tallies[k];
         const se3di_study_measure *m = tally->measure;
         if (m->source == SE3DI_STUDY_NO_SOURCE) {
             continue;
@@ -87,6 +86,17 @@ static se3d_status take_row(void *ctx, const double *row)
     return SE3D_OK;
 }
 
+static se3d_status take_row(void *ctx, const double *row)
+{
+    return se3di_trial_take_row(ctx, row);
+}
+
+static se3d_status reach(void *ctx, se3d_solver *solver, double time)
+{
+    const trial *t = ctx;
+    return t->listener->reach(t->listener->ctx, solver, time);
+}
+
 static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_record *record)
 {
     const trial *t = ctx;
@@ -101,13 +111,13 @@ static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_r
             continue;
         }
         if (m->source == SE3DI_STUDY_NO_SOURCE) {
-            se3di_tally_find(&study->tallies[k], record->time);
+            se3di_tally_find(&t->tallies[k], record->time);
             continue;
         }
         const se3di_study_channel *from = &t->model->measured[m->source];
         status = se3di_channel_eval(&from->channel, &sample, value);
         if (status >= 0) {
-            se3di_tally_find(&study->tallies[k], value[from->component]);
+            se3di_tally_find(&t->tallies[k], value[from->component]);
         }
     }
     se3di_sample_destroy(&sample);
@@ -120,9 +130,9 @@ static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue
     for (size_t k = 0; k < t->study->entry->measure_count; ++k) {
         const se3di_study_measure *m = &t->model->measures[k];
         if (m->mode > 0.0 && (size_t)m->mode == index + 1) {
-            se3di_tally_find(&t->study->tallies[k], m->reduction == SE3DI_REDUCE_FREQUENCY
-                                                        ? eigenvalue->frequency
-                                                        : eigenvalue->damping);
+            se3di_tally_find(&t->tallies[k], m->reduction == SE3DI_REDUCE_FREQUENCY
+                                                 ? eigenvalue->frequency
+                                                 : eigenvalue->damping);
         }
     }
 }
@@ -162,8 +172,7 @@ static se3d_status eval_expression(trial *t, size_t index, const double *measure
     return status == SE3D_ERR_NO_MEMORY ? status : SE3D_OK;
 }
 
-/* All measures at the end of the run. */
-static se3d_status conclude(trial *t, double *measures)
+se3d_status se3di_trial_conclude(trial *t, double *measures)
 {
     const se3d_study *study = t->study;
     se3d_status result = SE3D_OK;
@@ -174,7 +183,7 @@ static se3d_status conclude(trial *t, double *measures)
         if (m->reduction == SE3DI_REDUCE_EXPRESSION) {
             status = eval_expression(t, k, measures, &measures[k]);
         } else {
-            measures[k] = se3di_tally_get(&study->tallies[k], &problem);
+            measures[k] = se3di_tally_get(&t->tallies[k], &problem);
         }
         if (status < 0) {
             return fail(t, status, "out of memory");
@@ -197,7 +206,7 @@ static bool is_of_high_order(int32_t method)
 
 /* Let methods of high order hold their errors near rounding, if the user has not asked for another
  * tolerance. Those of second order would take for ever. */
-static void sharpen(const trial *t)
+void se3di_trial_sharpen(const trial *t)
 {
     const bool wanted =
         t->study->is_sharp && !t->study->entry->options.tolerance && !t->model->particles;
@@ -219,29 +228,29 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
     how.interrupt_ctx = study->interrupt_ctx;
     se3d_status status = make_model(t, values, count);
     if (status >= 0) {
-        status = find_channels(t, &output);
+        status = se3di_trial_find_channels(t, &output);
     }
     if (status < 0) {
         return status;
     }
-    sharpen(t);
-    for (size_t k = 0; k < study->entry->measure_count; ++k) {
-        se3di_tally_begin(&study->tallies[k], &t->model->measures[k]);
-    }
+    se3di_trial_sharpen(t);
+    se3di_trial_begin(t);
     const se3di_watch watch = {.output = &output,
                                .analysis = study->analysis,
                                .take = take_row,
+                               .reach = t->listener ? reach : NULL,
                                .event = take_event,
                                .mode = take_mode,
                                .ctx = t};
     status = se3di_model_watch(t->model, &watch, &how, t->error);
-    return status < 0 ? status : conclude(t, measures);
+    return status < 0 ? status : se3di_trial_conclude(t, measures);
 }
 
-se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
-                            double *measures, se3d_model_error *error)
+se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, size_t count,
+                                 const se3di_row_listener *listener, double *measures,
+                                 se3d_model_error *error)
 {
-    trial t = {.study = study, .error = error};
+    trial t = {.study = study, .tallies = study->tallies, .listener = listener, .error = error};
     memset(error, 0, sizeof *error);
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;
@@ -261,4 +270,10 @@ se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t
     study->is_running = false;
     se3di_floats_restore(host);
     return status > 0 ? SE3D_OK : status;
+}
+
+se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
+                            double *measures, se3d_model_error *error)
+{
+    return se3di_study_run_with(study, values, count, NULL, measures, error);
 }

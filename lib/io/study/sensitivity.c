@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "io/document/document.h"
-#include "io/study/study.h"
+#include "io/study/follow.h"
 
 #define SHARE 0.05 /* of a parameter, or of what it varies by: the first step */
 
@@ -97,16 +97,22 @@ static se3d_status differentiate(se3d_study *study, size_t index, double *deriva
     const char *name = study->entry->sensitivities[index];
     const se3di_amount *amount = se3di_scope_find(study->model->scope, name);
     se3di_named value = {.name = name, .value = *amount};
-    se3d_status status = se3di_study_run(study, &value, 1, study->measures, error);
-    if (status < 0 && status != SE3D_ERR_NOT_FINITE) {
-        return status;
-    }
     const se3di_study_point point = {.values = &value,
                                      .count = 1,
                                      .which = 0,
                                      .step = se3di_study_get_step(study, name, amount->v[0]),
                                      .bounds = {-HUGE_VAL, HUGE_VAL},
                                      .levels = SE3DI_STUDY_LEVELS};
+    bool followed;
+    se3d_status status =
+        se3di_study_follow(study, &point, study->measures, derivatives, errors, &followed, error);
+    if (status < 0 || followed) {
+        return status;
+    }
+    status = se3di_study_run(study, &value, 1, study->measures, error);
+    if (status < 0 && status != SE3D_ERR_NOT_FINITE) {
+        return status;
+    }
     const se3d_status done =
         se3di_study_differentiate(study, &point, study->measures, derivatives, errors);
     return done < 0 ? fail(study, error, done, se3d_status_get_text(done)) : status;

@@ -36,21 +36,33 @@ struct se3d_study {
     se3di_iopool reply_pool; /* of the last answer */
 };
 
+/* What is told of the solver that has come to the state of a row, before it is taken. */
+typedef struct se3di_row_listener {
+    se3d_status (*reach)(void *ctx, se3d_solver *solver, double time);
+    void *ctx;
+} se3di_row_listener;
+
 enum { SE3DI_STUDY_LEVELS = 9 };
 
 /* The place where a derivative is taken, and with respect to what. */
 typedef struct se3di_study_point {
     se3di_named *values; /* [count] of parameters; one of them is changed and put back */
     size_t count, which;
-    double step;      /* the first one; those behind it are halves */
-    double bounds[2]; /* nothing outside of them is run */
-    size_t levels;    /* how many steps, 1 to SE3DI_STUDY_LEVELS: two runs each, and more steps
+    double step;           /* the first one; those behind it are halves */
+    double bounds[2];      /* nothing outside of them is run */
+    double *const *beside; /* [2 levels] the measures below and above p at each step, as they are
+                            * known already; NULL: by runs */
+    size_t levels;         /* how many steps, 1 to SE3DI_STUDY_LEVELS: two runs each, and more steps
                        * if there are values on one side only */
 } se3di_study_point;
 
 /* Run the model with some parameters of it. @return as se3d_study_eval. */
 se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
                             double *measures, se3d_model_error *error);
+/* The same, with somebody who is told of its rows; NULL: nobody. */
+se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, size_t count,
+                                 const se3di_row_listener *listener, double *measures,
+                                 se3d_model_error *error);
 /* Read the model with some parameters of it; the caller destroys what was made, also if it failed.
  * @return OK, or why not: `error` says it */
 se3d_status se3di_study_read(se3d_study *study, const se3di_named *values, size_t count,
@@ -60,6 +72,8 @@ se3d_status se3di_study_read(se3d_study *study, const se3di_named *values, size_
  * @return OK, NO_MEMORY, INTERRUPTED */
 se3d_status se3di_study_differentiate(se3d_study *study, const se3di_study_point *point,
                                       const double *centre, double *derivatives, double *errors);
+/* The first step of a point: a power of two. */
+double se3di_study_first_step(const se3di_study_point *point);
 /* A first step for derivatives with respect to a parameter that has this value. */
 double se3di_study_get_step(const se3d_study *study, const char *name, double value);
 /* "# se3d study ...": what all tables of the study begin with, then the rest of the first line and

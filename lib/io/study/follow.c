@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The derivative by a parameter of a motion or an equilibrium that is determined follows from the
+ * implicit function theorem. Models with the parameter at p +- h, p +- h/2, ... are made; at each
+ * row of the one run their states are what se3d_solver_follow makes of its state. They are smooth
+ * functions of h with the derivative of the exact solution, free of the noise of iterations, and so
+ * are their rows and measures, whose slopes are extrapolated to h = 0 by the tables of
+ * differentiate.c. docs/theory/sensitivities.md */
+#include "io/study/follow.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "io/channel/sample.h"
+#include "io/study/trial.h"
+
+enum { LEVELS = 5, FOLLOWERS = 2 * LEVELS };
+#define SHARE 0.25 /* of the first step of differences of runs */
+
+typedef struct follower {
+    se3di_trial trial;
+    se3di_output_entry output;
+    se3di_sample sample;
+    se3d_solver *solver;
+    double *row;
+} follower;
+
+typedef struct followers {
+    follower of[FOLLOWERS];
+    size_t count;
+    bool has_failed;
+} followers;
+
+/* Whether rows are all that the measures are made of, and a state all that rows are. */
+static bool is_followable(const se3d_study *study)
+{
+    const se3d_model *model = study->model;
+    const se3di_analysis_entry *entry = &model->analyses[study->analysis];
+    const int32_t kind = entry->solver.analysis;
+    bool good = study->analysis == 0 && !entry->modes.file && !model->particles &&
+                model->event_count == 0 && model->guest_count == 0 &&
+                (kind == SE3D_ANALYSIS_KINEMATICS || kind == SE3D_ANALYSIS_INVERSE_DYNAMICS ||
+                 kind == SE3D_ANALYSIS_EQUILIBRIUM);
+    for (size_t k = 0; k < study->entry->measure_count && good; ++k) {
+        good = !study->entry->measures[k].event;
+    }
+    return good;
+}
+
+static void destroy(followers *all)
+{
+    for (size_t k = 0; k < all->count; ++k) {
+        follower *one = &all->of[k];
+        se3di_sample_destroy(&one->sample);
+        se3d_solver_destroy(one->solver);
+        se3d_model_destroy(one->trial.model);
+        se3di_iopool_destroy(&one->trial.pool);
+    }
+}
+
+/* Its channels, tallies and solver. */
+static se3d_status prepare(follower *one)
+{
+    se3di_trial *t = &one->trial;
+    const se3d_study *study = t->study;
+    const se3d_solver_def *def = &t->model->analyses[0].solver;
+    const se3d_status status = se3di_trial_find_channels(t, &one->output);
+    size_t columns = 1;
+    if (status < 0) {
+        return status;
+    }
+    for (size_t k = 0; k < one->output.count; ++k) {
+        columns += se3di_channel_get_width(&one->output.channels[k]);
+    }
+    one->row = se3di_iopool_array(&t->pool, columns, sizeof *one->row);
+    t->tallies = se3di_iopool_array(&t->pool, study->entry->measure_count, sizeof *t->tallies);
+    if (!one->row || !t->tallies) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3di_trial_begin(t);
+    return se3d_solver_create(t->model->system, def, &one->solver);
+}
+
+/* A model with the parameter at p + shift. */
+static se3d_status add(followers *all, se3d_study *study, const se3di_study_point *point,
+                       double shift, se3d_model_error *error)
+{
+    follower *one = &all->of[all->count++];
+    double *value = &point->values[point->which].value.v[0];
+    const double p = *value;
+    memset(one, 0, sizeof *one);
+    one->trial.study = study;
+    one->trial.error = error;
+    se3di_iopool_init(&one->trial.pool, &study->pool.allocator);
+    *value = p + shift;
+    se3d_status status =
+        se3di_study_read(study, point->values, point->count, &one->trial.model, error);
+    *value = p;
+    if (one->trial.model) {
+        se3di_sample_init(&one->sample, one->trial.model->system,
+                          &one->trial.model->pool.allocator);
+    }
+    return status < 0 ? status : prepare(one);
+}
+
+static bool is_within(const se3di_study_point *point, double h)
+{
+    const double p = point->values[point->which].value.v[0];
+    return p - h >= point->bounds[0] && p + h <= point->bounds[1];
+}
+
+static se3d_status create(followers *all, se3d_study *study, const se3di_study_point *point)
+{
+    se3d_model_error error;
+    double h = se3di_study_first_step(point);
+    se3d_status status = is_within(point, h) ? SE3D_OK : SE3D_ERR_UNSUPPORTED;
+    for (size_t k = 0; k < LEVELS && status >= 0; ++k, h *= 0.5) {
+        status = add(all, study, point, -h, &error);
+        status = status < 0 ? status : add(all, study, point, h, &error);
+    }
+    return status;
+}
+
+/* As se3di_model_watch makes a row of a run. */
+static se3d_status take_row(follower *one, se3d_solver *solver, double time)
+{
+    double *row = one->row;
+    se3d_status status = se3d_solver_follow(one->solver, solver);
+    if (status < 0) {
+        return status;
+    }
+    se3di_sample_renew(&one->sample, NULL);
+    *row++ = time;
+    for (size_t k = 0; k < one->output.count; ++k) {
+        double value[4];
+        status = se3di_channel_eval(&one->output.channels[k], &one->sample, value);
+        if (status < 0) {
+            return status;
+        }
+        const size_t width = se3di_channel_get_width(&one->output.channels[k]);
+        memcpy(row, value, width * sizeof *row);
+        row += width;
+    }
+    return se3di_trial_take_row(&one->trial, one->row);
+}
+
+static se3d_status take_rows(void *ctx, se3d_solver *solver, double time)
+{
+    followers *all = ctx;
+    for (size_t k = 0; k < all->count && !all->has_failed; ++k) {
+        const se3d_status status = take_row(&all->of[k], solver, time);
+        if (status == SE3D_ERR_NO_MEMORY) {
+            return status;
+        }
+        all->has_failed = status < 0;
+    }
+    return SE3D_OK;
+}
+
+/* The measures of all, and what they tell. */
+static se3d_status conclude(followers *all, se3d_study *study, const se3di_study_point *point,
+                            const double *centre, double *derivatives, double *errors)
+{
+    double *beside[FOLLOWERS];
+    se3di_study_point known = *point;
+    for (size_t k = 0; k < FOLLOWERS; ++k) {
+        se3di_trial *t = &all->of[k].trial;
+        beside[k] = se3di_iopool_array(&t->pool, study->entry->measure_count, sizeof **beside);
+        const se3d_status status =
+            beside[k] ? se3di_trial_conclude(t, beside[k]) : SE3D_ERR_NO_MEMORY;
+        if (status == SE3D_ERR_NO_MEMORY) {
+            return status;
+        }
+    }
+    known.beside = beside;
+    return se3di_study_differentiate(study, &known, centre, derivatives, errors);
+}
+
+/* Steps on one side of a measure's end may be too few. */
+static bool is_complete(const se3d_study *study, const double *measures, const double *derivatives)
+{
+    bool complete = true;
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        complete = complete && (isfinite(derivatives[k]) || !isfinite(measures[k]));
+    }
+    return complete;
+}
+
+se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point, double *measures,
+                               double *derivatives, double *errors, bool *done,
+                               se3d_model_error *error)
+{
+    followers all = {.count = 0, .has_failed = false};
+    const se3di_row_listener listener = {.reach = take_rows, .ctx = &all};
+    se3di_study_point near = *point;
+    *done = false;
+    if (!is_followable(study)) {
+        return SE3D_OK;
+    }
+    near.step *= SHARE;
+    near.levels = LEVELS;
+    se3d_status status = create(&all, study, &near);
+    if (status >= 0) {
+        status =
+            se3di_study_run_with(study, point->values, point->count, &listener, measures, error);
+        *done = !all.has_failed && (status >= 0 || status == SE3D_ERR_NOT_FINITE);
+    }
+    if (*done) {
+        const se3d_status told = conclude(&all, study, &near, measures, derivatives, errors);
+        status = told < 0 ? told : status;
+        *done = told < 0 || is_complete(study, measures, derivatives);
+    }
+    destroy(&all);
+    return *done || status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ? status
+                                                                                   : SE3D_OK;
+}

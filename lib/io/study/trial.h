@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* One model of a study that is measured: how its rows become measures. */
+#ifndef SE3D_IO_STUDY_TRIAL_H
+#define SE3D_IO_STUDY_TRIAL_H
+
+#include "io/channel/output.h"
+#include "io/study/study.h"
+
+typedef struct se3di_trial {
+    se3d_study *study;
+    se3d_model *model;
+    se3di_tally *tallies;               /* [measure_count] */
+    bool is_set;                        /* the model is that of the study's prototype */
+    se3di_iopool pool;                  /* of this sample */
+    size_t *places;                     /* [source_count] in a row */
+    const se3di_row_listener *listener; /* NULL: none */
+    se3d_model_error *error;
+} se3di_trial;
+
+/* What a row is made of. @return OK, NO_MEMORY */
+se3d_status se3di_trial_find_channels(se3di_trial *t, se3di_output_entry *output);
+void se3di_trial_begin(se3di_trial *t);
+/* Take a row: the time, then the numbers of the channels. @return OK, NO_MEMORY */
+se3d_status se3di_trial_take_row(se3di_trial *t, const double *row);
+/* All measures at the end of the run, NaN: none. @return OK, NOT_FINITE, NO_MEMORY */
+se3d_status se3di_trial_conclude(se3di_trial *t, double *measures);
+/* Let methods of high order hold their errors near rounding, if the study wants it. */
+void se3di_trial_sharpen(const se3di_trial *t);
+
+#endif

@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A system that follows a solver is where its own solution is but for terms of second order in what
+ * its data differ; so derivatives of states are those of solutions, and derivatives of all kinds of
+ * measures of a study those of its runs. docs/theory/sensitivities.md */
+#include "support/text_model.h"
+
+#include "se3d/study.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { CHANNELS = 12, PARAMETERS = 8 };
+static const char *const names[PARAMETERS] = {"m", "J", "k", "c", "l0", "y", "b", "w"};
+static const double at[PARAMETERS] = {2.0, 0.05, 300.0, 20.0, 0.4, 0.15, 0.5, 3.0};
+
+/* A slider-crank out of line with a spring and a damper, whose masses, points, values and
+ * prescribed motion are parameters. */
+static const char machine[] =
+    "se3d: 1\n"
+    "parameters: {m: %.17g, J: %.17g, k: %.17g, c: %.17g, l0: %.17g, y: %.17g, b: %.17g, "
+    "w: %.17g, a: 0.2}\n"
+    "gravity: [0, -9.81, 0]\n"
+    "points: {pin: [a*cos(0.4), a*sin(0.4), 0], end: [pin.x + sqrt(b^2 - (pin.y - y)^2), y, 0]}\n"
+    "bodies:\n"
+    "  - {name: crank, mass: 1, inertia: [1e-3, 1e-2, 1e-2], position: 'mid([0, 0, 0], pin)'}\n"
+    "  - {name: rod, mass: m, inertia: [1e-3, J, J], position: 'mid(pin, end)'}\n"
+    "  - {name: slider, mass: 3, inertia: [1e-3, 1e-3, 1e-3], position: end}\n"
+    "joints:\n"
+    "  - {name: O, type: revolute, body_i: ground, body_j: crank, at: [0, 0, 0], axis: [0, 0, 1]}\n"
+    "  - {name: B, type: %s, body_i: crank, body_j: rod, at: pin%s}\n"
+    "  - {name: C, type: %s, body_i: slider, body_j: rod, at: end%s}\n"
+    "  - {name: guide, type: prismatic, body_i: ground, body_j: slider, at: end, axis: [1, 0, 0]}\n"
+    "forces: [{name: coil, type: tsda, body_i: ground, body_j: rod, at: [0.6, 0.4, 0.1],\n"
+    "  at_2: 'mid(pin, end)', k: k, c: c, l0: l0}]\n"
+    "%s\n"
+    "output: [{file: a.csv, channels: [slider.position.x, rod.velocity.y, rod.acceleration.x,\n"
+    "  coil.force, coil.length, O.torque.z, O.force.x, B.force.y, C.force.x, guide.force.y,\n"
+    "  slider.acceleration.x, O.angle]}]\n";
+
+static const char *const tails[] = {
+    "drivers: [{name: motor, joint: O, value: 0.1 + w*t + 0.3*sin(5*t)}]\n"
+    "analysis: {type: inverse_dynamics, duration: 1, step: 0.02}",
+    "drivers: [{name: motor, joint: O, value: 0.1 + w*t + 0.3*sin(5*t)}]\n"
+    "analysis: {type: kinematics, duration: 1, step: 0.02}",
+    "analysis: {type: equilibrium}"};
+
+/* Joints that say each thing once, or redundant ones. */
+static void write(char *text, size_t size, const double *p, int tail, int redundant,
+                  const char *end)
+{
+    const char *const axis = ", axis: [0, 0, 1]";
+    char full[2000];
+    snprintf(full, sizeof full, "%s\n%s", tails[tail], end);
+    snprintf(text, size, machine, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7],
+             redundant ? "revolute" : "spherical", redundant ? axis : "",
+             redundant ? "revolute" : "universal",
+             redundant ? axis : ", axis: [0, 0, 1], axis_2: [0, 1, 0]", full);
+}
+
+static text_model open_machine(const double *p, int tail, int redundant)
+{
+    char text[5000];
+    write(text, sizeof text, p, tail, redundant, "");
+    return text_model_open(text, -1, -1, 0.0);
+}
+
+/* How far the system with parameter `which` changed by `share` is from its own solution, at most,
+ * and how far that is from the solution that it follows. */
+static double follow(int tail, int redundant, int which, double share, double *moved)
+{
+    double p[PARAMETERS], off = 0.0;
+    memcpy(p, at, sizeof p);
+    text_model of = open_machine(p, tail, redundant);
+    p[which] *= 1.0 + share;
+    text_model to = open_machine(p, tail, redundant), own = open_machine(p, tail, redundant);
+    const double t = tail == 2 ? 0.0 : 0.3;
+    CHECK(text_model_run(&of, t) && text_model_run(&own, t));
+    const se3d_status status = se3d_solver_follow(to.solver, of.solver);
+    CHECK(status == SE3D_OK);
+    if (status < 0) {
+        fprintf(stderr, "%s\n", se3d_system_get_error(to.system));
+    }
+    *moved = 0.0;
+    for (size_t k = 0; k < CHANNELS; ++k) {
+        const double x = text_model_get(&own, k, 0);
+        const double size = fmax(1.0, fabs(x));
+        off = fmax(off, fabs(text_model_get(&to, k, 0) - x) / size);
+        *moved = fmax(*moved, fabs(text_model_get(&of, k, 0) - x) / size);
+    }
+    text_model_close(&of);
+    text_model_close(&to);
+    text_model_close(&own);
+    return off;
+}
+
+static void what_is_left_is_of_second_order(void)
+{
+    for (int k = 0; k < 3 * 2 * PARAMETERS; ++k) {
+        const int which = k % PARAMETERS, redundant = k / PARAMETERS % 2;
+        const int tail = k / PARAMETERS / 2;
+        double moved[2];
+        const double first = follow(tail, redundant, which, 1e-3, &moved[0]);
+        const double second = follow(tail, redundant, which, 5e-4, &moved[1]);
+        if (getenv("SE3D_SHOW")) {
+            fprintf(stderr, "%d %d %s: %.2g %.2g of %.2g\n", tail, redundant, names[which], first,
+                    second, moved[0]);
+        }
+        CHECK(first <= 0.1 * moved[0] + 1e-10);
+        CHECK(second <= first / 3.5 + 1e-10);
+    }
+}
+
+static const char study_tail[] =
+    "study:\n"
+    "  parameters: {m: [2], J: [0.05], k: [300], c: [20], l0: [0.4], y: [0.15], b: [0.5], w: [3]}\n"
+    "  every: 0.02\n"
+    "  measures:\n"
+    "    most: {max: C.force.x}\n"
+    "    least: {min: coil.force}\n"
+    "    span: {range: slider.position.x}\n"
+    "    middle: {mean: guide.force.y}\n"
+    "    size: {rms: O.torque.z}\n"
+    "    area: {integral: rod.velocity.y}\n"
+    "    begin: {initial: B.force.y}\n"
+    "    last: {final: rod.acceleration.x}\n"
+    "    off: {misfit: coil.length, curve: {linear: [[0, 0.3], [1, 0.5]]}}\n"
+    "    mixed: '2*most*last + k*span - m*middle^2'\n";
+
+/* The derivative of all measures by runs of the study beside the point, extrapolated. */
+static void differentiate(se3d_study *study, int which, double *slopes, size_t count)
+{
+    enum { LEVELS = 5, MEASURES = 10 };
+    double table[LEVELS][MEASURES];
+    double h = 0.02 * at[which];
+    for (int n = 0; n < LEVELS; ++n, h *= 0.5) {
+        double p[2][PARAMETERS], y[2][MEASURES];
+        for (int side = 0; side < 2; ++side) {
+            memcpy(p[side], at, sizeof at);
+            p[side][which] += side ? h : -h;
+            CHECK(se3d_study_eval(study, p[side], y[side], NULL) == SE3D_OK);
+        }
+        for (size_t k = 0; k < count; ++k) {
+            double slope = (y[1][k] - y[0][k]) / (p[1][which] - p[0][which]), weight = 1.0;
+            for (int i = 0; i < n; ++i) {
+                const double before = table[i][k];
+                table[i][k] = slope;
+                weight *= 4.0;
+                slope += (slope - before) / (weight - 1.0);
+            }
+            table[n][k] = slopes[k] = slope;
+        }
+    }
+}
+
+static void derivatives_are_those_of_runs(void)
+{
+    for (int tail = 0; tail < 2; ++tail) {
+        char text[6000];
+        se3d_model *model = NULL;
+        se3d_study *study = NULL;
+        se3d_model_error error = {.message = ""};
+        write(text, sizeof text, at, 2 * tail, tail, study_tail);
+        CHECK(!se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, &error));
+        if (error.message[0] != '\0') {
+            fprintf(stderr, "%s\n", error.message);
+        }
+        CHECK(!se3d_study_create(model, &study, &error));
+        const size_t count = se3d_study_count_measures(study);
+        CHECK(count == 10);
+        for (int which = 0; which < PARAMETERS && count == 10; ++which) {
+            double value, slopes[10], errors[10], wanted[10], y[10];
+            CHECK(!se3d_study_eval_nominal(study, y, NULL));
+            CHECK(!se3d_study_eval_sensitivity(study, (size_t)which, &value, slopes, errors, NULL));
+            differentiate(study, which, wanted, count);
+            for (size_t k = 0; k < count; ++k) {
+                const double size = fabs(wanted[k]) + (1.0 + fabs(y[k])) / value;
+                if (getenv("SE3D_SHOW")) {
+                    fprintf(stderr, "%s by %s: %.15g %.2g +- %.2g\n",
+                            se3d_study_get_measure_name(study, k), names[which], slopes[k],
+                            fabs(slopes[k] - wanted[k]) / size, errors[k] / size);
+                }
+                CHECK_NEAR(slopes[k], wanted[k], 1e-10 * size);
+                CHECK(errors[k] < 1e-9 * size);
+            }
+        }
+        se3d_study_destroy(study);
+        se3d_model_destroy(model);
+    }
+}
+
+/* Another structure, friction, and what is no function of the data alone. */
+static void what_cannot_be_followed_is_refused(void)
+{
+    text_model of = open_machine(at, 0, 0), to = open_machine(at, 0, 0);
+    text_model other = open_machine(at, 2, 0), redundant = open_machine(at, 0, 1);
+    CHECK(se3d_solver_follow(to.solver, of.solver) == SE3D_ERR_STATE);
+    CHECK_CONTAINS(se3d_system_get_error(to.system), "has not come to a solution");
+    CHECK(text_model_run(&of, 0.1));
+    CHECK(se3d_solver_follow(of.solver, of.solver) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_solver_follow(other.solver, of.solver) == SE3D_ERR_UNSUPPORTED);
+    CHECK(se3d_solver_follow(redundant.solver, of.solver) == SE3D_ERR_STATE);
+    CHECK_CONTAINS(se3d_system_get_error(redundant.system), "not the same structure");
+    CHECK(se3d_solver_follow(to.solver, of.solver) == SE3D_OK);
+    CHECK(se3d_solver_follow(to.solver, NULL) == SE3D_ERR_NULL);
+    text_model_close(&of);
+    CHECK(se3d_solver_follow(NULL, to.solver) == SE3D_ERR_NULL);
+    text_model_close(&to);
+    text_model_close(&other);
+    text_model_close(&redundant);
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *solvers[2];
+    se3d_system *systems[2];
+    for (int k = 0; k < 2; ++k) {
+        CHECK(!se3d_system_create(NULL, &systems[k]));
+        CHECK(!se3d_solver_create(systems[k], &def, &solvers[k]));
+    }
+    CHECK(se3d_solver_follow(solvers[0], solvers[1]) == SE3D_ERR_UNSUPPORTED);
+    for (int k = 0; k < 2; ++k) {
+        se3d_solver_destroy(solvers[k]);
+        se3d_system_destroy(systems[k]);
+    }
+}
+
+int main(void)
+{
+    RUN(derivatives_are_those_of_runs);
+    RUN(what_cannot_be_followed_is_refused);
+    RUN(what_is_left_is_of_second_order);
+    return check_finish();
+}
