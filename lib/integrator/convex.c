@@ -15,6 +15,7 @@
 #include "assembly/user.h"
 #include "contact/bodies/pace.h"
 #include "contact/bodies/pace_stop.h"
+#include "force/force.h"
 #include "integrator/kink_step.h"
 #include "integrator/state.h"
 #include "integrator/turns.h"
@@ -142,6 +143,7 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations)
     se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
     SE3DI_TRY(se3di_assembly_eval_elements(assembly, model->time, equations->error));
+    SE3DI_TRY(se3di_gravity_eval(model, model->time, c->gravity, NULL));
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t body = assembly->free_body[k];
         const se3di_frame *frame = &model->frames[body];
@@ -219,11 +221,13 @@ static se3d_status project(se3di_equations *equations, double t1)
 static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double t1)
 {
     se3di_model *model = equations->assembly.model;
+    const double taken = se3di_convex_work(c, &equations->assembly);
     se3di_contacts_begin(model, 0.0, 1.0, 0);
     model->contacts.frozen = c->asleep_count > 0 ? c->frozen : NULL;
     const se3d_status status = se3di_state_prepare(equations, t1);
     if (status >= 0) {
         se3di_convex_record(c, model);
+        se3di_convex_store(c, model, taken);
     }
     model->contacts.frozen = NULL;
     SE3DI_TRY(status);
@@ -232,7 +236,7 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     se3di_loads_accept(model);
     SE3DI_TRY(se3di_acceleration_solve(equations, t1));
     SE3DI_TRY(se3di_user_report(model, equations->error));
-    model->work[0] -= se3di_convex_work(c);
+    model->work[0] += taken;
     model->work[1] += se3di_convex_fed(c);
     SE3DI_TRY(se3di_work_accept(model, c->h));
     model->history[0] = c->h;
@@ -253,6 +257,7 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(aim(c, equations));
     SE3DI_TRY(aim_rows(c, equations, t1));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
+    se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
     move(c, assembly);
     SE3DI_TRY(project(equations, t1));

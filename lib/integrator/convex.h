@@ -42,6 +42,7 @@ typedef struct se3di_convex_contact {
     double friction, bound, wanted;    /* mu, the cap in use, that of p_n */
     double before[3], v[3], change[3]; /* velocity of the point: at the start, now, of the search */
     double impulse[3];                 /* on j */
+    double held;                       /* energy of its springs at the start of the step */
 } se3di_convex_contact;
 
 /* Bodies that contacts, or constraints, connect: a problem of its own. */
@@ -98,6 +99,7 @@ typedef struct se3di_convex {
     size_t asleep_count;
     int32_t sleeps; /* it is wanted */
     int32_t reserved;
+    double gravity[3]; /* at the start of the step */
     double h;
     uint64_t topology_version; /* that `kkt` was made for */
 } se3di_convex;
@@ -120,11 +122,27 @@ double se3di_convex_normal(const se3di_convex_contact *contact, double h, double
 /* The impulse along contact->change, and minus its derivative that way. */
 double se3di_convex_along(const se3di_convex_contact *contact, double h, const double v[3],
                           double *bend);
+/* The materials of a contact, and what they make of its law, of which the stretch may be. */
+const se3di_pair *se3di_convex_materials(const se3di_model *model,
+                                         const se3di_body_contact *record);
+void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
-/* The work of all impulses on the surfaces [J]; the work of what moves these on their bodies. */
-double se3di_convex_work(const se3di_convex *c);
+/* Lists of contacts are in the order of their pairs of shapes. */
+static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3di_body_contact *b)
+{
+    return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
+}
+
+/* convex_energy.c: what is taken from the bodies in a step [J]: by the impulses on the surfaces,
+ * and by the step itself; the work of what moves the surfaces on their bodies. */
+double se3di_convex_work(const se3di_convex *c, const se3di_assembly *assembly);
 double se3di_convex_fed(const se3di_convex *c);
+/* The energy that the springs of the contacts hold at the start of the step; */
+void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
+/* those of the contacts that were found at the end of the step, after `taken` [J] was taken
+ * from the bodies: no more than they held before and that. */
+void se3di_convex_store(const se3di_convex *c, se3di_model *model, double taken);
 
 /* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);

@@ -161,10 +161,17 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
     }
 }
 
-/* The law, of which the stretch may be. */
-static void set_law(se3di_convex_contact *c, const se3di_model *model, const se3di_pair *pair)
+const se3di_pair *se3di_convex_materials(const se3di_model *model, const se3di_body_contact *record)
+{
+    const size_t material = (size_t)model->shapes[record->shape_i].material;
+    return &model->pairs[material * model->material_slots.count +
+                         (size_t)model->shapes[record->shape_j].material];
+}
+
+void se3di_convex_set_law(se3di_convex_contact *c, const se3di_model *model)
 {
     const se3di_body_contact *r = c->record;
+    const se3di_pair *pair = se3di_convex_materials(model, r);
     const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
     const double radius =
         se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
@@ -244,9 +251,6 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
                         const se3di_body_contact *record)
 {
     const se3di_model *model = assembly->model;
-    const size_t material = (size_t)model->shapes[record->shape_i].material;
-    const se3di_pair *pair = &model->pairs[material * model->material_slots.count +
-                                           (size_t)model->shapes[record->shape_j].material];
     const uint32_t bodies[2] = {model->shapes[record->shape_i].body,
                                 model->shapes[record->shape_j].body};
     se3di_convex_contact *c = &convex->contacts[convex->contact_count];
@@ -258,10 +262,11 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     if (c->free[0] < 0 && c->free[1] < 0) {
         return;
     }
-    set_law(c, model, pair);
+    se3di_convex_set_law(c, model);
     set_drift(c, model, convex->h);
     se3di_convex_slip(c, convex->start, c->before);
-    choose_way(c, pair, convex->h, -se3di_dot(c->before, c->normal), loads_change(convex, c));
+    choose_way(c, se3di_convex_materials(model, record), convex->h,
+               -se3di_dot(c->before, c->normal), loads_change(convex, c));
     c->bound = convex->h * c->friction * fmax(0.0, se3di_dot(record->force, c->normal));
     for (int k = 0; k < 2; ++k) {
         if (c->free[k] >= 0) {
@@ -283,10 +288,7 @@ static se3d_status refuse(const collecting *c, const se3di_body_contact *record,
 static se3d_status check_pair(const collecting *c, const se3di_body_contact *record)
 {
     const se3di_model *model = c->assembly->model;
-    const se3di_pair *pair =
-        &model
-             ->pairs[(size_t)model->shapes[record->shape_i].material * model->material_slots.count +
-                     (size_t)model->shapes[record->shape_j].material];
+    const se3di_pair *pair = se3di_convex_materials(model, record);
     if (pair->rolling > 0.0 || pair->torsion > 0.0) {
         return refuse(c, record, "rolling or torsional friction");
     }
@@ -317,25 +319,6 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
         collect_one(convex, assembly, &model->contacts.list[k]);
     }
     return SE3D_OK;
-}
-
-double se3di_convex_work(const se3di_convex *convex)
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < convex->contact_count; ++k) {
-        const se3di_convex_contact *c = &convex->contacts[k];
-        sum += 0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v));
-    }
-    return sum;
-}
-
-double se3di_convex_fed(const se3di_convex *convex)
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < convex->contact_count; ++k) {
-        sum -= se3di_dot(convex->contacts[k].impulse, convex->contacts[k].drift);
-    }
-    return sum;
 }
 
 /* The stretch at the end of the step, no longer than what friction holds. */
@@ -382,8 +365,6 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
     if (c->way == SE3DI_CONVEX_SPRING) {
         stretch_after(c, convex->h, xi);
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
-        const double force = c->stiffness * r->overlap * (c->power > 1.0 ? sqrt(r->overlap) : 1.0);
-        r->energy = force * r->overlap / (1.0 + c->power) + 0.5 * c->tangential * se3di_dot(xi, xi);
     }
     set_anchors(model, r, xi);
 }
@@ -391,12 +372,6 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
 static int is_same(const se3di_body_contact *a, const se3di_body_contact *b)
 {
     return a->shape_i == b->shape_i && a->shape_j == b->shape_j && a->feature == b->feature;
-}
-
-/* Both lists are in the order of their pairs of shapes. */
-static int is_before(const se3di_body_contact *a, const se3di_body_contact *b)
-{
-    return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
 }
 
 void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
@@ -414,11 +389,13 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
         memset(r->torque, 0, sizeof r->torque);
         memset(r->roll, 0, sizeof r->roll);
         set_anchors(model, r, none);
-        while (first < convex->contact_count && is_before(convex->contacts[first].record, r)) {
+        while (first < convex->contact_count &&
+               se3di_convex_is_before(convex->contacts[first].record, r)) {
             ++first;
         }
         for (size_t at = first;
-             at < convex->contact_count && !is_before(r, convex->contacts[at].record); ++at) {
+             at < convex->contact_count && !se3di_convex_is_before(r, convex->contacts[at].record);
+             ++at) {
             if (is_same(convex->contacts[at].record, r)) {
                 record_one(convex, &convex->contacts[at], model, r);
                 break;

@@ -342,7 +342,7 @@ static void the_audit_balances(void)
         rest[fine] = fabs(get_energy(&s) + work.dissipated - first) / first;
         scene_end(&s);
     }
-    CHECK(rest[0] < 0.02 && rest[1] < 0.3 * rest[0]);
+    CHECK(rest[0] < 1e-9 && rest[1] < 1e-8);
 }
 
 /* In a step of 5 ms a card of 1 mm falls 10 mm, onto a table or another card. */

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The energy of a step of convex. What is taken from the bodies is, besides p (v_0 + v_1)/2 of the
+ * impulses,
+ *
+ *     h m g (v_1 - v_0)/2                 they move by v_1, gravity works on the mean of both ends
+ *     h (w_1 - w*)/2 . (w_m x J w_m)      the moment of gyration is that without contacts
+ *
+ * so that kinetic energy, potential and what was taken together stay the same to rounding. The
+ * springs of a pair of shapes hold of it what they can, and what they gave back is no more than
+ * that: a contact that is met when it is deep already has no energy but what it took.
+ *                                                                     docs/theory/convex.md */
+#include "integrator/convex.h"
+
+#include "math/inertia.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+/* What the impulse takes from the bodies. */
+static double taken_by(const se3di_convex_contact *c)
+{
+    return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v));
+}
+
+/* What of it springs may hold: an impact lifts its bodies, too. */
+static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
+{
+    const int lifted = (c->free[1] >= 0) - (c->free[0] >= 0);
+    const int lifts = c->way == SE3DI_CONVEX_IMPACT && lifted != 0;
+    return taken_by(c) +
+           (lifts ? 0.5 * lifted * convex->h * se3di_dot(c->impulse, convex->gravity) : 0.0);
+}
+
+/* What the step itself takes from a body that is touched. */
+static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, uint32_t k)
+{
+    const se3di_model *model = assembly->model;
+    const uint32_t body = assembly->free_body[k];
+    const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
+    const double *aim = c->aim + 6 * (size_t)k;
+    double dv[3], wm[3], dw[3], J[9], L[3], gyro[3];
+    se3di_sub(v, v0, dv);
+    se3di_add(v0 + 3, aim + 3, wm);
+    se3di_scale(0.5, wm, wm);
+    se3di_sub(v + 3, aim + 3, dw);
+    se3di_inertia_matrix(model->bodies[body].J, J);
+    se3di_mul(J, wm, L);
+    se3di_cross(wm, L, gyro);
+    return 0.5 * c->h *
+           (model->bodies[body].mass * se3di_dot(c->gravity, dv) + se3di_dot(dw, gyro));
+}
+
+double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assembly)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        sum += taken_by(&convex->contacts[k]);
+    }
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        sum += convex->touched[k] && !convex->asleep[k] ? taken_from(convex, assembly, k) : 0.0;
+    }
+    return sum;
+}
+
+double se3di_convex_fed(const se3di_convex *convex)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        sum -= se3di_dot(convex->contacts[k].impulse, convex->contacts[k].drift);
+    }
+    return sum;
+}
+
+/* Of the law, at a record's overlap and stretch. */
+static double law_energy(const se3di_model *model, const se3di_body_contact *r)
+{
+    se3di_convex_contact c = {.record = r};
+    double at[2][3], xi[3];
+    se3di_convex_set_law(&c, model);
+    for (int k = 0; k < 2; ++k) {
+        const se3di_frame *frame = &model->frames[model->shapes[k ? r->shape_j : r->shape_i].body];
+        se3di_mul(frame->A, k ? r->anchor_j : r->anchor_i, at[k]);
+        se3di_add(at[k], frame->r, at[k]);
+    }
+    se3di_sub(at[1], at[0], xi);
+    se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
+    const double force = c.stiffness * r->overlap * (c.power > 1.0 ? sqrt(r->overlap) : 1.0);
+    return force * r->overlap / (1.0 + c.power) + 0.5 * c.tangential * se3di_dot(xi, xi);
+}
+
+void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)
+{
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        const se3di_body_contact *r = convex->contacts[k].record;
+        convex->contacts[k].held =
+            r->kind == SE3DI_CONTACT_LAWFUL ? law_energy(model, r) : r->energy;
+    }
+}
+
+/* What the springs of the pair of `r` held before the step and took in it; contacts are looked at
+ * from `*first` on. */
+static double gather(const se3di_convex *convex, const se3di_body_contact *r, size_t *first)
+{
+    double sum = 0.0;
+    while (*first < convex->contact_count &&
+           se3di_convex_is_before(convex->contacts[*first].record, r)) {
+        ++*first;
+    }
+    for (; *first < convex->contact_count &&
+           !se3di_convex_is_before(r, convex->contacts[*first].record);
+         ++*first) {
+        const se3di_convex_contact *c = &convex->contacts[*first];
+        sum += c->held + left_by(convex, c);
+    }
+    return sum;
+}
+
+/* The springs of each pair. Returns what all hold. */
+static double store_pairs(const se3di_convex *convex, se3di_model *model)
+{
+    se3di_body_contact *next = model->contacts.next;
+    const size_t count = model->contacts.next_count;
+    size_t first = 0, end;
+    double sum = 0.0;
+    for (size_t k = 0; k < count; k = end) {
+        const int frozen = se3di_contact_is_frozen(model, next[k].shape_i, next[k].shape_j);
+        double most = 0.0;
+        for (end = k; end < count && !se3di_convex_is_before(&next[k], &next[end]); ++end) {
+            next[end].energy = frozen ? next[end].energy : law_energy(model, &next[end]);
+            most += next[end].energy;
+        }
+        if (frozen) {
+            continue;
+        }
+        const double held = fmin(most, fmax(0.0, gather(convex, &next[k], &first)));
+        for (size_t at = k; at < end && held < most; ++at) {
+            next[at].energy *= held / most;
+        }
+        sum += held;
+    }
+    return sum;
+}
+
+void se3di_convex_store(const se3di_convex *convex, se3di_model *model, double taken)
+{
+    double sum = store_pairs(convex, model), most = taken;
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        most += convex->contacts[k].held;
+    }
+    for (size_t k = 0; k < model->contacts.next_count && sum > most; ++k) {
+        se3di_body_contact *r = &model->contacts.next[k];
+        if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
+            r->energy *= fmax(0.0, most) / sum;
+        }
+    }
+}

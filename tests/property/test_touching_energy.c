@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Method convex: energy never grows in heaps, walls, dominoes and cards, in any step, and it
+ * changes by what is dissipated, to rounding. */
+#include "support/scene.h"
+
+static void heap(scene *s)
+{
+    const double size[3] = {0.1, 0.1, 0.1};
+    for (int k = 0; k < 8; ++k) {
+        const double r[3] = {0.16 * (k % 2) + 0.01 * k, 0.17 * (k / 2 % 2) - 0.01 * k,
+                             0.12 + 0.2 * (k / 4)};
+        const double axis[3] = {k % 2 ? 0.6 : 0.0, k % 2 ? 0.0 : 1.0, k % 2 ? 0.8 : 0.0};
+        scene_turn(s, scene_box(s, size, 1.0, r, scene_zero), axis, 0.1 + 0.05 * k);
+    }
+}
+
+static void wall(scene *s)
+{
+    const double size[3] = {0.2, 0.1, 0.1}, r[3] = {0.2, -0.5, 0.25}, v[3] = {0.0, 6.0, 0.5};
+    for (int k = 0; k < 12; ++k) {
+        const double at[3] = {0.2 * (k % 3) + 0.1 * (k / 3 % 2), 0.0, 0.05 + 0.1 * (k / 3)};
+        scene_box(s, size, 2.0, at, scene_zero);
+    }
+    scene_ball(s, 0.1, 4.0, r, v);
+}
+
+static void dominoes(scene *s)
+{
+    const double size[3] = {0.02, 0.1, 0.2}, axis[3] = {0.0, 1.0, 0.0}, lean = 0.25;
+    for (int k = 0; k < 10; ++k) {
+        const double leant[3] = {0.01 - 0.01 * cos(lean) + 0.1 * sin(lean), 0.0,
+                                 0.01 * sin(lean) + 0.1 * cos(lean)};
+        const double r[3] = {0.1 * k, 0.0, 0.1};
+        se3d_body body = scene_box(s, size, 0.4, k ? r : leant, scene_zero);
+        scene_turn(s, body, axis, k ? 0.0 : lean);
+    }
+}
+
+static void cards(scene *s)
+{
+    const double size[3] = {0.2, 0.2, 0.002}, axis[3] = {0.6, 0.8, 0.0};
+    for (int k = 0; k < 5; ++k) {
+        const double r[3] = {0.03 * k, 0.02 * k, 0.05 + 0.03 * k};
+        scene_turn(s, scene_box(s, size, 0.05, r, scene_zero), axis, k % 2 ? 0.1 : -0.05);
+    }
+}
+
+static void look(const scene *s, double *energy, double *balance)
+{
+    se3d_energy now;
+    CHECK(se3d_system_get_energy(s->system, &now) == SE3D_OK);
+    *energy = now.total;
+    *balance = now.total + now.dissipated;
+}
+
+static void energy_never_grows(void)
+{
+    static void (*const builds[4])(scene *) = {heap, wall, dominoes, cards};
+    for (int k = 0; k < 11; ++k) {
+        const double h = k % 3 == 1 ? 2e-3 : 1e-3;
+        const int32_t law = k % 3 == 2 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
+        double first, before, energy = 0.0, start, balance, growth = 0.0, gap = 0.0;
+        scene s = scene_begin(law, 0.5, 0.3, 1e5);
+        builds[k / 3](&s);
+        scene_floor(&s, 0.0);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, h, 0.0);
+        look(&s, &first, &start);
+        before = first;
+        for (int step = 1; step * h < 0.8 && scene_run(&s, step * h); ++step) {
+            look(&s, &energy, &balance);
+            growth = fmax(growth, energy - before);
+            gap = fmax(gap, fabs(balance - start));
+            before = energy;
+        }
+        CHECK(energy < 0.9 * first);
+        CHECK(growth < 1e-13 * first);
+        CHECK(gap < 1e-9 * first);
+        if (!(growth < 1e-13 * first && gap < 1e-9 * first && energy < 0.9 * first)) {
+            printf("%d: energy %g of %g, growth %g, gap %g\n", k, energy, first, growth, gap);
+        }
+        scene_end(&s);
+    }
+}
+
+int main(void)
+{
+    RUN(energy_never_grows);
+    return check_finish();
+}
