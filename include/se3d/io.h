@@ -350,6 +350,8 @@ typedef struct se3d_run_options {
     int32_t resume;    /* not 0: go on from run.checkpoint in `directory`, if it is there */
     int32_t reserved;  /* 0 */
     se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
+    const char *temporary; /* folder in which packed units (`fmus`) are unpacked, into a private one
+                              that is removed with the end of their analysis; NULL: /tmp */
 } se3d_run_options;
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */

@@ -3,6 +3,7 @@
 
 import csv
 import os
+import tempfile
 from collections import namedtuple
 
 import numpy
@@ -86,7 +87,8 @@ class Model:
         """Run every analysis and write the results into a folder. progress(analysis, time,
         fraction) is called after each row and may return True to stop. Return a Run; if an analysis
         fails, ModelError is raised and the rows so far are in the folder."""
-        options = Definition("se3d_run_options", {"directory": os.fspath(directory)})
+        options = Definition("se3d_run_options", {"directory": os.fspath(directory),
+                                                  "temporary": tempfile.gettempdir()})
         handle = None
         if progress:
             handle = ffi.new_handle(progress)

@@ -132,6 +132,116 @@ expect 'writing' 0 "$program" write "$dir/host.yaml" -o "$dir/other/host.yaml"
 expect 'what was written' 0 "$program" run -q "$dir/other/host.yaml" -o "$dir/written"
 holds 'written otherwise' cmp "$dir/written/a.csv" "$dir/run.2.0.002/a.csv"
 
+# A packed unit is unpacked into a folder that is gone afterwards.
+mkdir "$dir/tmp"
+export TMPDIR="$dir/tmp"
+left() {
+    is "left behind by $1: $(ls "$dir/tmp")" "left behind by $1: "
+}
+python3 - "$dir" <<'END_OF_PYTHON' || fail 'packing'
+import sys, warnings, zipfile
+warnings.simplefilter("ignore")  # of names that are there twice
+folder = sys.argv[1]
+whole = zipfile.ZipFile(folder + "/spring.2.fmu")
+files = {name: whole.read(name) for name in whole.namelist()}
+
+def pack(name, more=(), change=None, method=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(f"{folder}/{name}.fmu", "w", method) as out:
+        for file, content in list(files.items()) + list(more):
+            out.writestr(file, content)
+    if change:
+        with open(f"{folder}/{name}.fmu", "rb") as made:
+            content = bytearray(made.read())
+        content = change(content) or content
+        with open(f"{folder}/{name}.fmu", "wb") as made:
+            made.write(content)
+
+def link(name, mode):
+    info = zipfile.ZipInfo(name)
+    info.create_system, info.external_attr = 3, mode << 16
+    return info
+
+def at(content, mark, offset, size, value):
+    """A number in the last entry of the list, or in the end record."""
+    begin = content.rindex(mark) + offset
+    content[begin:begin + size] = value.to_bytes(size, "little")
+
+ENTRY, END, LOCAL = b"PK\x01\x02", b"PK\x05\x06", b"PK\x03\x04"
+pack("packed")
+pack("stored", method=zipfile.ZIP_STORED)
+files["resources/"] = b""
+pack("folders")
+files = {"modelDescription.xml": files["modelDescription.xml"]}
+for name, file in (("up", "../out.txt"), ("inner", "resources/../../out.txt"), ("root", "/out.txt"),
+                   ("dot", "resources/./a"), ("empty", "resources//a"), ("drive", "c:/out.txt"),
+                   ("back", "resources\\..\\out.txt"), ("line", "resources/a\nb")):
+    pack(name, [(file, b"x")])
+pack("nul", [("resources/aXb", b"x")], lambda c: c.replace(b"resources/aXb", b"resources/a\0b"))
+pack("link", [(link("resources/link", 0o120777), b"/etc")])
+pack("device", [(link("resources/device", 0o020666), b"")])
+pack("twice", [("resources/a", b"1"), ("resources/a", b"2")])
+pack("below", [("resources/a", b"1"), ("resources/a/b", b"2")])
+pack("bomb", [("resources/zeros", bytes(40 << 20))])
+pack("claims", [("resources/a", b"x")], lambda c: at(c, ENTRY, 24, 4, 1 << 30))
+pack("short", [("resources/a", b"x" * 100)], lambda c: at(c, ENTRY, 24, 4, 99))
+pack("sum", [("resources/a", b"x" * 100)], lambda c: at(c, ENTRY, 16, 4, 1))
+pack("secret", [("resources/a", b"x")], lambda c: at(c, ENTRY, 8, 2, 1))
+pack("bzip", [("resources/a", b"x")], lambda c: at(c, ENTRY, 10, 2, 12))
+pack("overlap", [("resources/a", b"x" * 5)],
+     lambda c: at(c, ENTRY, 20, 4, len(c) - 100) or at(c, ENTRY, 24, 4, len(c) - 100))
+pack("place", [("resources/a", b"x")], lambda c: at(c, ENTRY, 42, 4, 7))
+pack("beyond", [("resources/a", b"x")], lambda c: at(c, ENTRY, 42, 4, 1 << 30))
+pack("other", [("resources/a", b"x")], lambda c: at(c, LOCAL, 30, 1, 64))
+pack("many", change=lambda c: at(c, END, 8, 2, 99) or at(c, END, 10, 2, 99))
+pack("few", [("resources/a", b"x")], lambda c: at(c, END, 8, 2, 1) or at(c, END, 10, 2, 1))
+pack("parts", change=lambda c: at(c, END, 4, 2, 1))
+pack("moved", change=lambda c: b"before" + c)
+pack("cut", change=lambda c: c[:-30])
+pack("nothing", change=lambda c: b"x")
+END_OF_PYTHON
+for packed in packed stored folders; do
+    host 2 0.002 | sed "s/file: spring.2/file: $packed.fmu/" >"$dir/host.yaml"
+    expect "a unit that is $packed" 0 "$program" run -q "$dir/host.yaml" -o "$dir/$packed.run"
+    holds "$packed: another motion" cmp "$dir/$packed.run/a.csv" "$dir/run.2.0.002/a.csv"
+    left $packed
+done
+
+# hostile NAME TEXT: an archive that is refused, with its reason, and nothing is left of it
+hostile() {
+    host 2 0.01 | sed "s/file: spring.2/file: $1.fmu/" >"$dir/hostile.yaml"
+    expect "the archive $1" "${3:-2}" "$program" run -q "$dir/hostile.yaml" -o "$dir/hostile.run"
+    says 'fmu `spring`'
+    says "$2"
+    left "$1"
+}
+for packed in up inner root dot empty drive back line nul; do
+    hostile $packed 'whose name may lead out of it'
+done
+hostile link '`resources/link` is a link or a device'
+hostile device '`resources/device` is a link or a device'
+hostile twice 'the name is there twice' 1
+hostile below '`resources/a/b` cannot be unpacked' 1
+hostile bomb 'would become far too large'
+hostile claims '`resources/a` has sizes that cannot be'
+hostile short '`resources/a` is damaged' 1
+hostile sum '`resources/a` is damaged' 1
+hostile secret 'is encrypted'
+hostile bzip 'another method than Deflate'
+hostile overlap 'its files overlap' 1
+hostile place 'not where its list says' 1
+hostile beyond 'not where its list says' 1
+hostile other 'not where its list says' 1
+hostile many 'shorter than it says' 1
+hostile few 'longer than it says' 1
+hostile parts 'one part of several'
+hostile moved 'its list is elsewhere' 1
+hostile cut 'neither a folder nor a whole zip archive' 1
+hostile nothing 'neither a folder nor a whole zip archive' 1
+holds 'a file was left outside' test ! -e "$dir/out.txt" -a ! -e "$dir/tmp/out.txt"
+TMPDIR="$dir/none"
+hostile packed 'none/se3d-' 1
+unset TMPDIR
+
 # What is wrong is said with the name of the unit.
 wrong() {
     host 2 0.01 | sed "$1" >"$dir/wrong.yaml"

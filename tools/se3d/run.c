@@ -471,6 +471,7 @@ static void ask_checkpoints(const options *o, se3d_scene *scene, se3d_run_option
     how->checkpoint = o->checkpoint ? fmax(strtod(o->checkpoint, NULL), EVERY_ROW) : 0.0;
     how->resume = o->resume;
     how->scene = scene;
+    how->temporary = getenv("TMPDIR");
 }
 
 /* Run, and leave the results and the scene in `folder`. */

@@ -37,7 +37,7 @@ static char *find_whole(const char *path)
     return _fullpath(NULL, path, 0);
 }
 
-static FILE *open_new(const char *path)
+FILE *se3di_file_create(const char *path)
 {
     return fopen(path, "wbx");
 }
@@ -78,8 +78,23 @@ static int make_folder(const char *path)
 {
     return _mkdir(path);
 }
+
+bool se3di_temporary_make(const char *within, char *path, size_t size)
+{
+    (void)within;
+    (void)path;
+    (void)size;
+    errno = ENOSYS;
+    return false;
+}
+
+void se3di_temporary_remove(const char *path)
+{
+    (void)path;
+}
 #else
 #include <fcntl.h>
+#include <ftw.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -89,7 +104,7 @@ static char *find_whole(const char *path)
     return realpath(path, NULL);
 }
 
-static FILE *open_new(const char *path)
+FILE *se3di_file_create(const char *path)
 {
     const int number = open(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     FILE *file = number >= 0 ? fdopen(number, "wb") : NULL;
@@ -182,6 +197,31 @@ static bool is_link(const char *path)
 static int make_folder(const char *path)
 {
     return mkdir(path, 0777);
+}
+
+bool se3di_temporary_make(const char *within, char *path, size_t size)
+{
+    const int length =
+        snprintf(path, size, "%s/se3d-XXXXXX", within && within[0] ? within : "/tmp");
+    if (length < 0 || (size_t)length >= size) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    return mkdtemp(path) != NULL; /* mode 0700 */
+}
+
+static int take_each(const char *path, const struct stat *about, int kind, struct FTW *place)
+{
+    (void)about;
+    (void)place;
+    (void)(kind == FTW_DP ? rmdir(path) : unlink(path)); /* what stays is left behind */
+    return 0;
+}
+
+void se3di_temporary_remove(const char *path)
+{
+    enum { OPEN_MOST = 16 };
+    (void)nftw(path, take_each, OPEN_MOST, FTW_DEPTH | FTW_PHYS);
 }
 #endif
 
@@ -283,7 +323,7 @@ FILE *se3di_partial_open(const char *path)
     }
     take_away(partial); /* of a run that was ended; or a link, which must not be followed */
     errno = 0;
-    return open_new(partial);
+    return se3di_file_create(partial);
 }
 
 /* Whether a file begins with bytes of this hash, which go to `to` if it is not NULL. */

@@ -16,6 +16,8 @@ bool se3di_file_make_folders(const char *path);
 /* Open a regular file for reading: a folder is EISDIR, a pipe or device EINVAL. @return NULL: errno
  * says why. */
 FILE *se3di_file_open(const char *path);
+/* Make a file, which must not be there, for writing. @return NULL: errno says why. */
+FILE *se3di_file_create(const char *path);
 /* Open a regular file, made if it is not there, for reading and writing, and lock it: if another
  * program has it open in this way it is EAGAIN. @return NULL: errno says why. */
 FILE *se3di_file_continue(const char *path);
@@ -37,6 +39,10 @@ bool se3di_partial_close(FILE *file, const char *path);
  * of the temporary name, or a copy of the one that has its name already, if their hash is that one.
  * @return NULL: errno says why; ESTALE: neither begins with these bytes. What is there stays. */
 FILE *se3di_partial_continue(const char *path, uint64_t size, uint64_t hash);
+/* Make a folder that only this user may enter, within another (NULL: /tmp); take it away with all
+ * that is in it, without following links. @return false: errno says why; not on Windows. */
+bool se3di_temporary_make(const char *within, char *path, size_t size);
+void se3di_temporary_remove(const char *path);
 /* Let a file survive that the machine stops. */
 bool se3di_file_sync(FILE *file);
 /* Take a file away, and what was left of it under its temporary name; folders stay. */

@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+#include "io/base/inflate.h"
+
 enum { LOCAL_SIZE = 30, CENTRAL_SIZE = 46, END_SIZE = 22, FILES_MAX = 65534 };
 enum { VERSION = 20, UTF8 = 1 << 11, DATE = 1 << 5 | 1 };
 #define BYTES_MAX UINT64_C(0xfffffff0)
@@ -14,24 +16,6 @@ typedef struct se3di_zip_entry {
     const char *name;
     uint32_t crc, size, offset;
 } se3di_zip_entry;
-
-/* CRC-32 of ISO 3309, reflected polynomial 0xedb88320. */
-static uint32_t checksum(const unsigned char *bytes, size_t size)
-{
-    uint32_t table[256];
-    uint32_t crc = 0xffffffffU;
-    for (uint32_t k = 0; k < 256; ++k) {
-        uint32_t c = k;
-        for (int bit = 0; bit < 8; ++bit) {
-            c = c & 1U ? 0xedb88320U ^ c >> 1 : c >> 1;
-        }
-        table[k] = c;
-    }
-    for (size_t k = 0; k < size; ++k) {
-        crc = table[(crc ^ bytes[k]) & 0xffU] ^ crc >> 8;
-    }
-    return crc ^ 0xffffffffU;
-}
 
 static void write_bytes(se3di_zip *zip, const void *bytes, size_t size)
 {
@@ -87,7 +71,7 @@ void se3di_zip_add(se3di_zip *zip, const char *name, const void *bytes, size_t s
     }
     zip->entries = grown;
     se3di_zip_entry *e = &zip->entries[zip->count++];
-    *e = (se3di_zip_entry){copy, checksum(bytes, size), (uint32_t)size, (uint32_t)zip->written};
+    *e = (se3di_zip_entry){copy, se3di_crc32(bytes, size), (uint32_t)size, (uint32_t)zip->written};
     put(&r, 4, 0x04034b50U);
     put_common(&r, e);
     write_bytes(zip, r.bytes, LOCAL_SIZE);

@@ -45,8 +45,8 @@ static const se3di_key fmu_keys[] = {
     {"name", SE3DI_KIND_NAME, SE3DI_INTO(se3di_guest_entry, name), .required = true,
      .text = "unique among the units"},
     {"file", SE3DI_KIND_TEXT, SE3DI_INTO(se3di_guest_entry, file), .required = true,
-     .text = "folder of the unpacked unit, relative to the model file; it is a program, which a "
-         "run loads and runs"},
+     .text = "the unit (.fmu), or its unpacked folder, relative to the model file; it is a "
+         "program, which a run loads and runs"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_guest_entry, step),
      .required = true, .text = "from one communication point to the next [s]"},
     {"inputs", SE3DI_KIND_LIST, .object = "fmu_input", .text = "what it is told at each point"},

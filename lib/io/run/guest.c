@@ -3,6 +3,7 @@
  * standard calls things is written down here, for the few functions that a run needs. */
 #include "io/run/guest.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,7 +11,9 @@
 #include <string.h>
 
 #include "base/floats.h"
+#include "io/base/file.h"
 #include "io/base/pool.h"
+#include "io/base/unzip.h"
 #include "io/model/settable.h"
 #include "io/run/guest_description.h"
 
@@ -78,6 +81,8 @@ typedef struct calls {
 
 typedef struct guest {
     const se3di_guest_entry *entry;
+    const char *folder; /* of the unit, or where it is unpacked */
+    const char *made;   /* by us, to be taken away; NULL: none */
     se3di_guest_description description;
     uint32_t *inputs, *outputs; /* value references */
     bool *wholes;               /* [outputs] whole numbers */
@@ -186,8 +191,8 @@ static se3d_status load_object(guest *g, char *problem)
         return fail(g, SE3D_ERR_UNSUPPORTED, problem,
                     "this program is linked statically and cannot load units");
     }
-    snprintf(path, sizeof path, "%s%s/binaries/%s/%.500s.so", g->entry->path[0] == '/' ? "" : "./",
-             g->entry->path, g->description.version == 2 ? PLATFORM2 : PLATFORM3,
+    snprintf(path, sizeof path, "%s%s/binaries/%s/%.500s.so", g->folder[0] == '/' ? "" : "./",
+             g->folder, g->description.version == 2 ? PLATFORM2 : PLATFORM3,
              g->description.identifier);
     g->object = dlopen(path, NOW);
     se3di_floats_resume();
@@ -312,9 +317,9 @@ static bool instantiate(guest *g)
     const se3di_guest_description *d = &g->description;
     char *folder = NULL;
 #if HAS_OBJECTS
-    folder = realpath(g->entry->path, NULL);
+    folder = realpath(g->folder, NULL);
 #endif
-    const char *path = folder ? folder : g->entry->path;
+    const char *path = folder ? folder : g->folder;
     if (strlen(path) > FOLDER_MOST) {
         snprintf(g->told, sizeof g->told, "the path of its folder is too long");
         free(folder);
@@ -364,19 +369,59 @@ static se3d_status set_parameters(guest *g, char *problem)
     return SE3D_OK;
 }
 
+/* What a run needs of an archive on this machine. */
+static bool is_needed(const char *name)
+{
+    static const char *const folders[] = {
+#if HAS_OBJECTS
+        "binaries/" PLATFORM2 "/",
+        "binaries/" PLATFORM3 "/",
+#endif
+        "resources/"
+    };
+    bool needed = strcmp(name, "modelDescription.xml") == 0;
+    for (size_t k = 0; k < sizeof folders / sizeof *folders; ++k) {
+        needed = needed || strncmp(name, folders[k], strlen(folders[k])) == 0;
+    }
+    return needed;
+}
+
+/* Unpack a unit into a folder of its own; one that is a folder already is used where it is. */
+static se3d_status unpack(guest *g, se3di_iopool *pool, const char *temporary, char *problem)
+{
+    char path[PATH_SIZE];
+    FILE *file = se3di_file_open(g->entry->path);
+    if (!file) {
+        return SE3D_OK; /* a folder, or the description is found missing there */
+    }
+    fclose(file);
+    if (!se3di_temporary_make(temporary, path, sizeof path)) {
+        snprintf(g->told, sizeof g->told, "%.150s: %s", path, se3di_file_get_text(errno));
+        return fail(g, SE3D_ERR_IO, problem, "it cannot be unpacked");
+    }
+    g->folder = g->made = se3di_iopool_copy(pool, path, strlen(path));
+    if (!g->made) {
+        se3di_temporary_remove(path);
+        return fail(g, SE3D_ERR_NO_MEMORY, problem, "out of memory");
+    }
+    const se3d_status status =
+        se3di_unzip(g->entry->path, path, is_needed, &pool->allocator, g->told, sizeof g->told);
+    return status < 0 ? fail(g, status, problem, g->entry->path) : SE3D_OK;
+}
+
 /* Into the initialization, which ends at the first communication point. */
 static se3d_status open_guest(const guest *list, guest *g, se3di_iopool *pool, double stop,
                               char *problem)
 {
     char path[PATH_SIZE];
-    if (strlen(g->entry->path) > FOLDER_MOST) {
+    if (strlen(g->folder) > FOLDER_MOST) {
         return fail(g, SE3D_ERR_IO, problem, "the path of its folder is too long");
     }
     if (!(stop + g->entry->step > stop)) {
         return fail(g, SE3D_ERR_INVALID_ARGUMENT, problem,
                     "its `step` is too short to be seen at the end of the analysis");
     }
-    snprintf(path, sizeof path, "%s/modelDescription.xml", g->entry->path);
+    snprintf(path, sizeof path, "%s/modelDescription.xml", g->folder);
     se3d_status status = se3di_guest_describe(path, pool, &g->description, g->told, sizeof g->told);
     if (status < 0) {
         return fail(g, status, problem, path);
@@ -406,8 +451,8 @@ static se3d_status open_guest(const guest *list, guest *g, se3di_iopool *pool, d
                : fail(g, SE3D_ERR_INVALID_ARGUMENT, problem, "it cannot be initialized");
 }
 
-se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3di_guests **guests,
-                              char problem[SE3DI_GUEST_PROBLEM])
+se3d_status se3di_guests_open(se3d_model *model, const double span[2], const char *temporary,
+                              se3di_guests **guests, char problem[SE3DI_GUEST_PROBLEM])
 {
     se3di_iopool pool;
     *guests = NULL;
@@ -426,8 +471,10 @@ se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3d
         guest *g = &list[made->count++];
         memset(g, 0, sizeof *g);
         g->entry = &model->guests[k];
-        g->start = g->time = start;
-        status = open_guest(list, g, &made->pool, stop, problem);
+        g->folder = g->entry->path;
+        g->start = g->time = span[0];
+        status = unpack(g, &made->pool, temporary, problem);
+        status = status < 0 ? status : open_guest(list, g, &made->pool, span[1], problem);
     }
     se3di_floats_restore(host);
     if (status < 0) {
@@ -453,6 +500,9 @@ void se3di_guests_close(se3di_guests *guests)
             g->f.release(g->instance);
         }
         unload(g);
+        if (g->made) {
+            se3di_temporary_remove(g->made);
+        }
     }
     se3di_floats_resume();
     se3di_floats_restore(host);

@@ -12,10 +12,11 @@ enum { SE3DI_GUEST_PROBLEM = 600 };
 
 typedef struct se3di_guests se3di_guests;
 
-/* Load and set up the units of a model for an analysis. `problem` gets why not. @return OK, IO,
- * UNSUPPORTED, INVALID_ARGUMENT, NO_MEMORY; *guests is NULL then. */
-se3d_status se3di_guests_open(se3d_model *model, double start, double stop, se3di_guests **guests,
-                              char problem[SE3DI_GUEST_PROBLEM]);
+/* Load and set up the units of a model for an analysis from `span[0]` to `span[1]`; those that are
+ * packed are unpacked within the folder `temporary` (NULL: /tmp) until they are closed. `problem`
+ * gets why not. @return OK, IO, UNSUPPORTED, INVALID_ARGUMENT, NO_MEMORY; *guests is NULL then. */
+se3d_status se3di_guests_open(se3d_model *model, const double span[2], const char *temporary,
+                              se3di_guests **guests, char problem[SE3DI_GUEST_PROBLEM]);
 void se3di_guests_close(se3di_guests *guests);
 /* The earlier of `time` and the next communication point; all are fine with NULL. */
 double se3di_guests_limit(const se3di_guests *guests, double time);

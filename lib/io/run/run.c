@@ -676,8 +676,8 @@ static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *e
     }
     if (r->model->guest_count > 0 && se3di_analysis_has_motion(entry)) {
         char problem[SE3DI_GUEST_PROBLEM];
-        status = se3di_guests_open(r->model, start, start + entry->analysis.duration, &r->guests,
-                                   problem);
+        const double span[2] = {start, start + entry->analysis.duration};
+        status = se3di_guests_open(r->model, span, r->options->temporary, &r->guests, problem);
         if (status < 0) {
             return fail(r, status, problem);
         }
