@@ -242,6 +242,54 @@ TMPDIR="$dir/none"
 hostile packed 'none/se3d-' 1
 unset TMPDIR
 
+# A run that is killed and resumed ends as one that is not: the state of a unit is in the checkpoint.
+cat >"$dir/lag.yaml" <<'END_OF_YAML'
+se3d: 1
+gravity: [0, 0, 0]
+bodies: [{name: end, mass: 1, inertia: [1, 1, 1]}]
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: end, at: [0, 0, 0], axis: [1, 0, 0]}]
+forces:
+  - {name: spring, type: tsda, body_i: ground, body_j: end, point_i: [-1, 0, 0], k: 400, c: 8, l0: 1}
+  - {name: pull, type: effort, joint: rail, value: 0}
+analysis: {type: dynamics, duration: 100}
+output: [{file: a.csv, every: 1, channels: [{push: -5*rail.displacement-1*rail.rate}]}]
+END_OF_YAML
+for each in 2:effort 3:effort 3:rate; do
+    fmi=${each%:*}
+    expect "the lag, FMI $fmi" 0 "$program" fmu "$dir/lag.yaml" --fmi $fmi -o "$dir/lag.$fmi.fmu"
+    host $fmi 0.002 | sed "s/spring\.$fmi/lag.$fmi.fmu/; s/place.input/pull.input/; s/, parameters:.*/}/
+        s/duration: 0.5/duration: 4/; s/every: 0.05/every: 0.002/" >"$dir/kept.yaml"
+    if [ "$each" = 3:rate ]; then
+        sed -i 's/^forces:.*/drivers: [{name: push, joint: rail, rate: 0}]/' "$dir/kept.yaml"
+    fi
+    expect "the lag in peace, $each" 0 "$program" run -q "$dir/kept.yaml" -o "$dir/peace"
+    rm -rf "$dir/kept"
+    hits=0
+    for nap in 0.3 0.4 0.5 0.7 1 1.5; do
+        [ $hits -ge 2 ] && break
+        "$program" run -q "$dir/kept.yaml" --checkpoint 0 --resume -o "$dir/kept" 2>"$dir/err" &
+        sleep $nap
+        kill -9 $! 2>/dev/null
+        wait $!
+        [ -e "$dir/kept/run.checkpoint" ] && hits=$((hits + 1))
+    done
+    holds "$each: no run was killed on its way" [ $hits -gt 0 ]
+    sed 's/name: spring, file/name: other, file/' "$dir/kept.yaml" >"$dir/else.yaml"
+    expect 'another model' 1 "$program" run -q "$dir/else.yaml" --resume -o "$dir/kept"
+    says 'is of another model'
+    if [ "$each" = 3:effort ]; then # the unit behind the name is another one
+        cp "$dir/lag.3.fmu" "$dir/lag.same"
+        cp "$dir/spring.3.fmu" "$dir/lag.3.fmu"
+        expect 'another unit' 1 "$program" run -q "$dir/kept.yaml" --resume -o "$dir/kept"
+        says 'fmu `spring`'
+        cp "$dir/lag.same" "$dir/lag.3.fmu"
+    fi
+    expect "the lag resumed, $each" 0 "$program" run -q "$dir/kept.yaml" --resume -o "$dir/kept"
+    holds "$each: resumed otherwise" cmp "$dir/kept/a.csv" "$dir/peace/a.csv"
+done
+sed 's/canSerializeFMUState="true"/canSerializeFMUState="false"/' "$dir/spring.3/modelDescription.xml" \
+    >"$dir/rows.xml"
+
 # What is wrong is said with the name of the unit.
 wrong() {
     host 2 0.01 | sed "$1" >"$dir/wrong.yaml"
@@ -266,8 +314,11 @@ sed 's/<CoSimulation /&canBeInstantiatedOnlyOncePerProcess="true" /' "$dir/sprin
 sed 's/spring.3/rows.3/' "$dir/ab.yaml" >"$dir/twice.yaml"
 expect 'one too many' 2 "$program" run -q "$dir/twice.yaml" -o "$dir/twice.run"
 says 'there can be one of this unit only'
-expect 'checkpoints' 1 "$program" run -q "$dir/host.yaml" --checkpoint 1 -o "$dir/kept.run"
-says 'has no checkpoints'
+cp "$dir/rows.xml" "$dir/rows.3/modelDescription.xml"
+host 3 0.01 | sed 's/spring.3/rows.3/' >"$dir/stateless.yaml"
+expect 'no states' 0 "$program" run -q "$dir/stateless.yaml" -o "$dir/stateless.run"
+expect 'checkpoints' 2 "$program" run -q "$dir/stateless.yaml" --checkpoint 1 -o "$dir/kept.run"
+says 'fmu `spring`: the run can have no checkpoints, since the unit cannot write its state'
 expect 'a unit of it' 2 "$program" fmu "$dir/host.yaml" -o "$dir/no.fmu"
 says 'units do not hold others'
 mv "$dir/spring.2/binaries" "$dir/spring.2/none"

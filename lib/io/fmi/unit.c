@@ -26,6 +26,7 @@
 #include "io/fmi/before.h"
 #include "io/fmi/recipe.h"
 #include "io/fmi/states.h"
+#include "io/model/settable.h"
 
 enum { TEXT_SIZE = 1600, PATH_SIZE = 4096 };
 #define STEP_MIN 1e-15 /* s */
@@ -221,22 +222,17 @@ static se3d_function rate_of(const se3di_fmi_unit *u, size_t k)
 /* Keep since when a rate is as it is, and what its integral was then. */
 static se3d_status note_place(se3di_fmi_unit *u, size_t k)
 {
-    double jet[3] = {0.0, 0.0, 0.0};
     const se3d_function rate = rate_of(u, k);
-    if (!rate.index1) {
-        return SE3D_OK;
-    }
-    se3d_system_get_time(u->model->system, &u->places[2 * k]);
-    const se3d_status status = se3d_function_eval(u->model->system, rate, &u->places[2 * k], jet);
-    u->places[2 * k + 1] = jet[0];
-    return status;
+    return rate.index1
+               ? se3di_rate_get_place(u->model, rate, &u->places[2 * k], &u->places[2 * k + 1])
+               : SE3D_OK;
 }
 
 /* Bring the integral of a rate to where it was. The state of the system is put back afterwards. */
 static se3d_status put_place(const se3di_fmi_unit *u, size_t k)
 {
-    return se3di_fmi_put_place(u->model, rate_of(u, k), u->places[2 * k], u->places[2 * k + 1],
-                               se3di_fmi_value_of(u, k));
+    return se3di_rate_put_place(u->model, rate_of(u, k), u->places[2 * k], u->places[2 * k + 1],
+                                se3di_fmi_value_of(u, k));
 }
 
 /* All inputs that were ever set. */

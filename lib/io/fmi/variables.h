@@ -66,10 +66,6 @@ se3d_status se3di_fmi_variables_add(se3di_fmi_variables *variables, const se3di_
 /* Set an input of the model that the list is of. */
 se3d_status se3di_fmi_apply_input(const se3d_model *model, const se3di_fmi_variable *input,
                                   double value);
-/* Set a rate (se3di_element_entry) to `value` from `time` on, when its integral is `place`. It
- * changes the time of the system. */
-se3d_status se3di_fmi_put_place(const se3d_model *model, se3d_function rate, double time,
-                                double place, double value);
 /* Write a value of a parameter as an expression, with its unit in SI. @return its length. */
 size_t se3di_fmi_format_value(const se3di_fmi_variable *parameter, double value,
                               char text[SE3DI_FMI_VALUE_SIZE]);

@@ -6,6 +6,7 @@
 
 #include "io/channel/event.h"
 #include "io/fmi/before.h"
+#include "io/model/settable.h"
 #include "io/model/tagged.h"
 
 enum { COLUMNS_MAX = 1000 };
@@ -307,7 +308,7 @@ static void move_rates(const se3di_session *from, se3di_session *to)
         double jet[3] = {0.0, 0.0, 0.0};
         if (old && old->rate.index1 &&
             se3d_function_eval(from->model->system, old->rate, &time, jet) >= 0) {
-            (void)se3di_fmi_put_place(to->model, e->rate, time, jet[0], to->sliders[k].value);
+            (void)se3di_rate_put_place(to->model, e->rate, time, jet[0], to->sliders[k].value);
         }
     }
 }

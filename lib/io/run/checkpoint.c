@@ -14,11 +14,12 @@
 #include "io/base/pack.h"
 #include "io/channel/event.h"
 #include "io/document/document.h"
+#include "io/run/guest.h"
 #include "io/write/scene.h"
 
 #define FILE_NAME "run.checkpoint"
 #define MARK      UINT64_C(0x544B504344334553) /* "SE3DCPKT" */
-#define VERSION   UINT64_C(2)
+#define VERSION   UINT64_C(3)
 #define LIBRARY                                                                                    \
     (((uint64_t)SE3D_VERSION_MAJOR << 32) + ((uint64_t)SE3D_VERSION_MINOR << 16) +                 \
      (uint64_t)SE3D_VERSION_PATCH)
@@ -49,9 +50,10 @@ struct se3di_resume {
     se3di_coder coder; /* at what the run knows, later at its end */
     se3di_csv_mark *marks;
     se3di_csv_mark events;
-    blob state, solver, scene;
+    blob state, solver, scene, guests;
     se3di_place place;
     double *next; /* [outputs] numbers of the rows to come */
+    char problem[SE3DI_GUEST_PROBLEM];
 };
 
 static void listen(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
@@ -111,6 +113,7 @@ static void pack_marks(se3di_coder *p, const se3di_runner *r, struct se3di_resum
     se3di_pack_bytes(p, &c->state.bytes, &c->state.size);
     se3di_pack_bytes(p, &c->solver.bytes, &c->solver.size);
     se3di_pack_bytes(p, &c->scene.bytes, &c->scene.size);
+    se3di_pack_bytes(p, &c->guests.bytes, &c->guests.size);
 }
 
 static void pack_analysis(se3di_coder *p, se3di_iopool *pool, se3d_run_analysis *a)
@@ -402,6 +405,9 @@ static se3d_status write_all(se3di_runner *r, se3di_iopool *pool, struct se3di_r
     se3d_status status = write_state(r, pool, &c->state);
     status = status < 0 ? status : write_solver(r, pool, &c->solver);
     status = status < 0 ? status : write_scene(r, pool, &c->scene);
+    if (status >= 0) {
+        status = se3di_guests_write(r->guests, pool, &c->guests.bytes, &c->guests.size, c->problem);
+    }
     return status < 0 ? status : write_bytes(r, pool, c, path);
 }
 
@@ -417,8 +423,10 @@ void se3di_checkpoint_write(se3di_runner *r, const se3di_place *place)
     const int why = errno;
     se3di_iopool_destroy(&pool);
     if (status < 0 && r->model->log) {
-        snprintf(text, sizeof text, "%.500s cannot be written: %s", path,
-                 status == SE3D_ERR_IO && why ? strerror(why) : se3d_status_get_text(status));
+        snprintf(text, sizeof text, "%.500s cannot be written: %.250s", path,
+                 c.problem[0]                   ? c.problem
+                 : status == SE3D_ERR_IO && why ? strerror(why)
+                                                : se3d_status_get_text(status));
         r->model->log(r->model->log_ctx, SE3D_LOG_WARNING, SE3D_LOG_CHECKPOINT, text);
     }
 }
@@ -567,7 +575,12 @@ se3d_status se3di_checkpoint_restore(se3di_runner *r, se3di_place *place)
     struct se3di_resume *c = r->resume;
     se3d_system *system = r->model->system;
     se3d_snapshot *snapshot = NULL;
-    se3d_status status = se3d_snapshot_read(system, c->state.bytes, c->state.size, &snapshot);
+    se3d_status status =
+        se3di_guests_read(r->guests, c->guests.bytes, c->guests.size, c->problem); /* sets values */
+    if (status < 0) {
+        return refuse(r, status, c->problem);
+    }
+    status = se3d_snapshot_read(system, c->state.bytes, c->state.size, &snapshot);
     if (status >= 0) {
         status = se3d_snapshot_restore(snapshot, system);
     }

@@ -11,12 +11,15 @@
 #include <string.h>
 
 #include "base/floats.h"
+#include "base/hash.h"
 #include "io/base/file.h"
+#include "io/base/pack.h"
 #include "io/base/pool.h"
 #include "io/base/unzip.h"
 #include "io/model/settable.h"
 #include "io/run/guest_description.h"
 
+#define STATE_MOST (SIZE_MAX / 4)
 enum { TOLD = 300, PATH_SIZE = 4096, FOLDER_MOST = 1000 };
 enum { GOOD_MOST = 1 /* OK, Warning */, DISCARD = 2, FATAL = 4 };
 
@@ -77,6 +80,12 @@ typedef struct calls {
     int (*whole_3)(void *c, const uint32_t *references, size_t count, int32_t *values, size_t room);
     int (*terminate)(void *c);
     void (*release)(void *c);
+    int (*get_state)(void *c, void **state);
+    int (*set_state)(void *c, void *state);
+    int (*free_state)(void *c, void **state);
+    int (*state_size)(void *c, void *state, size_t *size);
+    int (*write_state)(void *c, void *state, unsigned char *bytes, size_t size);
+    int (*read_state)(void *c, const unsigned char *bytes, size_t size, void **state);
 } calls;
 
 typedef struct guest {
@@ -86,6 +95,8 @@ typedef struct guest {
     se3di_guest_description description;
     uint32_t *inputs, *outputs; /* value references */
     bool *wholes;               /* [outputs] whole numbers */
+    double *said;               /* [outputs] what acts */
+    double *places;             /* [2 outputs] since when a rate is so, its integral then */
     void *object;               /* NULL: not loaded */
     void *instance;             /* NULL: none */
     calls f;
@@ -93,6 +104,7 @@ typedef struct guest {
     char told[TOLD];
     double start, time;
     double points;  /* communication points so far */
+    bool keeps;     /* its state is asked for */
     bool is_broken; /* it has said so: nothing of it may be called any more */
 } guest;
 
@@ -184,6 +196,17 @@ static bool load_functions(guest *g)
            load(g, "SetFloat64", &g->f.set_3) && load(g, "DoStep", &g->f.step_3);
 }
 
+static bool load_states(guest *g)
+{
+    const bool old = g->description.version == 2;
+    return load(g, old ? "GetFMUstate" : "GetFMUState", &g->f.get_state) &&
+           load(g, old ? "SetFMUstate" : "SetFMUState", &g->f.set_state) &&
+           load(g, old ? "FreeFMUstate" : "FreeFMUState", &g->f.free_state) &&
+           load(g, old ? "SerializedFMUstateSize" : "SerializedFMUStateSize", &g->f.state_size) &&
+           load(g, old ? "SerializeFMUstate" : "SerializeFMUState", &g->f.write_state) &&
+           load(g, old ? "DeSerializeFMUstate" : "DeserializeFMUState", &g->f.read_state);
+}
+
 static se3d_status load_object(guest *g, char *problem)
 {
     char path[PATH_SIZE];
@@ -201,8 +224,9 @@ static se3d_status load_object(guest *g, char *problem)
         snprintf(g->told, sizeof g->told, "%.290s", why ? why : path);
         return fail(g, SE3D_ERR_IO, problem, "it has no shared object that this machine can load");
     }
-    return load_functions(g) ? SE3D_OK
-                             : fail(g, SE3D_ERR_UNSUPPORTED, problem, "is not a whole unit");
+    return load_functions(g) && (!g->keeps || load_states(g))
+               ? SE3D_OK
+               : fail(g, SE3D_ERR_UNSUPPORTED, problem, "is not a whole unit");
 }
 
 static void unload(guest *g)
@@ -282,7 +306,9 @@ static se3d_status find_variables(guest *g, se3di_iopool *pool, char *problem)
     g->inputs = se3di_iopool_array(pool, e->input_count + 1, sizeof *g->inputs);
     g->outputs = se3di_iopool_array(pool, e->output_count + 1, sizeof *g->outputs);
     g->wholes = se3di_iopool_array(pool, e->output_count + 1, sizeof *g->wholes);
-    if (!g->inputs || !g->outputs || !g->wholes) {
+    g->said = se3di_iopool_array(pool, e->output_count + 1, sizeof *g->said);
+    g->places = se3di_iopool_array(pool, e->output_count + 1, 2 * sizeof *g->places);
+    if (!g->inputs || !g->outputs || !g->wholes || !g->said || !g->places) {
         return fail(g, SE3D_ERR_NO_MEMORY, problem, "out of memory");
     }
     for (size_t k = 0; k < e->input_count && status >= 0; ++k) {
@@ -432,6 +458,11 @@ static se3d_status open_guest(const guest *list, guest *g, se3di_iopool *pool, d
             return fail(g, SE3D_ERR_UNSUPPORTED, problem, "there can be one of this unit only");
         }
     }
+    if (g->keeps && !g->description.has_states) {
+        return fail(g, SE3D_ERR_UNSUPPORTED, problem,
+                    "the run can have no checkpoints, since the unit cannot write its state "
+                    "(canGetAndSetFMUState, canSerializeFMUState)");
+    }
     status = find_variables(g, pool, problem);
     status = status < 0 ? status : load_object(g, problem);
     if (status < 0) {
@@ -452,7 +483,7 @@ static se3d_status open_guest(const guest *list, guest *g, se3di_iopool *pool, d
 }
 
 se3d_status se3di_guests_open(se3d_model *model, const double span[2], const char *temporary,
-                              se3di_guests **guests, char problem[SE3DI_GUEST_PROBLEM])
+                              bool keeps, se3di_guests **guests, char problem[SE3DI_GUEST_PROBLEM])
 {
     se3di_iopool pool;
     *guests = NULL;
@@ -472,6 +503,7 @@ se3d_status se3di_guests_open(se3d_model *model, const double span[2], const cha
         memset(g, 0, sizeof *g);
         g->entry = &model->guests[k];
         g->folder = g->entry->path;
+        g->keeps = keeps;
         g->start = g->time = span[0];
         status = unpack(g, &made->pool, temporary, problem);
         status = status < 0 ? status : open_guest(list, g, &made->pool, span[1], problem);
@@ -581,18 +613,26 @@ static se3d_status step(guest *g, double time, char *problem)
     return went ? SE3D_OK : fail(g, SE3D_ERR_CALLBACK, problem, "its step has failed");
 }
 
+/* What it says acts on the model. */
 static se3d_status act(const se3di_guests *guests, guest *g, char *problem)
 {
     for (size_t k = 0; k < g->entry->output_count; ++k) {
         const se3di_guest_output *o = &g->entry->outputs[k];
-        double value = 0.0;
-        if (!get(g, k, &value) || !isfinite(value)) {
+        const se3d_function rate = guests->model->elements[o->index].rate;
+        double said = 0.0;
+        if (!get(g, k, &said) || !isfinite(said)) {
             return fail(g, SE3D_ERR_NOT_FINITE, problem, "an output cannot be had, or not finite");
         }
-        const se3d_status status = se3di_element_set(guests->model, o->index, o->component, value);
+        const bool is_new = memcmp(&said, &g->said[k], sizeof said) != 0 || !(g->points > 0.0);
+        se3d_status status = se3di_element_set(guests->model, o->index, o->component, said);
+        if (status >= 0 && rate.index1 && is_new) {
+            status =
+                se3di_rate_get_place(guests->model, rate, &g->places[2 * k], &g->places[2 * k + 1]);
+        }
         if (status < 0) {
             return fail(g, status, problem, se3d_system_get_error(guests->model->system));
         }
+        g->said[k] = said;
     }
     return SE3D_OK;
 }
@@ -631,4 +671,134 @@ se3d_status se3di_guests_meet(se3di_guests *guests, se3di_sample *sample, double
     se3di_floats_restore(host);
     guests->has_failed = status < 0;
     return status;
+}
+
+/* ---- states -----------------------------------------------------------------------------------*/
+
+/* Bytes of a unit that is open, in memory of the pool. */
+static bool write_state(guest *g, se3di_iopool *pool, const unsigned char **bytes, size_t *size)
+{
+    void *state = NULL;
+    unsigned char *made = NULL;
+    bool went = good(g, g->f.get_state(g->instance, &state));
+    const bool has_state = went;
+    went = went && good(g, g->f.state_size(g->instance, state, size)) && *size < STATE_MOST;
+    if (went) {
+        made = se3di_iopool_alloc(pool, *size + 1);
+        went = made && good(g, g->f.write_state(g->instance, state, made, *size));
+    }
+    if (has_state && !g->is_broken) {
+        went = good(g, g->f.free_state(g->instance, &state)) && went;
+    }
+    *bytes = made;
+    return went;
+}
+
+static bool read_state(guest *g, const unsigned char *bytes, size_t size)
+{
+    void *state = NULL;
+    bool went = good(g, g->f.read_state(g->instance, bytes, size, &state));
+    const bool has_state = went;
+    went = went && good(g, g->f.set_state(g->instance, state));
+    if (has_state && !g->is_broken) {
+        went = good(g, g->f.free_state(g->instance, &state)) && went;
+    }
+    return went;
+}
+
+/* One way through what is kept of a unit. */
+static void pack(guest *g, se3di_coder *p, const unsigned char **bytes, size_t *size)
+{
+    uint64_t token =
+        se3di_hash_bytes(SE3DI_HASH_START, g->description.token, strlen(g->description.token));
+    const uint64_t expected = token;
+    se3di_code_word(p, &token);
+    p->failed = p->failed || token != expected;
+    se3di_code_numbers(p, &g->time, 1);
+    se3di_code_numbers(p, &g->points, 1);
+    se3di_code_numbers(p, g->said, g->entry->output_count);
+    se3di_code_numbers(p, g->places, 2 * g->entry->output_count);
+    se3di_pack_bytes(p, bytes, size);
+}
+
+static void pack_all(se3di_guests *guests, se3di_coder *p, const unsigned char **bytes,
+                     size_t *sizes)
+{
+    for (size_t k = 0; k < guests->count; ++k) {
+        pack(&guests->list[k], p, &bytes[k], &sizes[k]);
+    }
+}
+
+se3d_status se3di_guests_write(se3di_guests *guests, se3di_iopool *pool,
+                               const unsigned char **bytes, size_t *size,
+                               char problem[SE3DI_GUEST_PROBLEM])
+{
+    *bytes = NULL;
+    *size = 0;
+    if (!guests) {
+        return SE3D_OK;
+    }
+    const unsigned char **states = se3di_iopool_array(pool, guests->count + 1, sizeof *states);
+    size_t *sizes = se3di_iopool_array(pool, guests->count + 1, sizeof *sizes);
+    for (size_t k = 0; k < guests->count && states && sizes; ++k) {
+        guest *g = &guests->list[k];
+        if (!write_state(g, pool, &states[k], &sizes[k])) {
+            return fail(g, SE3D_ERR_INVALID_ARGUMENT, problem, "its state cannot be written");
+        }
+    }
+    se3di_coder measure = {.size = SIZE_MAX};
+    unsigned char *made = NULL;
+    if (states && sizes) {
+        pack_all(guests, &measure, states, sizes);
+        made = se3di_iopool_alloc(pool, measure.at);
+    }
+    if (!made) {
+        snprintf(problem, SE3DI_GUEST_PROBLEM, "out of memory");
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3di_coder p = {.out = made, .size = measure.at};
+    pack_all(guests, &p, states, sizes);
+    *bytes = made;
+    *size = p.at;
+    return SE3D_OK;
+}
+
+/* What acted at the last point acts again. The state of the system is put back afterwards. */
+static se3d_status act_again(const se3d_model *model, const guest *g, char *problem)
+{
+    for (size_t k = 0; k < g->entry->output_count; ++k) {
+        const se3di_guest_output *o = &g->entry->outputs[k];
+        const se3d_function rate = model->elements[o->index].rate;
+        const se3d_status status =
+            rate.index1 ? se3di_rate_put_place(model, rate, g->places[2 * k], g->places[2 * k + 1],
+                                               g->said[k])
+                        : se3di_element_set(model, o->index, o->component, g->said[k]);
+        if (status < 0) {
+            return fail(g, status, problem, se3d_system_get_error(model->system));
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_guests_read(se3di_guests *guests, const unsigned char *bytes, size_t size,
+                              char problem[SE3DI_GUEST_PROBLEM])
+{
+    se3di_coder p = {.in = bytes, .size = size};
+    for (size_t k = 0; guests && k < guests->count; ++k) {
+        guest *g = &guests->list[k];
+        const unsigned char *state = NULL;
+        size_t state_size = 0;
+        pack(g, &p, &state, &state_size);
+        if (p.failed || !(g->points > 0.0)) {
+            return fail(g, SE3D_ERR_STATE, problem, "the checkpoint is of another unit");
+        }
+        if (!good(g, g->f.leave(g->instance)) || !read_state(g, state, state_size)) {
+            return fail(g, SE3D_ERR_STATE, problem, "it refuses the state in the checkpoint");
+        }
+        const se3d_status status = act_again(guests->model, g, problem);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return SE3D_OK;
 }

@@ -76,6 +76,21 @@ static void take_head(reading *r, const char **a)
     r->d->token = copy(r, token ? token : find(a, "instantiationToken"));
 }
 
+static bool is_true(const char **attributes, const char *name)
+{
+    const char *value = find(attributes, name);
+    return value && (is(value, "true") || is(value, "1"));
+}
+
+static void take_kind(reading *r, const char **a)
+{
+    const bool old = r->d->version == 2;
+    r->d->identifier = copy(r, find(a, "modelIdentifier"));
+    r->d->is_single = is_true(a, "canBeInstantiatedOnlyOncePerProcess");
+    r->d->has_states = is_true(a, old ? "canGetAndSetFMUstate" : "canGetAndSetFMUState") &&
+                       is_true(a, old ? "canSerializeFMUstate" : "canSerializeFMUState");
+}
+
 static void XMLCALL begin(void *ctx, const char *name, const char **a)
 {
     static const char *const types[] = {"Float64", "Float32", "Int64",  "UInt64",      "Int32",
@@ -85,9 +100,7 @@ static void XMLCALL begin(void *ctx, const char *name, const char **a)
     if (is(name, "fmiModelDescription")) {
         take_head(r, a);
     } else if (is(name, "CoSimulation")) {
-        const char *single = find(a, "canBeInstantiatedOnlyOncePerProcess");
-        r->d->identifier = copy(r, find(a, "modelIdentifier"));
-        r->d->is_single = single && (is(single, "true") || is(single, "1"));
+        take_kind(r, a);
     } else if (is(name, "ScalarVariable")) {
         take_variable(r, "", a);
     } else if (r->d->version == 3 && r->d->count > 0 && is(name, "Dimension")) {

@@ -17,6 +17,7 @@ typedef struct se3di_guest_description {
     const char *token;
     const char *identifier; /* for co-simulation; NULL: the unit is for something else */
     bool is_single;         /* a process can have one instance */
+    bool has_states;        /* that can be had, set and written as bytes */
     se3di_guest_variable *variables;
     size_t count, capacity;
 } se3di_guest_description;

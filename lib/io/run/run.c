@@ -677,7 +677,9 @@ static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *e
     if (r->model->guest_count > 0 && se3di_analysis_has_motion(entry)) {
         char problem[SE3DI_GUEST_PROBLEM];
         const double span[2] = {start, start + entry->analysis.duration};
-        status = se3di_guests_open(r->model, span, r->options->temporary, &r->guests, problem);
+        const bool keeps = r->options->checkpoint > 0.0 || r->options->resume;
+        status =
+            se3di_guests_open(r->model, span, r->options->temporary, keeps, &r->guests, problem);
         if (status < 0) {
             return fail(r, status, problem);
         }
@@ -897,10 +899,6 @@ se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options, s
     }
     if (model->running || se3d_system_is_busy(model->system)) {
         return fail(&r, SE3D_ERR_STATE, "the model is being run");
-    }
-    if (model->guest_count > 0 && (used.checkpoint > 0.0 || used.resume)) {
-        return fail(&r, SE3D_ERR_STATE,
-                    "a run with `fmus` has no checkpoints: the state of the units is not in them");
     }
     r.run = create_run(model);
     if (!r.run) {
