@@ -382,6 +382,16 @@ static inline se3d_run_options se3d_run_options_default(void)
 SE3D_API se3d_status se3d_model_run(se3d_model *model, const se3d_run_options *options,
                                     se3d_run **out, se3d_model_error *error);
 
+/* Read a model file, run every analysis and write its results, in one call: as
+ * se3d_model_read_file, se3d_model_run and se3d_model_destroy with their defaults.
+ * @param[in] path       of the model file
+ * @param[in] directory  for relative files of results, made if missing; NULL: "."
+ * @param[out] error     filled on failure, emptied on success; may be NULL
+ * @return OK or INFO_* of the last analysis, or as se3d_model_read_file and se3d_model_run
+ * @since 0.1 */
+SE3D_API se3d_status se3d_model_run_file(const char *path, const char *directory,
+                                         se3d_model_error *error);
+
 /* Destroy the report of a run; NULL is fine. @since 0.1 */
 SE3D_API void se3d_run_destroy(se3d_run *run);
 

@@ -402,6 +402,23 @@ static void model_run(const world *w)
     se3d_run_destroy(run);
 }
 
+static void model_run_file(const world *w)
+{
+    const char *source = getenv("SE3D_SOURCE_DIR");
+    se3d_model_error error;
+    char path[800];
+    IS(se3d_model_run_file(NULL, w->folder, &error), SE3D_ERR_NULL);
+    CHECK(error.message[0]);
+    IS(se3d_model_run_file("/nowhere/a.yaml", w->folder, NULL), SE3D_ERR_IO);
+    IS(se3d_model_run_file("/nowhere/a.yaml", w->folder, &error), SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "/nowhere/a.yaml");
+    snprintf(path, sizeof path, "%s/examples/models/tsda_mass.yaml", source ? source : ".");
+    IS(se3d_model_run_file(path, "/dev/null/folder", &error), SE3D_ERR_IO);
+    CHECK_CONTAINS(error.message, "cannot be written");
+    IS(se3d_model_run_file(path, w->folder, &error), SE3D_OK);
+    CHECK(error.message[0] == '\0');
+}
+
 static void scene_create(const world *w)
 {
     se3d_scene *scene = w->scene;
@@ -522,6 +539,7 @@ static const struct {
     {" se3d_model_list_channels se3d_model_get_listed_channel ", model_list_channels},
     {" se3d_model_get_channel_value ", model_get_channel_value},
     {" se3d_model_run ", model_run},
+    {" se3d_model_run_file ", model_run_file},
     {" se3d_scene_create ", scene_create},
     {" se3d_scene_record ", scene_record},
     {" se3d_scene_write ", scene_write},
