@@ -62,7 +62,19 @@ holds 'rows at other times' [ "$(grep -c . "$dir/p2/pendulum.csv")" = 4 ]
 is "$(cat "$dir/out" "$dir/err")" ''
 expect 'no folder -' 2 sh -c 'cd "$2" && "$0" run "$1" -o - -q' "$program" "$models/pendulum.yaml" "$dir"
 says 'results are not for standard output'
+says '--print -'
 holds 'a folder -' [ ! -e "$dir/-" ]
+expect 'rows printed' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" --duration 0.1 --print -
+holds 'other rows' cmp "$dir/out" "$dir/p3/pendulum.csv"
+holds 'more than rows' [ ! -s "$dir/err" ]
+expect 'rows printed' 0 sh -c '"$0" run - -o "$2" --duration 0.1 --print pendulum.csv <"$1"' "$program" \
+    "$models/pendulum.yaml" "$dir/p3"
+holds 'other rows' cmp "$dir/out" "$dir/p3/pendulum.csv"
+expect 'no such file' 2 "$program" run "$models/pendulum.yaml" -o "$dir/p4" --print none.csv
+says 'has no such file'
+holds 'it ran' [ ! -e "$dir/p4" ]
+expect 'both' 2 "$program" run "$models/pendulum.yaml" -o "$dir/p4" --print - --json
+says 'not for both'
 expect 'a model to standard output' 0 "$program" write "$models/pendulum.yaml" -o -
 has "$dir/out" 'se3d: 1'
 expect 'threads' 0 "$program" run "$source/tests/mpi/column.yaml" -q --duration 0.01 --threads 1 -o "$dir/t1"

@@ -63,7 +63,8 @@ static const char **value_target(options *o, const char *name)
                  {"--jobs", &o->jobs},         {"--checkpoint", &o->checkpoint},
                  {"--match", &o->match},       {"--kind", &o->kind},
                  {"--port", &o->port},         {"--title", &o->title},
-                 {"--with", &o->with},         {"--hide", &o->hide}};
+                 {"--with", &o->with},         {"--hide", &o->hide},
+                 {"--print", &o->print}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -183,7 +184,7 @@ static int report_no_operand(const command_entry *c)
     return EXIT_USAGE;
 }
 
-/* `-o -` is what a command prints without -o; it makes no file or folder of that name. */
+/* `-o -` is what a command prints without -o; it makes no file or folder of that name (-o ./-). */
 static int check_output(options *o, const command_entry *c)
 {
     if (!o->directory || strcmp(o->directory, "-") != 0) {
@@ -192,7 +193,9 @@ static int check_output(options *o, const command_entry *c)
     o->directory = NULL;
     return c->prints ? EXIT_DONE
                      : usage_error(c->name,
-                                   "results are not for standard output; of that name:", "-o ./-");
+                                   "results are not for standard output, but the rows of one file "
+                                   "are:",
+                                   "--print -");
 }
 
 int options_read(options *o, const command_entry *c, int count, char *const *words)

@@ -34,6 +34,7 @@ typedef struct options {
     const char *title;
     const char *hide;
     const char *with;
+    const char *print;
     const char *captions[CAPTIONS_MAX];
     size_t caption_count;
     se3d_model_setting settings[SETTINGS_MAX];

@@ -11,6 +11,7 @@
 #include "notes.h"
 #include "options.h"
 #include "pictures.h"
+#include "print_rows.h"
 #include "process.h"
 #include "warnings.h"
 
@@ -535,6 +536,10 @@ static int run_model(const warnings *warned, se3d_model *model, const char *pict
         return EXIT_FAILED;
     }
     int code = run_into(warned, model, folder, &scene);
+    if (o->print && code != EXIT_USAGE) {
+        const int printed = print_rows(folder, print_rows_find(o, model));
+        code = code == EXIT_DONE ? printed : code;
+    }
     if (scene && pictures_make(model, scene, folder, pictures, o->quiet || o->json) != EXIT_DONE) {
         code = code == EXIT_DONE ? EXIT_FAILED : code;
     }
@@ -664,6 +669,11 @@ static int command_run(int count, char *const *words)
     if (!is_checkpoint(&o)) {
         return EXIT_USAGE;
     }
+    if (o.print && o.json) {
+        fprintf(stderr, "se3d run: standard output is for --print or for --json, not for both\n");
+        return EXIT_USAGE;
+    }
+    o.quiet = o.quiet || o.print; /* of what is not an error or a warning */
     warnings warned = {.o = &o};
     se3d_model_options how = options_get_model(&o);
     how.log = warnings_add;
@@ -678,7 +688,8 @@ static int command_run(int count, char *const *words)
                        "the model, or give --analysis and --duration");
         code = EXIT_USAGE;
     } else {
-        code = warnings_forbid(&warned, EXIT_DONE);
+        code = o.print && !print_rows_find(&o, model) ? EXIT_USAGE
+                                                      : warnings_forbid(&warned, EXIT_DONE);
         code = code == EXIT_DONE ? warnings_forbid(&warned, run_model(&warned, model, NULL)) : code;
     }
     if (code == EXIT_DONE) {
@@ -707,6 +718,9 @@ const command_entry run_entry = {
             COMMAND_OPTIONS_OF_SOLVERS,
             {"--every", NULL, "T", "time between rows of the first of `output` [s]"},
             {"--threads", NULL, "N", "of particles, as contact.threads; results stay the same"},
+            {"--print", NULL, "FILE",
+             "print the rows of this file of `output` (-: of the first with channels) instead of "
+             "the summary"},
             {"--checkpoint", NULL, "T",
              "every T seconds of the clock, write all that is needed to go on to run.checkpoint, "
              "beside the results; 0: at every row"},
@@ -719,16 +733,18 @@ const command_entry run_entry = {
             {"--json-lines", NULL, NULL,
              "print JSON, an object a line: how far the run is, at last the summary"},
             {0}},
-    .examples = (const command_example[]){{"run pendulum.yaml", "results in results/pendulum"},
-                                          {"run fourbar.yaml --set l=0.3 -o short",
-                                           "another length, results in short"},
-                                          {"run fourbar.yaml --set bodies.coupler.mass=\"30 g\"",
-                                           "another mass, whatever the file says there"},
-                                          {"run car.yaml --method radau --tolerance 1e-8 --json",
-                                           "another method and tolerance, a summary for programs"},
-                                          {"run hopper.yaml --checkpoint 60 --resume",
-                                           "a long run: the same command again goes on with it"},
-                                          {0}},
+    .examples =
+        (const command_example[]){
+            {"run pendulum.yaml", "results in results/pendulum"},
+            {"run fourbar.yaml --set l=0.3 -o short", "another length, results in short"},
+            {"run fourbar.yaml --set bodies.coupler.mass=\"30 g\"",
+             "another mass, whatever the file says there"},
+            {"run car.yaml --method radau --tolerance 1e-8 --json",
+             "another method and tolerance, a summary for programs"},
+            {"run pendulum.yaml --print - | head", "the first rows, for other programs"},
+            {"run hopper.yaml --checkpoint 60 --resume",
+             "a long run: the same command again goes on with it"},
+            {0}},
     .exits = "0 done; 1 the analysis failed or was ended by Ctrl-C or SIGTERM (results so "
              "far are on disk); 2 bad usage or model.",
 };
