@@ -319,6 +319,19 @@ static const double *find_multipliers(se3di_equations *equations)
     return equations->l;
 }
 
+/* By the links alone; near singular positions all rows are needed, and with them the frames. */
+static se3d_status factor_loops(se3di_equations *equations)
+{
+    if (equations->is_placed) {
+        return se3di_tree_loops_factor(&equations->loops);
+    }
+    if (se3di_tree_loops_factor_links(&equations->loops)) {
+        return SE3D_OK;
+    }
+    place(equations);
+    return se3di_tree_loops_factor(&equations->loops);
+}
+
 /* Accelerations of the tree from what acts; with loops their multipliers, too. */
 static se3d_status solve_motion(se3di_equations *equations, double *qddot)
 {
@@ -328,7 +341,7 @@ static se3d_status solve_motion(se3di_equations *equations, double *qddot)
         se3di_tree_accelerate(tree, tree->e, qddot);
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_tree_loops_factor(&equations->loops));
+    SE3DI_TRY(factor_loops(equations));
     return se3di_tree_loops_accelerate(&equations->loops, qddot);
 }
 
@@ -362,10 +375,19 @@ static se3d_status finish(se3di_equations *equations, double t, double power[2],
     return complete_tree(equations, t, power, derivative);
 }
 
+/* Loops whose rows come from the links, without functions of time. */
+static int has_plain_loops(const se3di_equations *equations)
+{
+    return equations->has_loops && !is_loaded(equations) && equations->tree->given_count == 0 &&
+           equations->assembly.timed_count == 0 && equations->assembly.user_count == 0 &&
+           se3di_tree_loops_need_links_only(&equations->loops);
+}
+
 /* Gravity and efforts are all that acts: no frame of a body is needed. */
 static int falls(const se3di_equations *equations)
 {
-    return is_open(equations) && !equations->assembly.push && se3di_tree_falls(equations->tree);
+    return (is_open(equations) || has_plain_loops(equations)) && !equations->assembly.push &&
+           se3di_tree_falls(equations->tree);
 }
 
 /* With the efforts of the last sums. */

@@ -65,6 +65,8 @@ void se3di_equations_suit_masses(se3di_equations *equations)
         se3di_tree_refresh(equations->tree);
         if (equations->has_loops && equations->masses_version != model->masses_version) {
             se3di_tree_loops_refresh(&equations->loops);
+        } else if (equations->has_loops) {
+            se3di_tree_loops_take_points(&equations->loops);
         }
         equations->is_placed = 0;
     }

@@ -232,6 +232,8 @@ static se3d_status begin(se3d_coordinates *c)
         se3di_tree_refresh(&c->tree);
         if (c->masses_version != model->masses_version) {
             se3di_tree_loops_refresh(&c->loops);
+        } else {
+            se3di_tree_loops_take_points(&c->loops);
         }
         take_versions(c);
         c->is_placed = 0;

@@ -192,6 +192,7 @@ void se3di_tree_loops_refresh(se3di_tree_loops *loops)
 {
     se3di_tree *tree = loops->tree;
     uint64_t state = 1;
+    se3di_tree_loops_take_points(loops);
     if (!loops->system.is_there) {
         return;
     }

@@ -21,7 +21,7 @@
 #define PASSES_MIN 4     /* strips that only pass a freedom, so that it pays to keep it */
 #define PAIRS_MAX  1000  /* of strips on one freedom, a strip: S is nearly full beyond */
 
-#define SYSTEM_STRIPS 11
+#define SYSTEM_STRIPS 12
 #define SYSTEM_BLOCKS 7
 
 static void list_strips(se3di_loop_system *s, se3di_array list[SYSTEM_STRIPS])
@@ -34,6 +34,7 @@ static void list_strips(se3di_loop_system *s, se3di_array list[SYSTEM_STRIPS])
         {(void **)&s->pivot, lanes, size},
         {(void **)&s->weight, lanes, size},
         {(void **)&s->usual, lanes, size},
+        {(void **)&s->least, lanes, size},
         {(void **)&s->bound, lanes, size},
         {(void **)&s->c, lanes, size},
         {(void **)&s->z, lanes, size},
@@ -186,6 +187,16 @@ static void make_strips(builder *b)
             memset(s->is_passed + n->v + j, 1, (size_t)count);
         }
     }
+}
+
+/* The rows or freedoms of every strip, 0: they differ. */
+static int32_t find_even(const se3di_loop_system *s)
+{
+    int32_t even = s->strips[0].count;
+    for (int32_t k = 1; k < s->strip_count; ++k) {
+        even = s->strips[k].count == even ? even : 0;
+    }
+    return even;
 }
 
 static void list_uses(builder *b)
@@ -454,6 +465,7 @@ static se3d_status build(builder *b, const se3d_allocator *allocator)
     list_uses(b);
     SE3DI_TRY(make_blocks(b, allocator));
     se3di_loop_system_forget(s);
+    s->even = find_even(s);
     s->is_there = 1;
     return SE3D_OK;
 }
@@ -504,26 +516,29 @@ void se3di_loop_system_destroy(se3di_loop_system *s, const se3d_allocator *alloc
     *s = (se3di_loop_system){0};
 }
 
+/* What follows from the usual sizes. Rows of which they are not known are not dull: with callbacks
+ * of users nothing is learnt. */
+static void take_usual(se3di_loop_system *s)
+{
+    s->is_dull = 0;
+    for (int32_t k = 0; k < SE3DI_STRIP * s->row_strips; ++k) {
+        const double usual = s->usual[k] > 0.0 ? s->usual[k] : 1.0;
+        s->is_dull |= s->usual[k] > 0.0 && s->usual[k] < USUAL_MIN;
+        s->least[k] = fmax(PIVOT_MIN, CLEAR * usual);
+    }
+}
+
 void se3di_loop_system_forget(se3di_loop_system *s)
 {
     for (int32_t k = 0; k < SE3DI_STRIP * s->row_strips; ++k) {
         s->usual[k] = 0.0;
     }
-}
-
-/* Rows whose usual size is not known are not dull: with callbacks of users nothing is learnt. */
-static int has_dull_row(const se3di_loop_system *s)
-{
-    int found = 0;
-    for (int32_t k = 0; k < SE3DI_STRIP * s->row_strips; ++k) {
-        found |= s->usual[k] > 0.0 && s->usual[k] < USUAL_MIN;
-    }
-    return found;
+    take_usual(s);
 }
 
 int se3di_loop_system_is_regular(const se3di_loop_system *s)
 {
-    return s->is_there && s->usual[0] > 0.0 && !has_dull_row(s);
+    return s->is_there && s->usual[0] > 0.0 && !s->is_dull;
 }
 
 #define MEMBER_COST 18.0
@@ -551,20 +566,20 @@ double se3di_loop_system_cost(const se3di_loop_system *s)
 int se3di_loop_system_factor(se3di_loop_system *s, const se3di_tree *tree)
 {
     const int32_t rows = SE3DI_STRIP * s->row_strips;
-    if (has_dull_row(s)) {
+    if (s->is_dull) {
         s->is_fine = 0;
         return 0;
     }
     for (int32_t k = 0; k < rows; ++k) {
-        const double usual = s->usual[k] > 0.0 ? s->usual[k] : 1.0;
-        s->bound[k] = fmax(PIVOT_MIN, CLEAR * usual) * s->weight[k];
+        s->bound[k] = s->least[k] * s->weight[k];
     }
     s->is_fine = s->core->factor(s, tree);
     s->is_refined = s->is_near = 0;
-    for (int32_t k = 0; k < rows && s->is_fine; ++k) {
-        const int is_row = k % SE3DI_STRIP < s->strips[k / SE3DI_STRIP].count;
-        s->is_refined |= is_row && s->pivot[k] * EXACT * s->weight[k] > 1.0;
-        s->is_near |= is_row && s->pivot[k] * s->bound[k] > CLEAR / NEAR;
+    for (int32_t k = 0; k < s->row_strips && s->is_fine; ++k) {
+        for (int32_t at = SE3DI_STRIP * k; at < SE3DI_STRIP * k + s->strips[k].count; ++at) {
+            s->is_refined |= s->pivot[at] * EXACT * s->weight[at] > 1.0;
+            s->is_near |= s->pivot[at] * s->bound[at] > CLEAR / NEAR;
+        }
     }
     return s->is_fine;
 }
@@ -627,4 +642,5 @@ void se3di_loop_system_learn(se3di_loop_system *s, const se3di_tree *tree)
             s->usual[at] = fmin(1.0, part > s->usual[at] ? part : s->usual[at]);
         }
     }
+    take_usual(s);
 }

@@ -46,6 +46,8 @@ typedef struct se3di_loop_system {
     int32_t is_fine;     /* not 0: the factors serve, */
     int32_t is_refined;  /* and solutions are refined once */
     int32_t is_near;     /* some pivot is much smaller than usual */
+    int32_t even;        /* rows or freedoms of every strip, 0: they differ */
+    int32_t is_dull;     /* some row has next to nothing at every pose */
     se3di_loop_strip *strips;
     const int32_t *member_begin, *member; /* of loops: velocities, see tree/loops.h */
     int8_t *is_passed;                    /* [velocities]: not eliminated */
@@ -61,7 +63,8 @@ typedef struct se3di_loop_system {
     double *pivot;        /* [strips][4]: inverse pivots */
     double *weight;       /* [strips][4]: sizes of rows, as in tree/loops.h */
     double *usual;        /* [strips][4]: pivots over weights at poses that nothing singles out */
-    double *bound;        /* [strips][4]: what pivots must be beyond */
+    double *least;        /* [strips][4]: the same that pivots must be beyond, */
+    double *bound;        /* [strips][4]: and pivots */
     double *Y;            /* [quads][4] */
     double *c, *z, *rest; /* [strips][4] */
     const struct se3di_loop_core *core;

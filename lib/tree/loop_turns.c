@@ -21,7 +21,7 @@ static const double *frame_of(const se3di_tree_loops *loops, uint32_t loop)
     return model->frames[model->constraints[loops->constraints[loop]].bodies[0]].A;
 }
 
-static int is_point(const se3di_tree_loops *loops, uint32_t loop)
+int se3di_tree_loops_is_point(const se3di_tree_loops *loops, uint32_t loop)
 {
     const se3di_model *model = loops->tree->model;
     const se3di_constraint *c = &model->constraints[loops->constraints[loop]];
@@ -57,7 +57,7 @@ void se3di_tree_loops_watch_turn(se3di_tree_loops *loops, uint32_t loop, int loo
 {
     double *const columns[3] = {loops->y, loops->H, loops->b};
     se3di_loop_turn *turn = &loops->turns[loop];
-    if (!is_point(loops, loop)) {
+    if (!se3di_tree_loops_is_point(loops, loop)) {
         return;
     }
     eval_columns(loops, loop, columns);
@@ -97,7 +97,7 @@ int se3di_tree_loops_foresee_turn(se3di_tree_loops *loops, uint32_t loop)
     se3di_loop_turn *turn = &loops->turns[loop];
     double *Q = turn->Q, n[3] = {0.0, 0.0, 0.0};
     turn->size = sqrt(Q[0] + Q[4] + Q[8]);
-    if (!is_point(loops, loop) || !find_normal(Q, n)) {
+    if (!se3di_tree_loops_is_point(loops, loop) || !find_normal(Q, n)) {
         return 0;
     }
     int least = 0;
@@ -135,12 +135,12 @@ void se3di_tree_loops_turn_back(const se3di_tree_loops *loops, uint32_t loop, do
     se3di_mul(frame_of(loops, loop), own, x);
 }
 
-void se3di_tree_loops_turn_rows(const se3di_tree_loops *loops)
+void se3di_tree_loops_turn_rows(const se3di_tree_loops *loops, int others_only)
 {
     const se3di_assembly *a = loops->assembly;
     for (uint32_t k = 0; k < loops->count; ++k) {
         const uint32_t constraint = loops->constraints[k];
-        if (!loops->turns[k].is_turned) {
+        if (!loops->turns[k].is_turned || (others_only && loops->points[k].is_there)) {
             continue;
         }
         se3di_tree_loops_turn(

@@ -20,7 +20,7 @@
 #define TOLERANCE   1e-15
 #define REFINEMENTS 3
 
-#define LOOPS_STRUCTURE 13
+#define LOOPS_STRUCTURE 15
 #define LOOPS_VALUES    12
 
 static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE])
@@ -40,6 +40,8 @@ static void list_structure(se3di_tree_loops *l, se3di_array list[LOOPS_STRUCTURE
         {(void **)&l->member, l->member_count, sizeof *l->member},
         {(void **)&l->place_of, l->tree->count, sizeof *l->place_of},
         {(void **)&l->turns, n, sizeof *l->turns},
+        {(void **)&l->points, n, sizeof *l->points},
+        {(void **)&l->others, n, sizeof *l->others},
     };
     _Static_assert(sizeof arrays == LOOPS_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -331,6 +333,7 @@ static void load_rows(se3di_tree_loops *loops, uint32_t loop, double *c, double 
         }
         se3di_cross(link->w, link->s, x);
         se3di_cross(link->w, x, turning);
+        se3di_add(turning, tree->pull, turning);
         for (int32_t r = 0; r < rows; ++r) {
             const double *row = a->C + a->block_offset[k] + 6 * (size_t)kept[r];
             const size_t at = place * (size_t)rows + (size_t)r;
@@ -374,6 +377,9 @@ static void pass_row(const se3di_tree *tree, int32_t node, double *K, double *si
     }
     se3di_tree_bias(tree, (uint32_t)node, bias);
     *c -= se3di_dot(K, bias) + se3di_dot(K + 3, bias + 3);
+    if (n->parent < 0) { /* the ground of a tree at which gravity pulls accelerates by -g */
+        *c += se3di_dot(K + 3, tree->pull);
+    }
 }
 
 static void carry_down(se3di_tree_loops *loops, uint32_t loop, double *Y, double *c)
@@ -423,6 +429,7 @@ static void load_lanes(const se3di_tree_loops *loops, const se3di_loop_strip *st
     double x[3], turning[3];
     se3di_cross(link->w, link->s, x);
     se3di_cross(link->w, x, turning);
+    se3di_add(turning, tree->pull, turning);
     for (int32_t r = 0; r < strip->count; ++r) {
         const double *row = a->C + a->block_offset[entry] + 6 * (size_t)kept[r], *turns = row + 3;
         double own_row[6], weight = light * se3di_dot(row, row);
@@ -438,10 +445,24 @@ static void load_lanes(const se3di_tree_loops *loops, const se3di_loop_strip *st
     }
 }
 
+static void load_bodies(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
+                        const se3di_loop_path *path, size_t at)
+{
+    const se3di_assembly *a = loops->assembly;
+    const se3di_tree *tree = loops->tree;
+    const uint32_t constraint = loops->constraints[strip->loop];
+    for (int32_t e = a->joint_begin[constraint]; e < a->joint_begin[constraint + 1]; ++e) {
+        int32_t place = 0;
+        while (path->node[place] != tree->node_of[a->free_body[a->joint_body[e]]]) {
+            ++place;
+        }
+        load_lanes(loops, strip, e, loops->K + 6 * SE3DI_STRIP * (size_t)place, at);
+    }
+}
+
 /* A strip from its bodies to the ground: Y, c, weight. */
 static void carry_strip(se3di_tree_loops *loops, int32_t index)
 {
-    const se3di_assembly *a = loops->assembly;
     const se3di_tree *tree = loops->tree;
     const se3di_loop_system *system = &loops->system;
     const se3di_loop_strip *strip = &system->strips[index];
@@ -454,16 +475,15 @@ static void carry_strip(se3di_tree_loops *loops, int32_t index)
                                   .parent = loops->path_parent + begin};
     const size_t at = SE3DI_STRIP * (size_t)index;
     memset(loops->K, 0, 6 * SE3DI_STRIP * (size_t)path.count * sizeof *loops->K);
+    const int is_point = loops->points[strip->loop].is_there;
     for (int32_t r = 0; r < SE3DI_STRIP; ++r) {
-        system->c[at + (size_t)r] = r < strip->count ? gamma[kept[r]] : 0.0;
+        system->c[at + (size_t)r] = r < strip->count && !is_point ? gamma[kept[r]] : 0.0;
         system->weight[at + (size_t)r] = 0.0;
     }
-    for (int32_t e = a->joint_begin[constraint]; e < a->joint_begin[constraint + 1]; ++e) {
-        int32_t place = 0;
-        while (path.node[place] != tree->node_of[a->free_body[a->joint_body[e]]]) {
-            ++place;
-        }
-        load_lanes(loops, strip, e, loops->K + 6 * SE3DI_STRIP * (size_t)place, at);
+    if (is_point) {
+        se3di_tree_loops_load_point(loops, strip, loops->K, system->c + at, system->weight + at);
+    } else {
+        load_bodies(loops, strip, &path, at);
     }
     system->core->carry(tree, &path, loops->K, system->c + at,
                         system->Y + SE3DI_STRIP * (size_t)strip->Y);
@@ -550,15 +570,53 @@ static se3d_status factor_all(se3di_tree_loops *loops)
 void se3di_tree_loops_eval_rows(se3di_tree_loops *loops)
 {
     se3di_assembly_eval_some_rows(loops->assembly, loops->constraints, loops->count, loops->gamma);
-    se3di_tree_loops_turn_rows(loops);
+    se3di_tree_loops_turn_rows(loops, 0);
+    loops->is_aside = 0;
+}
+
+/* Only those that do not come from the links. */
+static void eval_others(se3di_tree_loops *loops)
+{
+    if (loops->other_count > 0) {
+        se3di_assembly_eval_some_rows(loops->assembly, loops->others, loops->other_count,
+                                      loops->gamma);
+        se3di_tree_loops_turn_rows(loops, 1);
+    }
+    loops->is_aside = loops->other_count < loops->count;
+}
+
+/* Rows that somebody has left out are not of the links. */
+static int may_take_links(const se3di_tree_loops *loops)
+{
+    return loops->system.is_there && loops->tree->model->left_out_count == 0;
+}
+
+int se3di_tree_loops_need_links_only(const se3di_tree_loops *loops)
+{
+    return loops->other_count == 0 && may_take_links(loops);
+}
+
+int se3di_tree_loops_factor_links(se3di_tree_loops *loops)
+{
+    loops->is_aside = 1;
+    loops->is_clear = factor_strips(loops);
+    return loops->is_clear;
 }
 
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops)
 {
+    if (may_take_links(loops)) {
+        eval_others(loops);
+        SE3DI_TRY(se3di_user_report(loops->tree->model, loops->error));
+        loops->is_clear = factor_strips(loops);
+        if (loops->is_clear) {
+            return SE3D_OK;
+        }
+    }
     se3di_tree_loops_eval_rows(loops);
     SE3DI_TRY(se3di_user_report(loops->tree->model, loops->error));
-    loops->is_clear = loops->system.is_there && factor_strips(loops);
-    return loops->is_clear ? SE3D_OK : factor_all(loops);
+    loops->is_clear = 0;
+    return factor_all(loops);
 }
 
 int32_t se3di_tree_loops_count_dependent(const se3di_tree_loops *loops)
@@ -716,11 +774,13 @@ se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, d
     return status;
 }
 
-void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
-                                   double *wrench)
+void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, double *wrench)
 {
     const se3di_assembly *a = loops->assembly;
     const se3di_tree *tree = loops->tree;
+    if (loops->is_aside) {
+        se3di_tree_loops_eval_rows(loops);
+    }
     for (uint32_t loop = 0; loop < loops->count; ++loop) {
         const uint32_t constraint = loops->constraints[loop];
         const double *l = lambda + tree->model->constraints[constraint].row_begin;

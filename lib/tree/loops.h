@@ -27,6 +27,21 @@ typedef struct se3di_loop_turn {
     int32_t is_turned, reserved;
 } se3di_loop_turn;
 
+/* A loop whose rows come from the links alone (tree/loop_points.c). */
+typedef struct se3di_loop_side {
+    int32_t node;     /* -1: the ground */
+    int32_t place;    /* of the node in the loop's path */
+    double arm[3];    /* from P to the point, triad */
+    double square[9]; /* d square d: what a row along d, triad, gives of the body's mobility */
+} se3di_loop_side;
+
+typedef struct se3di_loop_point {
+    int32_t is_there;
+    int32_t turns_with; /* the node whose triad has the directions, -1: the ground */
+    double direction[9];
+    se3di_loop_side side[2]; /* of bodies i and j */
+} se3di_loop_point;
+
 typedef struct se3di_tree_loops {
     se3di_tree *tree;
     se3di_assembly *assembly; /* r-omega, of the same model */
@@ -45,7 +60,11 @@ typedef struct se3di_tree_loops {
     int32_t *path_parent;  /* place of the node's parent in the same path, -1: the ground */
     int32_t *member_begin; /* [count + 1] freedoms of those nodes that are not prescribed */
     int32_t *member;
-    se3di_loop_turn *turns; /* of each */
+    se3di_loop_turn *turns;   /* of each */
+    se3di_loop_point *points; /* of each */
+    uint32_t *others;         /* constraints whose rows do not come from the links alone */
+    uint32_t other_count;
+    int32_t is_aside; /* the assembly's rows are not those of the last factors */
     size_t path_count, member_count, value_count, scratch_count;
     double *Y;              /* [values]: rows x 1 for each member */
     double *gamma;          /* [rows of the model] */
@@ -90,6 +109,9 @@ void se3di_tree_take_given(se3di_tree *tree, const se3di_assembly *assembly);
 /* After se3di_tree_factor at the model's frames, functions evaluated: evaluate the rows, carry them
  * down and factor. @return OK, INFO_REDUNDANT, NOT_FINITE, SINGULAR, CALLBACK */
 se3d_status se3di_tree_loops_factor(se3di_tree_loops *loops);
+/* The same without frames, if they are not needed. @return whether the factors serve; else there
+ * are none */
+int se3di_tree_loops_factor_links(se3di_tree_loops *loops);
 /* Accelerations, and the multipliers of the loops. @return as se3di_kkt_solve */
 se3d_status se3di_tree_loops_accelerate(se3di_tree_loops *loops, double *qddot);
 /* Rows that were dependent, or are filtered, at the last factorisation. */
@@ -99,6 +121,14 @@ static inline int se3di_tree_loops_is_near(const se3di_tree_loops *loops)
 {
     return !loops->is_clear || loops->system.is_near;
 }
+/* Whether the factors need no frames, and no functions: rows of loops come from the links alone,
+ * if they are clear of each other. */
+int se3di_tree_loops_need_links_only(const se3di_tree_loops *loops);
+/* The tree is refreshed: what of loops is fixed in its links. */
+void se3di_tree_loops_take_points(se3di_tree_loops *loops);
+/* Add the rows of a strip of such a loop to K [path][6][4], c and weight [4]. */
+void se3di_tree_loops_load_point(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
+                                 double *K, double *c, double *weight);
 /* Evaluate the rows at the model's frames, functions evaluated, and turn them. */
 void se3di_tree_loops_eval_rows(se3di_tree_loops *loops);
 /* c [rows of the loops that are kept] = -Phi at the model's frames; returns the largest violation
@@ -110,21 +140,23 @@ double se3di_tree_loops_eval_rate_gap(const se3di_tree_loops *loops, double leng
 /* The least change dq [velocities], weighed by the masses, that changes the rows by c; prescribed
  * coordinates stay. By the last factorisation. @return as se3di_kkt_solve */
 se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, double *dq);
-/* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P. */
-void se3di_tree_loops_add_wrenches(const se3di_tree_loops *loops, const double *lambda,
-                                   double *wrench);
+/* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P; the
+ * model's frames are where the last factors were made. */
+void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, double *wrench);
 /* Add a row of a loop, rows evaluated, to the Jacobian's [velocities]. */
 void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G);
 /* Turned rows, at the model's frames: the sums of products of a loop's plain rows in one pose more,
  * or (looks) what is left along n; n from the sums of all poses, 0: there is none; whether it is
  * to be taken. Then three numbers of the rows, to turned ones and back; all rows, as evaluated. */
 void se3di_tree_loops_watch_turn(se3di_tree_loops *loops, uint32_t loop, int looks);
+/* The first three rows of a loop are those of two points that coincide, at all times. */
+int se3di_tree_loops_is_point(const se3di_tree_loops *loops, uint32_t loop);
 int se3di_tree_loops_foresee_turn(se3di_tree_loops *loops, uint32_t loop);
 void se3di_tree_loops_decide_turn(se3di_tree_loops *loops, uint32_t loop);
 void se3di_tree_loops_turn(const se3di_tree_loops *loops, uint32_t loop, double x[3],
                            size_t stride);
 void se3di_tree_loops_turn_back(const se3di_tree_loops *loops, uint32_t loop, double x[3]);
-void se3di_tree_loops_turn_rows(const se3di_tree_loops *loops);
+void se3di_tree_loops_turn_rows(const se3di_tree_loops *loops, int others_only);
 /* Find the rows that the tree does not imply (tree/loop_rows.c). */
 void se3di_tree_loops_keep_rows(se3di_tree_loops *loops);
 /* Whether they leave a freedom. @return OK, NO_MEMORY */
