@@ -49,6 +49,7 @@
 #include "se3d/modes.h"
 #include "se3d/particles.h"
 #include "se3d/road.h"
+#include "se3d/servo.h"
 #include "se3d/shape.h"
 #include "se3d/solver.h"
 #include "se3d/state.h"

@@ -142,6 +142,19 @@ static void code_passed(se3di_coder *c, se3di_particles *set)
     }
 }
 
+/* What servo walls have done. */
+static void code_servos(se3di_coder *c, se3di_particles *set)
+{
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        se3di_servo *servo = &set->servos[k];
+        se3di_code_numbers(c, &servo->load, 1);
+        se3di_code_numbers(c, &servo->place, 1);
+        se3di_code_numbers(c, &servo->speed, 1);
+        se3di_code_numbers(c, &servo->work, 1);
+        se3di_code_numbers(c, &servo->half, 1);
+    }
+}
+
 static void code_map(se3di_coder *c, se3di_domain_map *map)
 {
     se3di_code_numbers(c, map->along, 3);
@@ -432,6 +445,7 @@ static void write_set(se3di_coder *c, const se3di_particles *set)
     code_record(c, &same);
     code_flow(c, &same);
     code_passed(c, &same);
+    code_servos(c, &same);
     code_cell(c, &same);
     code_bond_groups(c, &same);
     for (size_t k = 0; k < n.walls; ++k) {
@@ -602,6 +616,7 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     code_record(c, set);
     code_flow(c, set);
     code_passed(c, set);
+    code_servos(c, set);
     code_cell(c, set);
     code_bond_groups(c, set);
     SE3DI_TRY(read_walls(c, set));

@@ -52,6 +52,17 @@ static int are_flows(const se3di_particles *set)
     return good;
 }
 
+static int are_servos(const se3di_particles *set)
+{
+    int good = 1;
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        const se3di_servo *s = &set->servos[k];
+        const double numbers[] = {s->load, s->place, s->speed, s->work, s->half};
+        good = good && are_finite(numbers, sizeof numbers / sizeof *numbers);
+    }
+    return good;
+}
+
 static int is_map(const se3di_domain_map *map)
 {
     return are_finite(map->along, 3) && isfinite(map->shear);
@@ -337,6 +348,6 @@ static int are_bonds(se3di_particles *set)
 int se3di_particles_are_sound(se3di_particles *set)
 {
     return are_numbers(set) && are_particles(set) && are_clumps(set) && are_bonds(set) &&
-           are_sources(set) && are_flows(set) && is_cell(set) && are_walls(set) &&
-           (set->list_valid ? are_lists(set) : is_history(set));
+           are_sources(set) && are_flows(set) && are_servos(set) && is_cell(set) &&
+           are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
 }

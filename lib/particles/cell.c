@@ -168,6 +168,29 @@ static void choose_stage(se3di_domain *cell, double time)
     }
 }
 
+/* The element of the stress that the shear works against. */
+static double shear_stress(const se3di_domain *cell, const double stress[6])
+{
+    static const int place[4] = {0, 3, 5, 4}; /* xy, xz, yz by the sum of the axes */
+    return stress[place[cell->flow + cell->gradient]];
+}
+
+/* So that the product of all 1 + h e is 1. */
+static void keep_volume(const se3di_domain_stage *stage, double h, double rate[3])
+{
+    double product = 1.0;
+    int free = 0;
+    for (int a = 0; a < 3; ++a) {
+        free += stage->volume[a] != 0;
+        product *= stage->volume[a] ? 1.0 : 1.0 + h * rate[a];
+    }
+    for (int a = 0; a < 3 && h != 0.0; ++a) {
+        if (stage->volume[a]) {
+            rate[a] = ((free == 2 ? sqrt(1.0 / product) : 1.0 / product) - 1.0) / h;
+        }
+    }
+}
+
 se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
 {
     se3di_domain *cell = &set->cell;
@@ -184,6 +207,11 @@ se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
                 cell->rates.along[a] = clamp(stage->gain[a] * excess, stage->most[a]);
             }
         }
+        if (stage->shear_servo) {
+            const double excess = shear_stress(cell, stress) - stage->shear_stress;
+            cell->rates.shear = clamp(stage->shear_gain * excess, stage->shear_most);
+        }
+        keep_volume(stage, h, cell->rates.along);
     }
     cell->field = cell->rates;
     add_work(cell, h);

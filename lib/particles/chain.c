@@ -43,6 +43,15 @@ se3di_particles *se3di_sets_get(const se3di_model *model, size_t index)
     return set;
 }
 
+static void count_function(se3di_model *model, se3di_handle handle, int add)
+{
+    const uint32_t function =
+        se3di_slots_find(&model->function_slots, handle.index1, handle.generation);
+    if (function != SE3DI_NO_INDEX) {
+        model->functions[function].users += add ? 1u : UINT32_MAX;
+    }
+}
+
 void se3di_particles_count_users(const se3di_particles *set, se3di_model *model, int add)
 {
     for (size_t k = 0; k < set->stuff_count; ++k) {
@@ -54,12 +63,10 @@ void se3di_particles_count_users(const se3di_particles *set, se3di_model *model,
         }
     }
     for (size_t k = 0; k < set->source_count; ++k) {
-        se3di_handle handle = set->sources[k].function;
-        uint32_t function =
-            se3di_slots_find(&model->function_slots, handle.index1, handle.generation);
-        if (function != SE3DI_NO_INDEX) {
-            model->functions[function].users += add ? 1u : UINT32_MAX;
-        }
+        count_function(model, set->sources[k].function, add);
+    }
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        count_function(model, set->servos[k].function, add);
     }
 }
 

@@ -71,6 +71,7 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->sources, set->source_capacity, sizeof *set->sources);
     se3di_free(a, set->sinks, set->sink_capacity, sizeof *set->sinks);
     se3di_free(a, set->flows, set->flow_capacity, sizeof *set->flows);
+    se3di_free(a, set->servos, set->servo_capacity, sizeof *set->servos);
     se3di_free(a, set->bonds, set->bond_capacity, sizeof *set->bonds);
     se3di_free(a, set->bond_ends, set->bond_end_capacity, sizeof *set->bond_ends);
     se3di_free(a, set->bond_groups, set->bond_group_capacity, sizeof *set->bond_groups);
@@ -106,7 +107,7 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->clump_of_capacity * sizeof *set->clump_of +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
            set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
-           set->bond_capacity * sizeof *set->bonds +
+           set->servo_capacity * sizeof *set->servos + set->bond_capacity * sizeof *set->bonds +
            set->bond_end_capacity * sizeof *set->bond_ends +
            set->bond_group_capacity * sizeof *set->bond_groups +
            sizeof(uint32_t) * (set->bond_place_capacity + set->bond_end_of_capacity) +
@@ -281,6 +282,7 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->sources, from->sources, from->source_capacity, sizeof(se3di_source)},
         {&to->sinks, from->sinks, from->sink_capacity, sizeof(se3di_sink)},
         {&to->flows, from->flows, from->flow_capacity, sizeof(se3di_flow)},
+        {&to->servos, from->servos, from->servo_capacity, sizeof(se3di_servo)},
         {&to->bonds, from->bonds, from->bond_capacity, sizeof(se3di_bond)},
         {&to->bond_ends, from->bond_ends, from->bond_end_capacity, sizeof(se3di_bond_end)},
         {&to->bond_groups, from->bond_groups, from->bond_group_capacity, sizeof(se3di_bond_group)},

@@ -83,8 +83,10 @@ typedef struct se3di_wall {
     uint32_t material; /* in the set's table */
     int32_t loose;     /* nothing but forces moves the body: it gives way where it is hit */
     int32_t far;       /* the second wall of a funnel: what is beyond its axis */
-    int32_t reserved;
+    int32_t servo;     /* 1 + the servo that moves it on its body; 0: none */
     se3di_shape_pose pose;
+    double home[3], home_v[3];   /* servo: where the body has it, its velocity, */
+    double slide[3];             /* and the axis of the servo, ground frame */
     double inverse_mass;         /* of a body that gives way; 0: it moves as it is told */
     double turn[9];              /* its inverse inertia, ground frame */
     double old_x[3], old_R[9];   /* pose where the list was built, */
@@ -253,6 +255,20 @@ typedef struct se3di_clump_ball {
     double most;        /* the largest of these */
 } se3di_clump_ball;
 
+/* Moves a shape on its body.                                                     servo.c */
+typedef struct se3di_servo {
+    se3di_handle shape;
+    se3di_handle function;   /* null: `load` */
+    double axis[3];          /* frame of the body, unit */
+    double load;             /* wanted in the step under way: [N], or with an area [Pa] */
+    double area, gain;       /* 0: none */
+    double speed_max, start; /* [s] */
+    /* what it has done */
+    double place, speed;
+    double work; /* up to the last forces but for */
+    double half; /* this way times the last one */
+} se3di_servo;
+
 /* What clumps are made like: spheres that are held together, at scale 1, of density 1 unless the
  * mass is given.                                                               clump_mass.c */
 typedef struct se3di_clump_template {
@@ -286,10 +302,11 @@ typedef struct se3di_domain_map {
 
 typedef struct se3di_domain_stage {
     double start;
-    se3di_domain_map rates; /* without the axes of servo */
-    int32_t servo[3];
-    int32_t reserved;
+    se3di_domain_map rates; /* without the axes of servo and volume */
+    int32_t servo[3], shear_servo;
+    int32_t volume[3], reserved;
     double stress[3], most[3], gain[3];
+    double shear_stress, shear_most, shear_gain;
 } se3di_domain_stage;
 
 /* How the domain strains.                                                        cell.c */
@@ -463,6 +480,8 @@ typedef struct se3di_particles {
     size_t sink_count, sink_capacity;
     se3di_flow *flows;
     size_t flow_count, flow_capacity;
+    se3di_servo *servos;
+    size_t servo_count, servo_capacity;
     se3di_domain cell;
     se3di_bond *bonds; /* that hold, in the order in which they were made */
     size_t bond_count, bond_capacity;

@@ -8,6 +8,7 @@
 #include "particles/flow.h"
 #include "particles/kept.h"
 #include "particles/passage.h"
+#include "particles/servo.h"
 #include "particles/share.h"
 #include "particles/step.h"
 #include "particles/sweep.h"
@@ -159,19 +160,23 @@ static se3d_status spread_set(se3di_particles *set, se3di_error *error)
     return status < 0 ? report(set, status, error) : status;
 }
 
-/* Before a step of length h begins: what its sources give. */
+/* Before a step of length h begins: what its sources give, how its servo walls press. */
 static se3d_status aim_set(se3di_particles *set, const se3di_model *model, double h,
                            se3di_error *error)
 {
+    const char *what = "the rate of a source";
     se3d_status status = se3di_sources_aim(set, model, h);
+    if (status >= 0) {
+        what = "the load of a servo wall";
+        status = se3di_servos_aim(set, model, h);
+    }
     if (status < 0) {
         const char *of;
         const char *name = set_name(set, &of);
-        return se3di_error_set(error, status,
-                               "the rate of a source%s%.80s cannot be computed at time %g s", of,
+        return se3di_error_set(error, status, "%s%s%.80s cannot be computed at time %g s", what, of,
                                name, set->time + 0.5 * h);
     }
-    return SE3D_OK;
+    return status;
 }
 
 double se3di_particles_want_step(const se3di_particles *set, const se3di_model *model)
@@ -186,8 +191,9 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
 static se3d_status run_steps(se3di_particles *set, const se3di_model *model, double length,
                              size_t steps, se3di_error *error)
 {
-    const int varies = set->source_count > 0 || model->gravity_function[0] >= 0 ||
-                       model->gravity_function[1] >= 0 || model->gravity_function[2] >= 0;
+    const int varies = set->source_count > 0 || set->servo_count > 0 ||
+                       model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
+                       model->gravity_function[2] >= 0;
     size_t done = 0;
     do {
         const size_t now = varies ? 1 : steps;

@@ -16,6 +16,7 @@
 #include "particles/passage.h"
 #include "particles/piece.h"
 #include "particles/reach.h"
+#include "particles/servo.h"
 #include "particles/share.h"
 #include "particles/sweep.h"
 #include "particles/sync.h"
@@ -31,7 +32,7 @@ void se3di_particles_move_walls(se3di_particles *set, const se3di_frame *frames)
 {
     for (size_t k = 0; k < set->wall_count; ++k) {
         se3di_wall *wall = &set->walls[k];
-        se3di_shape_place(&wall->shape, &frames[wall->shape.body], &wall->pose);
+        se3di_wall_place(set, wall, &frames[wall->shape.body]);
     }
 }
 
@@ -266,6 +267,9 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
     se3di_bonds_push_walls(set);
+    if (motion->drift != 0.0) {
+        se3di_servos_drift(set, motion->drift);
+    }
     double excess = 0.0;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         excess = se3di_larger(excess, set->slabs[s].overlap);
@@ -410,6 +414,10 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
     }
     for (size_t k = 0; k < set->bond_count; ++k) {
         hash = se3di_hash_numbers(hash, &set->bonds[k].dissipated, 1);
+    }
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        hash = se3di_hash_numbers(hash, &set->servos[k].place, 1);
+        hash = se3di_hash_numbers(hash, &set->servos[k].work, 1);
     }
     for (size_t k = 0; k < set->clump_count; ++k) {
         hash = se3di_hash_numbers(hash, set->clumps[k].q, 4);

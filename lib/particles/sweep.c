@@ -18,6 +18,7 @@
 #include "particles/clump.h"
 #include "particles/mesh.h"
 #include "particles/passage.h"
+#include "particles/servo.h"
 #include "particles/share.h"
 #include "particles/slabs.h"
 
@@ -221,6 +222,7 @@ void se3di_particles_kick(se3di_particles *set, double h)
 void se3di_particles_move(se3di_particles *set, int kicks, double h)
 {
     pass(set, &(se3di_particle_motion){kicks, h, h});
+    se3di_servos_drift(set, h);
 }
 
 typedef struct sweep {

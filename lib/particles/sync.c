@@ -6,6 +6,7 @@
 #include "particles/bond.h"
 #include "particles/list.h"
 #include "particles/mesh.h"
+#include "particles/servo.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -153,7 +154,8 @@ static uint32_t fill_wall(const se3di_particles *set, const se3di_model *model, 
     wall->shape = *shape;
     wall->body = se3di_slots_handle(&model->body_slots, shape->body);
     wall->loose = is_loose(model, shape->body);
-    se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+    wall->servo = se3di_servos_find(set, handle);
+    se3di_wall_place(set, wall, &model->frames[shape->body]);
     if (old == SE3DI_NO_INDEX) { /* at rest so far */
         memcpy(wall->near_x, wall->pose.x, sizeof wall->near_x);
         memcpy(wall->near_R, wall->pose.R, sizeof wall->near_R);
@@ -262,7 +264,7 @@ static void take_surfaces(se3di_particles *set, const se3di_model *model)
             memcpy(wall->shape.surface_velocity, shape->surface_velocity,
                    sizeof shape->surface_velocity);
             memcpy(wall->shape.surface_spin, shape->surface_spin, sizeof shape->surface_spin);
-            se3di_shape_place(shape, &model->frames[shape->body], &wall->pose);
+            se3di_wall_place(set, wall, &model->frames[shape->body]);
         }
     }
 }

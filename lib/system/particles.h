@@ -25,6 +25,8 @@ se3d_status se3di_check_fill(se3d_particles *particles, const se3d_fill_def *def
                              se3d_fill_def *full, uint32_t *material);
 se3d_status se3di_check_region(se3d_particles *particles, const double lower[3],
                                const double upper[3], int32_t region, int32_t axis, double size);
+/* particles_bond.c: the set's wall of a shape, where it is now. */
+se3d_status se3di_particles_find_wall(se3d_particles *particles, se3d_shape shape, uint32_t *wall);
 /* Gravity at the set's time. */
 se3d_status se3di_particles_gravity(const se3d_particles *particles, double g[3]);
 /* `name` is well formed and free among the sets; NULL always is. */

@@ -462,8 +462,7 @@ se3d_status se3d_particles_bond_near(se3d_particles *particles, const se3d_bond_
     return status;
 }
 
-/* The set's wall of a shape, where it is now. */
-static se3d_status find_wall(se3d_particles *particles, se3d_shape shape, uint32_t *wall)
+se3d_status se3di_particles_find_wall(se3d_particles *particles, se3d_shape shape, uint32_t *wall)
 {
     se3d_system *system = particles->system;
     se3di_particles *set = &particles->set;
@@ -533,7 +532,7 @@ se3d_status se3d_particles_bond_shape(se3d_particles *particles, const se3d_bond
     SE3DI_TRY(se3di_check_def(particles->system, "bond def", def, &full, sizeof full));
     SE3DI_TRY(check_bond(particles->system, &full));
     SE3DI_TRY(check_tag_or_all(particles, "tag", tag));
-    SE3DI_TRY(find_wall(particles, shape, &wall));
+    SE3DI_TRY(se3di_particles_find_wall(particles, shape, &wall));
     SE3DI_TRY(bond_wall(particles, &full, wall, tag, 0, &count));
     SE3DI_TRY(begin_group(particles, &full, count));
     (void)bond_wall(particles, &full, wall, tag, 1, &count);

@@ -17,7 +17,8 @@
 
 void se3d_cell_def_init(se3d_cell_def *def, size_t size)
 {
-    se3d_cell_def defaults = {.struct_size = size, .gradient = 2, .rate_max = {1.0, 1.0, 1.0}};
+    se3d_cell_def defaults = {
+        .struct_size = size, .gradient = 2, .rate_max = {1.0, 1.0, 1.0}, .shear_rate_max = 1.0};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
@@ -38,6 +39,47 @@ static se3d_status check_servo(se3d_system *system, const se3d_cell_def *def, in
     if (def->gain[a] == 0.0 && def->stress[a] == 0.0) {
         return SE3DI_FAIL_OF(system, "gain", SE3D_ERR_INVALID_ARGUMENT,
                              "[%d] = 0, must be > 0 with stress[%d] = 0", a, a);
+    }
+    return SE3D_OK;
+}
+
+static se3d_status check_shear_servo(se3d_system *system, const se3d_cell_def *def)
+{
+    SE3DI_TRY(se3di_check_range(system, "shear_stress", def->shear_stress, -MOST, MOST));
+    SE3DI_TRY(se3di_check_range(system, "shear_rate_max", def->shear_rate_max, 0.0, RATE_MOST));
+    SE3DI_TRY(se3di_check_range(system, "shear_gain", def->shear_gain, 0.0, MOST));
+    if (!def->shear_servo) {
+        return SE3D_OK;
+    }
+    if (def->shear_rate != 0.0) {
+        return SE3DI_FAIL_OF(system, "shear_rate", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g 1/s, must be 0 beside shear_servo: the stress gives it",
+                             def->shear_rate);
+    }
+    if (!(def->shear_rate_max > 0.0)) {
+        return SE3DI_FAIL_OF(system, "shear_rate_max", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g 1/s, must be > 0 with shear_servo", def->shear_rate_max);
+    }
+    if (def->shear_gain == 0.0 && def->shear_stress == 0.0) {
+        return SE3DI_FAIL_OF(system, "shear_gain", SE3D_ERR_INVALID_ARGUMENT,
+                             " = 0, must be > 0 with shear_stress = 0");
+    }
+    return SE3D_OK;
+}
+
+/* Axes that keep the volume have no rate of their own, and leave one that has. */
+static se3d_status check_volume(se3d_system *system, const se3d_cell_def *def)
+{
+    for (int a = 0; a < 3; ++a) {
+        if (def->volume[a] && (def->servo[a] || def->rate[a] != 0.0)) {
+            return SE3DI_FAIL_OF(system, "volume", SE3D_ERR_INVALID_ARGUMENT,
+                                 "[%d] = %d, must be 0 beside a rate or servo of this axis", a,
+                                 (int)def->volume[a]);
+        }
+    }
+    if (def->volume[0] && def->volume[1] && def->volume[2]) {
+        return SE3DI_FAIL_OF(system, "volume", SE3D_ERR_INVALID_ARGUMENT,
+                             " is set for all axes, must leave one that strains as it is told");
     }
     return SE3D_OK;
 }
@@ -67,7 +109,14 @@ static se3d_status check_cell(se3d_system *system, const se3d_cell_def *def)
         SE3DI_TRY(se3di_check_range(system, "gain", def->gain[a], 0.0, MOST));
         SE3DI_TRY(check_servo(system, def, a));
     }
+    SE3DI_TRY(check_shear_servo(system, def));
+    SE3DI_TRY(check_volume(system, def));
     return check_axes(system, def);
+}
+
+static int shears(const se3d_cell_def *def)
+{
+    return def->shear_rate != 0.0 || def->shear_servo;
 }
 
 /* What of the set the stage does not fit. */
@@ -92,8 +141,8 @@ static se3d_status check_set(const se3d_particles *particles, const se3d_cell_de
                              " = %g s, must be after that of the stage before, %g s", def->start,
                              cell->stages[cell->count - 1].start);
     }
-    for (size_t k = 0; k < cell->count && def->shear_rate != 0.0; ++k) {
-        if (cell->stages[k].rates.shear != 0.0 &&
+    for (size_t k = 0; k < cell->count && shears(def); ++k) {
+        if ((cell->stages[k].rates.shear != 0.0 || cell->stages[k].shear_servo) &&
             (cell->flow != def->flow || cell->gradient != def->gradient)) {
             return SE3DI_FAIL_OF(particles->system, "flow", SE3D_ERR_INVALID_ARGUMENT,
                                  " = %d and gradient = %d, must be %d and %d, as in stage %zu",
@@ -106,10 +155,19 @@ static se3d_status check_set(const se3d_particles *particles, const se3d_cell_de
 
 static se3di_domain_stage make_stage(const se3d_cell_def *def)
 {
-    se3di_domain_stage stage = {.start = def->start, .rates = {.shear = def->shear_rate}};
+    se3di_domain_stage stage = {.start = def->start,
+                                .rates = {.shear = def->shear_rate},
+                                .shear_servo = def->shear_servo != 0,
+                                .shear_stress = def->shear_stress,
+                                .shear_most = def->shear_rate_max,
+                                .shear_gain = def->shear_gain};
+    if (stage.shear_servo && !(def->shear_gain > 0.0)) {
+        stage.shear_gain = def->shear_rate_max / fabs(def->shear_stress);
+    }
     for (int a = 0; a < 3; ++a) {
         stage.rates.along[a] = def->rate[a];
         stage.servo[a] = def->servo[a] != 0;
+        stage.volume[a] = def->volume[a] != 0;
         stage.stress[a] = def->stress[a];
         stage.most[a] = def->rate_max[a];
         stage.gain[a] = def->gain[a] > 0.0 || !stage.servo[a]
@@ -149,7 +207,7 @@ se3d_status se3d_particles_add_cell_stage(se3d_particles *particles, const se3d_
         begin_cell(set);
         cell->flow = full.flow;
         cell->gradient = full.gradient;
-    } else if (full.shear_rate != 0.0) {
+    } else if (shears(&full)) {
         cell->flow = full.flow;
         cell->gradient = full.gradient;
     }

@@ -35,6 +35,7 @@ static const char *refusal(const se3di_particles *set)
 {
     return set->clump_count > 0 || set->template_count > 0 ? "cannot be clumps"
            : set->flow_count > 0                           ? "cannot be counted by flows"
+           : set->servo_count > 0                          ? "cannot be pressed by servo walls"
            : set->cell.count > 0                           ? "cannot be in a cell that strains"
            : set->bond_end_count > 0                       ? "cannot be bonded, nor have been"
            : set->law == SE3DI_LAW_CALLBACK ? "cannot have a law of contact of the user's own"

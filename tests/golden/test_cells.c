@@ -460,6 +460,54 @@ static void cells_hold_spheres_alone(void)
     bed_close(&b);
 }
 
+/* A lattice is sheared until its springs, which are stretched nowhere, have the stress; the volume
+ * stays to rounding whatever the other axes do. */
+static void shear_keeps_its_stress_and_cells_their_volume(void)
+{
+    static const int many[3] = {4, 5, 6};
+    cell_case c = cube(0.1);
+    bed b;
+    se3d_cell_def def = se3d_cell_def_default();
+    c.restitution = 0.5;
+    c.friction = 10.0; /* a lattice of sliding spheres shears by itself */
+    for (int a = 0; a < 3; ++a) {
+        c.upper[a] = 0.0199 * many[a];
+    }
+    open_cell(&b, &c);
+    fill_lattice(&b, many, 0.0199);
+    def.volume[0] = def.volume[1] = 1;
+    def.shear_servo = 1;
+    def.shear_stress = -30.0;
+    def.shear_rate_max = 0.5;
+    def.shear_gain = 5e-4;
+    def.servo[2] = 1;
+    def.stress[2] = 3000.0;
+    add_stage(&b, &def);
+    const double volume = state_of(&b).volume;
+    for (int k = 1; k <= 2; ++k) {
+        CHECK(se3d_particles_run(b.particles, 0.4 * k) >= 0);
+        CHECK_NEAR(state_of(&b).volume / volume, 1.0, 1e-11);
+    }
+    const se3d_cell_state s = state_of(&b);
+    CHECK_NEAR(s.stress[5], -30.0, 0.05);
+    CHECK_NEAR(s.stress[2], 3000.0, 5.0);
+    CHECK_NEAR(s.strain[0], s.strain[1], 1e-12);
+    CHECK(s.shear_strain > 1e-4);
+    const double F[9] = {exp(s.strain[0]),
+                         0.0,
+                         s.shear_strain * exp(s.strain[2]),
+                         0.0,
+                         exp(s.strain[1]),
+                         0.0,
+                         0.0,
+                         0.0,
+                         exp(s.strain[2])};
+    double stress[6];
+    lattice_stress(F, 0.0199, STIFFNESS, stress);
+    CHECK_NEAR(s.stress[2] / stress[2], 1.0, 2e-3);
+    bed_close(&b);
+}
+
 int main(void)
 {
     RUN(sheared_lattices_have_the_stress_of_their_springs);
@@ -467,6 +515,7 @@ int main(void)
     RUN(nobody_sees_where_the_border_is);
     RUN(energy_comes_from_the_work_of_the_cell);
     RUN(packings_keep_pressure_and_yield_at_their_angle);
+    RUN(shear_keeps_its_stress_and_cells_their_volume);
     RUN(threads_cuts_and_kernels_do_not_change_bits);
     RUN(cells_hold_spheres_alone);
     return check_finish();

@@ -145,22 +145,20 @@ static void pin_carries_the_bucket_and_what_it_has_dug(void)
     close_world(&w);
 }
 
-/* A plate on a guide, whose load is followed by what it presses the beads with: it comes down at
- * each step, less for each newton the more they are pressed. */
+/* A servo wall: it comes down at each step of its load, less for each newton the more the beads are
+ * pressed. */
 static void plate_of_the_oedometer_holds_its_load(void)
 {
-    static const double times[3] = {0.2, 0.26, 0.32}, loads[3] = {20.0, 50.0, 100.0};
-    se3d_body plate;
+    static const double times[3] = {0.24, 0.3, 0.36}, loads[3] = {20.0, 50.0, 100.0};
     double z[3];
     open_world(&w, "oedometer");
-    CHECK(!se3d_body_find(w.system, "plate", &plate));
     for (int k = 0; k < 3; ++k) {
-        double force[3], torque[3], r[3];
+        se3d_servo_state plate;
         go(&w, times[k]);
-        CHECK(!se3d_body_get_contact_wrench(w.system, plate, force, torque));
-        CHECK_NEAR(force[2] / loads[k], 1.0, 0.01);
-        CHECK(!se3d_body_get_position(w.system, plate, r));
-        z[k] = r[2];
+        CHECK(!se3d_particles_get_servo(w.particles, 0, &plate));
+        CHECK_NEAR(plate.wanted, loads[k], 1e-3 * loads[k]);
+        CHECK_NEAR(plate.force / loads[k], 1.0, 0.01);
+        z[k] = -plate.position;
     }
     CHECK(z[0] > z[1] && z[1] > z[2]);
     CHECK((z[0] - z[1]) / 30.0 > (z[1] - z[2]) / 50.0);

@@ -260,6 +260,19 @@ static void world_add_contact(world *w)
     CHECK(!se3d_shape_create_sphere(w->system, &shape, &w->pad));
 }
 
+/* A plane far above everything. */
+static void world_add_servo(world *w)
+{
+    se3d_shape_def plane = se3d_shape_def_default();
+    se3d_servo_def servo = se3d_servo_def_default();
+    plane.material = w->stuff;
+    plane.position[2] = 100.0;
+    plane.normal[2] = -1.0;
+    CHECK(!se3d_shape_create_plane(w->system, &plane, &servo.shape));
+    servo.axis[2] = servo.speed_max = 1.0;
+    CHECK(!se3d_particles_add_servo(w->particles, &servo, NULL));
+}
+
 static void world_add_particles(world *w)
 {
     const double r[9] = {2.0, 0.0, 0.0299, 2.0, 0.0595, 0.0299, 2.0, 0.2, 0.0299};
@@ -288,6 +301,7 @@ static void world_add_particles(world *w)
     CHECK(!se3d_particles_add_sink(w->particles, &sink, &w->ids[0]));
     flow.normal[2] = 1.0;
     CHECK(!se3d_particles_add_flow(w->particles, &flow, NULL));
+    world_add_servo(w);
     w->ids[0] = 0;
 }
 

@@ -510,6 +510,7 @@ static se3d_status definitions_are_never_overrun(arguments *a)
     CHECK_INIT(particles_source);
     CHECK_INIT(particles_sink);
     CHECK_INIT(flow);
+    CHECK_INIT(servo);
     CHECK_INIT(clump);
     CHECK_INIT(material);
     CHECK_INIT(material_pair);
@@ -896,6 +897,9 @@ static const row rows[] = {
     {"se3d_cell_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_add_cell_stage", cells_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_cell", cells_reject_misuse, "", NULL, NULL},
+    {"se3d_servo_def_init", definitions_are_never_overrun, "", NULL, NULL},
+    {"se3d_particles_add_servo", servos_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_servo", servos_reject_misuse, "", NULL, NULL},
     {"se3d_flow_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_add_flow", passages_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_flow", passages_reject_misuse, "", NULL, NULL},

@@ -555,6 +555,55 @@ static se3d_status passages_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status servos_reject_misuse(arguments *a)
+{
+    se3d_material material;
+    se3d_servo_state state;
+    se3d_shape_def plane = se3d_shape_def_default();
+    uint32_t servo = 7;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_servo_def def = se3d_servo_def_default();
+    CHECK(se3d_particles_add_servo(NULL, &def, &servo) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_servo(p, NULL, &servo), SE3D_ERR_NULL);
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_STALE_HANDLE);
+    plane.material = material;
+    plane.mask = 0;
+    CHECK(!se3d_shape_create_plane(a->system, &plane, &def.shape));
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "do not touch it");
+    CHECK(!se3d_shape_destroy(a->system, def.shape));
+    plane.mask = UINT32_MAX;
+    CHECK(!se3d_shape_create_plane(a->system, &plane, &def.shape));
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "speed_max = 0");
+    def.speed_max = 1.0;
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "axis = (0, 0, 0)");
+    def.axis[1] = 3.0;
+    def.gain = -1.0;
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    def.gain = 0.0;
+    def.load = (double)NAN;
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    def.load = 1.0;
+    CHECK(servo == 7);
+    CHECK(!se3d_particles_add_servo(p, &def, &servo) && servo == 0);
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "already");
+    for (uint32_t k = 1; k < SE3D_PARTICLES_SERVOS; ++k) {
+        CHECK(!se3d_shape_create_plane(a->system, &plane, &def.shape));
+        CHECK(!se3d_particles_add_servo(p, &def, &servo) && servo == k);
+    }
+    CHECK(!se3d_shape_create_plane(a->system, &plane, &def.shape));
+    REJECTED(se3d_particles_add_servo(p, &def, &servo), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_get_servo(NULL, 0, &state) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_servo(p, 0, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_servo(p, 32, &state) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_servo(p, 0, &state) && state.wanted == 1.0 && state.force == 0.0);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 static se3d_status cells_reject_misuse(arguments *a)
 {
     se3d_material material;

@@ -311,6 +311,26 @@ static const field flow_fields[] = {NUMBERS(se3d_flow_def, point),  NUMBERS(se3d
                                     NUMBERS(se3d_flow_def, along),  NUMBERS(se3d_flow_def, window),
                                     INTEGER(se3d_flow_def, tag),    FIELDS_END};
 
+FILL_IN(se3d_servo_def, servo)
+{
+    se3d_shape_def plane = se3d_shape_def_default();
+    plane.material = w->material;
+    plane.normal[2] = 1.0;
+    CHECK(!se3d_shape_create_plane(w->system, &plane, &def->shape));
+    def->axis[2] = def->load = def->speed_max = 1.0;
+}
+static se3d_status create_servo(world *w, const void *def)
+{
+    return se3d_particles_add_servo(w->set, def, NULL);
+}
+static const field servo_fields[] = {NUMBERS(se3d_servo_def, axis),
+                                     NUMBERS(se3d_servo_def, load),
+                                     NUMBERS(se3d_servo_def, area),
+                                     NUMBERS(se3d_servo_def, speed_max),
+                                     NUMBERS(se3d_servo_def, gain),
+                                     NUMBERS(se3d_servo_def, start),
+                                     FIELDS_END};
+
 FILL_IN(se3d_cell_def, cell)
 {
     const double r[6] = {0.5, 0.5, 0.5, 0.69, 0.5, 0.5}, radius[2] = {0.1, 0.1};
@@ -324,18 +344,28 @@ FILL_IN(se3d_cell_def, cell)
     CHECK(!se3d_particles_create(w->system, &box, &w->set));
     CHECK(!se3d_particles_add(w->set, w->material, 2, r, radius, NULL, NULL, NULL));
     def->servo[1] = 1;
-    def->shear_rate = 1.0;
+    def->shear_servo = 1;
+    def->shear_stress = 1.0;
 }
 static se3d_status create_cell(world *w, const void *def)
 {
     return se3d_particles_add_cell_stage(w->set, def, NULL);
 }
-static const field cell_fields[] = {
-    NUMBERS(se3d_cell_def, start),    NUMBERS(se3d_cell_def, rate),
-    NUMBERS(se3d_cell_def, gain),     NUMBERS(se3d_cell_def, shear_rate),
-    INTEGER(se3d_cell_def, flow),     INTEGER(se3d_cell_def, gradient),
-    INTEGER(se3d_cell_def, servo),    NUMBERS(se3d_cell_def, stress),
-    NUMBERS(se3d_cell_def, rate_max), FIELDS_END};
+static const field cell_fields[] = {NUMBERS(se3d_cell_def, start),
+                                    NUMBERS(se3d_cell_def, rate),
+                                    NUMBERS(se3d_cell_def, gain),
+                                    NUMBERS(se3d_cell_def, shear_rate),
+                                    INTEGER(se3d_cell_def, flow),
+                                    INTEGER(se3d_cell_def, gradient),
+                                    INTEGER(se3d_cell_def, servo),
+                                    NUMBERS(se3d_cell_def, stress),
+                                    NUMBERS(se3d_cell_def, rate_max),
+                                    INTEGER(se3d_cell_def, volume),
+                                    INTEGER(se3d_cell_def, shear_servo),
+                                    NUMBERS(se3d_cell_def, shear_stress),
+                                    NUMBERS(se3d_cell_def, shear_rate_max),
+                                    NUMBERS(se3d_cell_def, shear_gain),
+                                    FIELDS_END};
 
 FILL_IN(se3d_bond_def, bond)
 {
@@ -445,6 +475,7 @@ static const subject subjects[] = {
     {"source", source_fields, fill_in_source, create_source, 1},
     {"sink", sink_fields, fill_in_sink, create_sink, 1},
     {"flow", flow_fields, fill_in_flow, create_flow, 1},
+    {"servo", servo_fields, fill_in_servo, create_servo, 1},
     {"cell", cell_fields, fill_in_cell, create_cell, 0},
     {"bond", bond_fields, fill_in_bond, create_bond, 0},
     {"event", event_fields, fill_in_event, create_event, 0},

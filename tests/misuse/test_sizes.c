@@ -40,6 +40,7 @@ FILL(particles_get_tally, se3d_particles_tally, p->w.particles, 0)
 static const double low[3] = {0.0, 0.0, 0.0}, high[3] = {1.0, 1.0, 1.0};
 FILL(particles_get_average, se3d_average, p->w.particles, low, high, -1)
 FILL(particles_get_flow, se3d_flow_stats, p->w.particles, 0)
+FILL(particles_get_servo, se3d_servo_state, p->w.particles, 0)
 FILL(particles_get_cell, se3d_cell_state, p->w.particles)
 FILL(particles_get_bond_stats, se3d_bond_stats, p->w.particles, -1)
 FILL(particles_get_clump_template, se3d_clump_template_info, p->w.particles, 0)
@@ -82,6 +83,7 @@ static const filler fillers[] = {
     ROW(particles_get_tally, se3d_particles_tally),
     ROW(particles_get_average, se3d_average),
     ROW(particles_get_flow, se3d_flow_stats),
+    ROW(particles_get_servo, se3d_servo_state),
     ROW(particles_get_cell, se3d_cell_state),
     ROW(particles_get_bond_stats, se3d_bond_stats),
     ROW(particles_get_clump_template, se3d_clump_template_info),

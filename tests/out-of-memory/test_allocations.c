@@ -438,6 +438,24 @@ static se3d_status make_set(workshop *w, const se3d_particles_def *def, se3d_mat
     return status < 0 ? status : se3d_material_create(w->system, &stuff, material);
 }
 
+/* A servo wall: without memory there is none. */
+static se3d_status press(workshop *w, se3d_particles *set, se3d_material material)
+{
+    se3d_shape_def plane = se3d_shape_def_default();
+    se3d_servo_def def = se3d_servo_def_default();
+    se3d_servo_state state;
+    plane.material = material;
+    se3d_status status = se3d_shape_create_plane(w->system, &plane, &def.shape);
+    if (status >= 0) {
+        def.axis[2] = def.speed_max = 1.0;
+        status = se3d_particles_add_servo(set, &def, NULL);
+        CHECK((status >= 0) == (se3d_particles_get_servo(set, 0, &state) == SE3D_OK));
+        const se3d_status gone = se3d_shape_destroy(w->system, def.shape);
+        status = status < 0 ? status : gone;
+    }
+    return status;
+}
+
 /* A source with a table of radii and a sink, and copies of them; without memory there is neither,
  * and the set is as it was. */
 static se3d_status make_source_and_sink(workshop *w)
@@ -473,6 +491,9 @@ static se3d_status make_source_and_sink(workshop *w)
         flow.normal[2] = 1.0;
         status = se3d_particles_add_flow(set, &flow, NULL);
         CHECK((status >= 0) == (se3d_particles_get_flow(set, 0, &passed) == SE3D_OK));
+    }
+    if (status >= 0) {
+        status = press(w, set, material);
     }
     status = status < 0 ? status : make_clone(w);
     status = status < 0 ? status : make_snapshot(w);

@@ -192,6 +192,21 @@ static inline void particle_bonds(se3d_system *system, se3d_particles *set)
     CHECK(!se3d_particles_bond_shape(set, &def, floor, -1, &count, NULL) && count > 0);
 }
 
+/* A lid that presses what is below. */
+static inline void particle_lid(se3d_system *system, se3d_particles *set, se3d_material material)
+{
+    se3d_shape_def lid = se3d_shape_def_default();
+    se3d_servo_def def = se3d_servo_def_default();
+    lid.material = material;
+    lid.normal[2] = -1.0;
+    lid.position[2] = 0.125;
+    CHECK(!se3d_shape_create_plane(system, &lid, &def.shape));
+    def.axis[2] = -1.0;
+    def.load = 5.0;
+    def.speed_max = 0.5;
+    CHECK(!se3d_particles_add_servo(set, &def, NULL));
+}
+
 static inline se3d_body particle_box(se3d_system *system, se3d_material material, double x)
 {
     se3d_body_def body = se3d_body_def_default();
@@ -298,6 +313,9 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     if (kind == PARTICLES_CLUMPS) {
         particle_clumps(set, stone);
         particle_passage(set, 0.1);
+    }
+    if (kind == PARTICLES_HEAP) {
+        particle_lid(system, set, floor);
     }
     if (kind == PARTICLES_BONDS) {
         particle_bonds(system, set);

@@ -449,6 +449,33 @@ static void bonds_are_read_and_break(void)
     se3d_model_destroy(model);
 }
 
+/* A sphere between the floor and a lid that comes down to it. */
+static void servo_walls_are_read_and_press(void)
+{
+    static const char text[] =
+        "se3d: 1\ngravity: [0, 0, 0]\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e4}]\n"
+        "bodies: [{name: ground, shapes: [{type: plane, material: m}, {type: plane, name: top, "
+        "normal: [0, 0, -1], position: [0, 0, 0.21], material: m}]}]\n"
+        "particles: [{material: m, radius: 0.1, packing: random, count: 1, lower: [-0.1, -0.1, 0], "
+        "upper: [0.1, 0.1, 0.2]}]\n"
+        "servos: [{name: lid, shape: top, axis: [0, 0, -3], stress: \"40*step(t, 0.1, 0, 0.4, "
+        "1)\", area: 0.25, "
+        "speed_max: 0.1, start: 0.1}]\n"
+        "analysis: {type: dynamics, duration: 1}\n"
+        "output: [{file: s.csv, every: 0.5, channels: [lid.position, lid.speed, lid.force, "
+        "lid.wanted, lid.work]}]\n";
+    se3d_status status;
+    se3d_model *model = run_model(text, results_folder(), &status);
+    CHECK(status >= 0);
+    CHECK_NEAR(channel(model, 3), 10.0, 1e-2);
+    CHECK_NEAR(channel(model, 2), 10.0, 0.1);
+    CHECK(channel(model, 0) > 0.01 && channel(model, 0) < 0.015);
+    CHECK(channel(model, 1) > 0.0 && channel(model, 1) < 0.05);
+    CHECK_NEAR(channel(model, 4), 0.5 * channel(model, 2) * (channel(model, 0) - 0.01), 2e-3);
+    se3d_model_destroy(model);
+}
+
 #define WITH_SET                                                                                   \
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, "        \
     "radius: "                                                                                     \
@@ -470,6 +497,23 @@ static const refusal refusals[] = {
      4,
      {"no `particles` are named `b`"}},
     {WITH_SET "regions: [{name: energy, lower: [0, 0, 0], upper: [1, 1, 1]}]\n", 4, {"is taken"}},
+    {"se3d: 1\nservos: [{name: a}]\n", 2, {"servos: needs `particles`"}},
+    {WITH_SET "servos: [{name: a, shape: b}]\n", 4, {"servos[0]: must have `axis`"}},
+    {WITH_SET "servos: [{name: a, shape: b, axis: [1, 0, 0], speed_max: 1}]\n",
+     4,
+     {"servos[0].shape: no shape that touches is named `b`"}},
+#define LID                                                                                        \
+    WITH_SET "bodies: [{name: ground, shapes: [{type: plane, name: b, material: m}]}]\n"           \
+             "servos: [{name: a, shape: b, axis: [1, 0, 0], speed_max: 1"
+    {LID "}]\n", 5, {"servos[0]: must have either `force` [N] or `stress` [Pa]"}},
+    {LID ", stress: 1}]\n", 5, {"servos[0].stress: needs `area`"}},
+    {LID ", force: 1, area: 1}]\n", 5, {"servos[0].area: needs `stress`"}},
+#define CELL WITH_SET "contact: {boundary: [periodic, periodic, periodic], upper: [9, 9, 9]}\n"
+    {CELL "cell: [{volume: xx}]\n", 5, {"cell[0].volume: is `xx`", "each once"}},
+    {CELL "cell: [{volume: xyz}]\n", 5, {"cell[0]", "is set for all axes"}},
+    {CELL "cell: [{volume: x, rate: [1, 0, 0]}]\n", 5, {"volume[0] = 1, must be 0 beside"}},
+    {CELL "cell: [{shear_gain: 1}]\n", 5, {"cell[0].shear_gain", "without `shear_stress`"}},
+    {CELL "cell: [{shear_stress: 1, shear_rate: 1}]\n", 5, {"cell[0]", "beside shear_servo"}},
     {"se3d: 1\nclumps: []\n", 2, {"clumps: needs `particles`"}},
     {WITH_SET "clumps: [{name: a}]\n", 4, {"clumps[0].spheres", "is missing"}},
     {WITH_SET "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, {"name: is missing"}},
@@ -525,6 +569,7 @@ int main(void)
     RUN(chute_counts_what_flows);
     RUN(clumps_are_read_and_written);
     RUN(cells_are_read_and_strain);
+    RUN(servo_walls_are_read_and_press);
     RUN(bonds_are_read_and_break);
     RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);

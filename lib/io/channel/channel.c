@@ -205,6 +205,10 @@ static const quantity_name flow_names[] = {{"count", SE3DI_FLOW_COUNT},
                                            {"momentum_rate", SE3DI_FLOW_MOMENTUM_RATE},
                                            {NULL, SE3DI_STEPS}};
 
+static const quantity_name servo_names[] = {
+    {"position", SE3DI_SERVO_POSITION}, {"speed", SE3DI_SERVO_SPEED}, {"force", SE3DI_SERVO_FORCE},
+    {"wanted", SE3DI_SERVO_WANTED},     {"work", SE3DI_SERVO_WORK},   {NULL, SE3DI_STEPS}};
+
 enum { QUANTITIES_MAX = 32 };
 
 /* What one thing offers: at most QUANTITIES_MAX names. */
@@ -471,17 +475,16 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
     return true;
 }
 
-/* A set of particles, a sink, a region, a flow, bonds: returns whether one has that name. */
+/* A set of particles, a sink, a region, a flow, a servo wall, bonds: returns whether one has that
+ * name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
     const struct {
         size_t (*find)(const se3di_tagged *particles, const char *name);
         const quantity_name *names;
-    } kinds[] = {{se3di_tagged_find_set, set_names},
-                 {se3di_tagged_find_sink, sink_names},
-                 {se3di_tagged_find_region, region_names},
-                 {se3di_tagged_find_flow, flow_names},
-                 {se3di_tagged_find_bond, bond_names}};
+    } kinds[] = {{se3di_tagged_find_set, set_names},       {se3di_tagged_find_sink, sink_names},
+                 {se3di_tagged_find_region, region_names}, {se3di_tagged_find_flow, flow_names},
+                 {se3di_tagged_find_servo, servo_names},   {se3di_tagged_find_bond, bond_names}};
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
         const size_t index = kinds[k].find(model->particles, head);
         if (index != SIZE_MAX) {

@@ -134,6 +134,11 @@
     X(FLOW_COUNT_RATE, 1, PASSED, 7, JUMPS, 0, 1, 0, 0)                                            \
     X(FLOW_MASS_RATE, 1, PASSED, 8, JUMPS, 0, 1, 1, 0)                                             \
     X(FLOW_MOMENTUM_RATE, 3, PASSED, 9, JUMPS, 1, 2, 1, 0)                                         \
+    X(SERVO_POSITION, 1, SERVO, 0, JUMPS, 1, 0, 0, 0)                                              \
+    X(SERVO_SPEED, 1, SERVO, 1, JUMPS, 1, 1, 0, 0)                                                 \
+    X(SERVO_FORCE, 1, SERVO, 2, JUMPS, 1, 2, 1, 0)                                                 \
+    X(SERVO_WANTED, 1, SERVO, 3, JUMPS, 1, 2, 1, 0)                                                \
+    X(SERVO_WORK, 1, SERVO, 4, JUMPS, 2, 2, 1, 0)                                                  \
     X(BOND_COUNT, 1, BONDS, 0, JUMPS, 0, 0, 0, 0)                                                  \
     X(BOND_BROKEN, 1, BONDS, 1, JUMPS, 0, 0, 0, 0)                                                 \
     X(BOND_TORN, 1, BONDS, 2, JUMPS, 0, 0, 0, 0)                                                   \
@@ -200,6 +205,7 @@ typedef enum se3di_question {
     SE3DI_ASK_AVERAGE, /* of a region */
     SE3DI_ASK_PASSED,  /* of a flow */
     SE3DI_ASK_CELL,
+    SE3DI_ASK_SERVO,
     SE3DI_ASK_BONDS, /* of a group */
     SE3DI_ASK_SOLVER,
     SE3DI_QUESTION_COUNT

@@ -8,6 +8,7 @@
 #include "se3d/bond.h"
 #include "se3d/cell.h"
 #include "se3d/flow.h"
+#include "se3d/servo.h"
 
 /* What the sources of the set have done. */
 se3d_status se3di_tagged_ask_sources(const se3di_channel *c, double numbers[3])
@@ -90,6 +91,20 @@ se3d_status se3di_tagged_ask_passed(const se3di_channel *c, double numbers[12])
             numbers[4 + k] = stats.momentum[k];
             numbers[9 + k] = stats.momentum_rate[k];
         }
+    }
+    return status;
+}
+
+se3d_status se3di_tagged_ask_servo(const se3di_channel *c, double numbers[5])
+{
+    se3d_servo_state servo;
+    const se3d_status status = se3d_particles_get_servo(c->particles, c->index, &servo);
+    if (status >= 0) {
+        numbers[0] = servo.position;
+        numbers[1] = servo.speed;
+        numbers[2] = servo.force;
+        numbers[3] = servo.wanted;
+        numbers[4] = servo.work;
     }
     return status;
 }

@@ -30,6 +30,11 @@ size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name)
     return particles ? find_name(particles->flows, particles->flow_count, name) : SIZE_MAX;
 }
 
+size_t se3di_tagged_find_servo(const se3di_tagged *particles, const char *name)
+{
+    return particles ? find_name(particles->servos, particles->servo_count, name) : SIZE_MAX;
+}
+
 size_t se3di_tagged_find_bond(const se3di_tagged *particles, const char *name)
 {
     return particles ? find_name(particles->bonds, particles->bond_count, name) : SIZE_MAX;

@@ -29,6 +29,8 @@ typedef struct se3di_tagged {
     size_t region_count;
     const char **flows;
     size_t flow_count;
+    const char **servos;
+    size_t servo_count;
     const char **bonds; /* names of the groups */
     size_t bond_count;
     bool cell;           /* the domain strains */
@@ -40,6 +42,7 @@ typedef struct se3di_tagged {
 size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name);
+size_t se3di_tagged_find_servo(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_bond(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name);
 size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name);

@@ -66,18 +66,6 @@ const se3di_object se3di_object_bond = {
     NULL};
 /* clang-format on */
 
-static bool read_shape(se3di_reader *reader, const se3di_node *node, se3d_shape *shape)
-{
-    const char *name = NULL;
-    if (!se3di_read_text(reader, node, &name)) {
-        return false;
-    }
-    if (se3d_shape_find(reader->system, name, shape) < 0) {
-        return se3di_reader_fail(reader, node, "no shape that touches is named `%.60s`", name);
-    }
-    return true;
-}
-
 /* Ids of particles, two by two. */
 static bool read_pairs(se3di_reader *reader, const se3di_node *list, uint32_t *ids[2])
 {
@@ -134,7 +122,8 @@ static bool make_bonds(se3di_reader *reader, const se3di_node *node, const se3d_
     se3d_status status;
     if (!se3di_read_key_set(reader, node, "set", &tags[0]) ||
         !se3di_read_key_set(reader, node, "with", &tags[1]) ||
-        (on && !read_shape(reader, on, &shape)) || (pairs && !read_pairs(reader, pairs, ids))) {
+        (on && !se3di_read_shape_name(reader, on, &shape)) ||
+        (pairs && !read_pairs(reader, pairs, ids))) {
         return false;
     }
     tags[1] = se3di_node_get(node, "with") ? tags[1] : tags[0];

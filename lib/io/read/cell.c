@@ -34,6 +34,17 @@ static const se3di_key stage_keys[] = {
     {"gain", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, gain),
      .standard = "rate_max / abs(stress)",
      .text = "of servo: rate over excess of stress [1/(Pa s)]"},
+    {"volume", SE3DI_KIND_TEXT, .standard = "no axis",
+     .text = "the axes whose length keeps the volume, as of servo: one or two"},
+    {"shear_stress", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_cell_def, shear_stress),
+     .text = "that the shear keeps, in place of shear_rate: < 0 where a positive one is resisted "
+         "[Pa]"},
+    {"shear_rate_max", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     SE3DI_INTO(se3d_cell_def, shear_rate_max), .standard = "1",
+     .text = "of shear_stress: the largest rate [1/s]"},
+    {"shear_gain", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_cell_def, shear_gain),
+     .standard = "shear_rate_max / abs(shear_stress)",
+     .text = "of shear_stress: rate over excess of stress [1/(Pa s)]"},
     {.key = NULL}};
 const se3di_object se3di_object_stage = {
     "stage",
@@ -42,20 +53,36 @@ const se3di_object se3di_object_stage = {
     NULL};
 /* clang-format on */
 
-static bool read_servo(se3di_reader *reader, const se3di_node *node, se3d_cell_def *def)
+/* Axes as in `xz`. */
+static bool read_axes(se3di_reader *reader, const se3di_node *node, const char *key,
+                      int32_t chosen[3])
 {
-    const se3di_node *servo = se3di_node_get(node, "servo");
+    const se3di_node *child = se3di_node_get(node, key);
     const char *text = "";
-    if (servo && !se3di_read_text(reader, servo, &text)) {
+    if (child && !se3di_read_text(reader, child, &text)) {
         return false;
     }
     for (const char *c = text; *c; ++c) {
         const int axis = *c - 'x';
-        if (axis < 0 || axis > 2 || def->servo[axis]) {
-            return se3di_reader_fail(reader, servo,
+        if (axis < 0 || axis > 2 || chosen[axis]) {
+            return se3di_reader_fail(reader, child,
                                      "is `%.20s`, must be axes of x, y and z, each once", text);
         }
-        def->servo[axis] = 1;
+        chosen[axis] = 1;
+    }
+    return true;
+}
+
+/* shear_stress is what makes the shear a servo. */
+static bool read_shear(se3di_reader *reader, const se3di_node *node, se3d_cell_def *def)
+{
+    static const char *const keys[2] = {"shear_rate_max", "shear_gain"};
+    def->shear_servo = se3di_node_get(node, "shear_stress") != NULL;
+    for (int k = 0; k < 2 && !def->shear_servo; ++k) {
+        if (se3di_node_get(node, keys[k])) {
+            return se3di_reader_fail_key(reader, node, keys[k],
+                                         "has no effect without `shear_stress`");
+        }
     }
     return true;
 }
@@ -67,7 +94,8 @@ static bool read_stage(se3di_reader *reader, const se3di_node *node)
     se3d_cell_def def = se3d_cell_def_default();
     if (!se3di_read_keys(reader, node, &se3di_object_stage) ||
         !se3di_read_fields(reader, node, &se3di_object_stage, NULL, "se3d_cell_def", &def) ||
-        !read_servo(reader, node, &def)) {
+        !read_axes(reader, node, "servo", def.servo) ||
+        !read_axes(reader, node, "volume", def.volume) || !read_shear(reader, node, &def)) {
         return false;
     }
     for (int k = 0; k < 3 && !se3di_node_get(node, "servo"); ++k) {

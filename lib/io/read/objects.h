@@ -28,6 +28,7 @@
     X(bond)                                                                                        \
     X(stage)                                                                                       \
     X(flow)                                                                                        \
+    X(servo)                                                                                       \
     X(body)                                                                                        \
     X(term)                                                                                        \
     X(breakage)                                                                                    \

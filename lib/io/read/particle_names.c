@@ -21,9 +21,22 @@ bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const c
         se3di_tagged_find_sink(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_bond(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_flow(model->particles, name) != SIZE_MAX ||
+        se3di_tagged_find_servo(model->particles, name) != SIZE_MAX ||
         se3di_tagged_find_region(model->particles, name) != SIZE_MAX) {
         return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
                                  name);
+    }
+    return true;
+}
+
+bool se3di_read_shape_name(se3di_reader *reader, const se3di_node *node, se3d_shape *shape)
+{
+    const char *name = NULL;
+    if (!se3di_read_text(reader, node, &name)) {
+        return false;
+    }
+    if (se3d_shape_find(reader->system, name, shape) < 0) {
+        return se3di_reader_fail(reader, node, "no shape that touches is named `%.60s`", name);
     }
     return true;
 }

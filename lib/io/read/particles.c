@@ -22,6 +22,7 @@
 #include "io/read/particle_names.h"
 #include "io/read/particle_table.h"
 #include "io/read/sections.h"
+#include "io/read/servos.h"
 
 enum { LATTICE = 0, RANDOM = 1 };
 static const char *const packings[] = {[LATTICE] = "lattice", [RANDOM] = "random", NULL};
@@ -513,7 +514,8 @@ static bool check_analyses(se3di_reader *reader)
 /* Without particles nothing of theirs is there. */
 static bool check_alone(se3di_reader *reader, const se3di_node *root)
 {
-    static const char *const sections[] = {"sinks", "clumps", "regions", "flows", "cell", "bonds"};
+    static const char *const sections[] = {"sinks",  "clumps", "regions", "flows",
+                                           "servos", "cell",   "bonds"};
     for (size_t k = 0; k < sizeof sections / sizeof *sections; ++k) {
         const se3di_node *section = se3di_node_get(root, sections[k]);
         if (section) {
@@ -528,9 +530,9 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
 {
     se3d_model *model = reader->model;
     const se3di_node *contact = se3di_node_get(root, "contact");
-    enum { PARTICLES, SINKS, REGIONS, FLOWS, CELL, BONDS, SECTIONS };
-    static const char *const sections[SECTIONS] = {"particles", "sinks", "regions",
-                                                   "flows",     "cell",  "bonds"};
+    enum { PARTICLES, SINKS, REGIONS, FLOWS, SERVOS, CELL, BONDS, SECTIONS };
+    static const char *const sections[SECTIONS] = {"particles", "sinks", "regions", "flows",
+                                                   "servos",    "cell",  "bonds"};
     const se3di_node *lists[SECTIONS] = {NULL};
     for (int k = 0; k < SECTIONS; ++k) {
         if (!se3di_read_list(reader, root, sections[k], &lists[k])) {
@@ -560,6 +562,6 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
         }
     }
     return read_regions(reader, lists[REGIONS]) && se3di_read_flows(reader, lists[FLOWS]) &&
-           se3di_read_cell(reader, lists[CELL]) && se3di_read_bonds(reader, lists[BONDS]) &&
-           check_analyses(reader);
+           se3di_read_servos(reader, lists[SERVOS]) && se3di_read_cell(reader, lists[CELL]) &&
+           se3di_read_bonds(reader, lists[BONDS]) && check_analyses(reader);
 }

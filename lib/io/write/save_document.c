@@ -10,8 +10,9 @@
 
 enum { WIDTH = 100 };
 
-static const char *const sections[] = {"clumps", "particles", "sinks",  "regions", "flows", "bonds",
-                                       "cell",   "analysis",  "events", "fmus",    "output"};
+static const char *const sections[] = {"clumps",   "particles", "sinks", "regions",
+                                       "flows",    "servos",    "bonds", "cell",
+                                       "analysis", "events",    "fmus",  "output"};
 
 static bool is_bare(const char *text)
 {
