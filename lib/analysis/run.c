@@ -4,6 +4,7 @@
 #include "analysis/run_end.h"
 
 #include "analysis/breaks.h"
+#include "analysis/crowd.h"
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
@@ -127,9 +128,19 @@ static void use_method(se3di_run *run, const se3di_integrator *method)
     run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
 }
 
-/* auto: particles move by verlet only; strong dampers hold explicit methods to small steps, or
- * have done so before. A motion under way goes on by its method: the state would now decide
- * otherwise. */
+/* No tolerance is asked for, and many bodies touch. */
+static int is_crowded(const se3di_run *run)
+{
+    const se3di_model *model = run->model;
+    return run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
+           !is_history_of(model, SE3D_METHOD_DOP853) && !is_history_of(model, SE3D_METHOD_RADAU) &&
+           (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_crowd_is_large(model)) &&
+           se3di_crowd_suits(model);
+}
+
+/* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
+ * small steps, or have done so before. A motion under way goes on by its method: the state would
+ * now decide otherwise. */
 static void choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;
@@ -143,6 +154,8 @@ static void choose_method(se3di_run *run)
     int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
+    } else if (is_crowded(run)) {
+        method = SE3D_METHOD_CONVEX;
     }
     use_method(run, se3di_integrator_find(method));
 }
@@ -676,6 +689,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     SE3DI_TRY(begin_dynamics(run, step));
     se3di_run_tell_bodies(run);
     se3di_run_tell_step(run);
+    se3di_run_tell_crowd(run);
     se3di_run_tell_reach(run);
     for (;;) {
         SE3DI_TRY(choose_steps(run, t_end));

@@ -20,6 +20,7 @@ typedef struct se3di_run {
     int32_t determined;           /* kinematics: the drivers determine the motion (checked once) */
     int32_t automatic;            /* the method is chosen from what the model holds, */
     int32_t picks_formulation;    /* and so is the formulation */
+    int32_t has_tolerance;        /* it was asked for */
     int32_t refused;              /* a prescribed value jumps in the run that is asked for */
     const se3di_integrator *left; /* the method that was left on the way, NULL: none */
     double left_at;               /* when [s] */
@@ -42,7 +43,8 @@ typedef struct se3di_run {
     const se3di_integrator *told_reach;  /* the log was told what this method reaches, */
     const se3di_integrator *told_bodies; /* that it integrates bodies, not joint coordinates, */
     const se3di_integrator *told_step;   /* which step it takes if none is given, */
-    const se3di_integrator *told_held;   /* that the motion is stiff */
+    const se3di_integrator *told_held;   /* that the motion is stiff, */
+    const se3di_integrator *told_crowd;  /* that many bodies touch */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

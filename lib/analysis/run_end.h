@@ -21,6 +21,8 @@ void se3di_run_tell_reach(se3di_run *run);
 void se3di_run_tell_bodies(se3di_run *run);
 /* The log is told of the step of a method that controls no error, if none was given. */
 void se3di_run_tell_step(se3di_run *run);
+/* The log is told that a method follows each contact of many bodies. */
+void se3di_run_tell_crowd(se3di_run *run);
 /* The log is told that iterations limit the steps of a method. */
 void se3di_run_tell_held(se3di_run *run);
 /* What was found of redundant equations goes to the log. @return OK, INFO_REDUNDANT */

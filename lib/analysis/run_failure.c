@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* After a run that failed: why, and back to the last accepted state. */
+#include "analysis/crowd.h"
 #include "analysis/dead_point.h"
 #include "analysis/run_end.h"
 
@@ -96,6 +97,20 @@ static void blame_jump(const se3di_run *run, double t_end)
     }
 }
 
+/* What touches has more in it than the method can follow. */
+static void advise_convex(const se3di_run *run, se3d_status status)
+{
+    const int stuck = status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE ||
+                      status == SE3D_ERR_STEP_COUNT;
+    if (stuck && run->model->contacts.pair_count > 0 &&
+        run->integration.method->tag != SE3D_METHOD_CONVEX && se3di_crowd_suits(run->model)) {
+        const se3di_error before = *run->error;
+        se3di_error_set(run->error, before.status,
+                        "%.300s; method convex takes bodies that touch at steps of milliseconds",
+                        before.message);
+    }
+}
+
 /* A callback that failed is the reason for whatever else did. */
 static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
 {
@@ -114,6 +129,7 @@ static se3d_status explain(se3di_run *run, se3d_status status, double t_end)
         run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->refused &&
         se3di_assembly_fits(&run->equations.assembly)) {
         blame_jump(run, t_end);
+        advise_convex(run, status);
     }
     return status;
 }

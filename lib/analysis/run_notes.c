@@ -2,6 +2,7 @@
 /* What the log is told of a run, once. */
 #include "analysis/run_end.h"
 
+#include "analysis/crowd.h"
 #include "base/log.h"
 #include "nonlinear/ranks.h"
 
@@ -44,6 +45,19 @@ void se3di_run_tell_step(se3di_run *run)
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: no step is given: %s takes %g s and estimates no error",
                         run->model->time, method->name, integration->settings.step_most);
+    }
+}
+
+void se3di_run_tell_crowd(se3di_run *run)
+{
+    const se3di_integrator *method = run->integration.method;
+    if (method != &se3di_integrator_convex && run->told_crowd != method &&
+        se3di_crowd_is_large(run->model) && se3di_crowd_suits(run->model)) {
+        run->told_crowd = method;
+        se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
+                        "t = %g s: %s follows each contact of the many bodies that may touch; "
+                        "convex takes steps of milliseconds",
+                        run->model->time, method->name);
     }
 }
 

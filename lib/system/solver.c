@@ -121,6 +121,7 @@ static void configure(se3di_run *run, const se3d_solver_def *def)
             ? &se3di_formulation_romega
             : se3di_formulation_find(def->formulation);
     run->automatic = def->method == SE3D_METHOD_AUTO;
+    run->has_tolerance = def->tolerance > 0.0;
     run->guard = (se3di_guard){.interrupt = def->interrupt,
                                .ctx = def->interrupt_ctx,
                                .most = def->steps_max > 0 ? (double)def->steps_max : STEPS_MAX};

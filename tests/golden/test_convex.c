@@ -226,19 +226,26 @@ static void a_stack_of_ten_stands_without_creep(void)
     scene_end(&s);
 }
 
-static void twenty_dominoes_fall(void)
+/* In a row; the first is pushed over. */
+static void set_up_dominoes(const scene *begun, int count, se3d_body *stones)
 {
+    scene s = *begun;
     const double size[3] = {0.02, 0.05, 0.1};
-    se3d_body stones[20];
-    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.4, 0.1, 1e5);
+    const double push[3] = {0.0, 4.0, 0.0}, forth[3] = {0.2, 0.0, 0.0};
     scene_floor(&s, 0.0);
-    for (int k = 0; k < 20; ++k) {
+    for (int k = 0; k < count; ++k) {
         const double r[3] = {0.05 * k, 0.0, 0.05};
         stones[k] = scene_box(&s, size, 0.05, r, scene_zero);
     }
-    const double push[3] = {0.0, 4.0, 0.0}, forth[3] = {0.2, 0.0, 0.0};
     CHECK(se3d_body_set_velocity(s.system, stones[0], forth) == SE3D_OK);
     CHECK(se3d_body_set_angular_velocity(s.system, stones[0], push) == SE3D_OK);
+}
+
+static void twenty_dominoes_fall(void)
+{
+    se3d_body stones[20];
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.4, 0.1, 1e5);
+    set_up_dominoes(&s, 20, stones);
     const double first = get_energy(&s);
     double energy = first;
     scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
@@ -252,6 +259,46 @@ static void twenty_dominoes_fall(void)
         get(&s, stones[k], r, v);
         CHECK(r[2] < 0.04);
     }
+    scene_end(&s);
+}
+
+/* auto takes convex for ten bodies or more, unless a tolerance asks for control of the error. */
+static void many_bodies_are_stepped_by_convex(void)
+{
+    static const struct {
+        int32_t method;
+        int count;
+        double tolerance;
+    } runs[5] = {{SE3D_METHOD_CONVEX, 10, 0.0},
+                 {SE3D_METHOD_AUTO, 10, 0.0},
+                 {SE3D_METHOD_AUTO, 10, 1e-6},
+                 {SE3D_METHOD_CONVEX, 9, 0.0},
+                 {SE3D_METHOD_AUTO, 9, 0.0}};
+    uint64_t hash[5];
+    for (int k = 0; k < 5; ++k) {
+        se3d_body stones[10];
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.4, 0.1, 1e5);
+        set_up_dominoes(&s, runs[k].count, stones);
+        scene_solve(&s, runs[k].method, SE3D_FORMULATION_AUTO, 0.0, runs[k].tolerance);
+        scene_run(&s, 0.005);
+        scene_run(&s, 0.01); /* goes on by the same method */
+        hash[k] = se3d_system_hash(s.system);
+        scene_end(&s);
+    }
+    CHECK(hash[0] == hash[1] && hash[0] != hash[2]);
+    CHECK(hash[3] != hash[4]);
+}
+
+/* A step that radau cannot make is told with what would do. */
+static void what_fails_names_convex(void)
+{
+    const double size[3] = {0.1, 0.1, 0.1}, r[3] = {0.0, 0.0, 0.06}, v[3] = {0.0, 0.0, -1.0};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e30);
+    scene_floor(&s, 0.0);
+    scene_box(&s, size, 0.5, r, v);
+    scene_solve(&s, SE3D_METHOD_RADAU, SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    CHECK(se3d_solver_run(s.solver, 0.1) < 0);
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "method convex");
     scene_end(&s);
 }
 
@@ -397,6 +444,8 @@ int main(void)
     RUN(sliding_impacts_take_mu_times_the_normal_impulse);
     RUN(a_stack_of_ten_stands_without_creep);
     RUN(twenty_dominoes_fall);
+    RUN(many_bodies_are_stepped_by_convex);
+    RUN(what_fails_names_convex);
     RUN(a_heap_of_27_boxes_settles);
     RUN(what_joints_hold_touches_as_with_verlet);
     RUN(the_audit_balances);

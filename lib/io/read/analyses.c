@@ -42,7 +42,8 @@ static const se3di_key analysis_keys[] = {
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; convex: for many bodies that touch, at steps of 0.001 to 0.005; "
          "gauss: smooth motions, to tight tolerances; "
-         "auto: verlet with particles, radau if a damper's decay is 20000 "
+         "auto: verlet with particles, convex if ten free bodies or more may touch, nothing else "
+         "acts on them but gravity and no tolerance is given, radau if a damper's decay is 20000 "
          "times faster than the motion, else dop853, which it leaves for radau if stability "
          "limits its steps"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",

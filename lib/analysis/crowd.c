@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "analysis/crowd.h"
+
+#define MANY 10 /* bodies */
+
+static int is_known(const se3di_pair *pair)
+{
+    return !(pair->rolling > 0.0) && !(pair->torsion > 0.0) && !(pair->cohesion > 0.0) &&
+           !(pair->pull_off > 0.0);
+}
+
+int se3di_crowd_suits(const se3di_model *model)
+{
+    const size_t materials = model->material_slots.count;
+    if (model->sets || model->constraint_slots.count > 0 || model->force_slots.count > 0 ||
+        model->state_count > 0 || model->contact.law == SE3DI_LAW_CALLBACK) {
+        return 0;
+    }
+    for (size_t k = 0; k < materials * materials; ++k) {
+        if (!is_known(&model->pairs[k])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Shapes follow each other body by body, or a body counts once more. */
+int se3di_crowd_is_large(const se3di_model *model)
+{
+    uint32_t last = UINT32_MAX;
+    size_t count = 0;
+    for (size_t k = 0; k < model->shape_slots.count && count < MANY; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        const se3di_body *body = &model->bodies[shape->body];
+        if (shape->material >= 0 && !body->fixed && body->state == 0 && shape->body != last) {
+            last = shape->body;
+            ++count;
+        }
+    }
+    return count >= MANY;
+}
