@@ -6,25 +6,31 @@
 #include "support/counting.h"
 #include "support/models.h"
 
+/* What a getter tells of the first body. */
+static se3d_status get_of_body(const se3d_system *system,
+                               se3d_status (*get)(const se3d_system *, se3d_body, double *),
+                               double x[3])
+{
+    se3d_body body;
+    const se3d_status status = se3d_system_get_body(system, 1, &body);
+    return status < 0 ? status : get(system, body, x);
+}
+
 static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
 {
-    double r[3];
-    se3d_body body;
+    double r[3] = {0.0, 0.0, 0.0};
+    const se3d_status status = get_of_body(system, se3d_body_get_position, r);
     (void)ctx;
-    se3d_status status = se3d_system_get_body(system, 1, &body);
-    status = status < 0 ? status : se3d_body_get_position(system, body, r);
     *value = r[2] + 0.5 * r[1] + 0.25 * r[0];
     return status;
 }
 
 static se3d_status get_spin(void *ctx, const se3d_system *system, double *value)
 {
-    double wdot[3];
-    se3d_body body;
+    double a[3] = {0.0, 0.0, 0.0};
+    const se3d_status status = get_of_body(system, se3d_body_get_angular_acceleration, a);
     (void)ctx;
-    se3d_status status = se3d_system_get_body(system, 1, &body);
-    status = status < 0 ? status : se3d_body_get_angular_acceleration(system, body, wdot);
-    *value = wdot[0] + wdot[1] + wdot[2];
+    *value = a[0] + a[1] + a[2];
     return status;
 }
 

@@ -43,15 +43,21 @@ static void every_run_gives_the_same_bits(void)
     }
 }
 
+static support_model run_half(const support_analysis *row, int32_t formulation)
+{
+    support_model model;
+    support_model_make(&model, row->mechanism, row->count);
+    run_to(model.system, row, formulation, 0.5 * row->t_end);
+    return model;
+}
+
 static void clones_continue_with_the_same_bits(void)
 {
     for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
         const support_analysis *row = &support_analyses[k / 3];
         int32_t formulation = (int32_t)(k % 3);
-        support_model model;
         se3d_system *clone = NULL;
-        support_model_make(&model, row->mechanism, row->count);
-        run_to(model.system, row, formulation, 0.5 * row->t_end);
+        support_model model = run_half(row, formulation);
         CHECK(se3d_system_clone(model.system, &clone) == SE3D_OK);
         CHECK(se3d_system_hash(clone) == se3d_system_hash(model.system));
         run_to(clone, row, formulation, row->t_end);
@@ -69,10 +75,8 @@ static void snapshots_continue_with_the_same_bits(void)
     for (size_t k = 0; k < 3 * SUPPORT_ANALYSES; ++k) {
         const support_analysis *row = &support_analyses[k / 3];
         int32_t formulation = (int32_t)(k % 3);
-        support_model model;
         se3d_snapshot *snapshot = NULL;
-        support_model_make(&model, row->mechanism, row->count);
-        run_to(model.system, row, formulation, 0.5 * row->t_end);
+        support_model model = run_half(row, formulation);
         uint64_t middle = se3d_system_hash(model.system);
         CHECK(se3d_snapshot_create(model.system, &snapshot) == SE3D_OK);
         for (int pass = 0; pass < 2; ++pass) {

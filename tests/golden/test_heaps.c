@@ -24,14 +24,22 @@ static void drop(scene *s, se3d_body *bodies)
     scene_floor(s, 0.0);
 }
 
+#define METHODS 3
+static const int32_t methods[METHODS] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
+
+static scene open_heap(double stiffness, int32_t method)
+{
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, stiffness);
+    se3d_body bodies[BOXES];
+    drop(&s, bodies);
+    scene_solve(&s, method, SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    return s;
+}
+
 static void the_first_touch_is_no_singularity(void)
 {
-    static const int32_t methods[3] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
-    for (int k = 0; k < 3; ++k) {
-        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
-        se3d_body bodies[BOXES];
-        drop(&s, bodies);
-        scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    for (int k = 0; k < METHODS; ++k) {
+        scene s = open_heap(1e5, methods[k]);
         scene_run(&s, 0.12);
         CHECK(se3d_system_count_contacts(s.system) > 3);
         scene_end(&s);
@@ -41,12 +49,8 @@ static void the_first_touch_is_no_singularity(void)
 /* A stiffness whose contacts are shorter than any step. */
 static void a_run_that_fails_names_the_shapes(void)
 {
-    static const int32_t methods[3] = {SE3D_METHOD_RADAU, SE3D_METHOD_DOP853, SE3D_METHOD_BDF};
-    for (int k = 0; k < 3; ++k) {
-        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e30);
-        se3d_body bodies[BOXES];
-        drop(&s, bodies);
-        scene_solve(&s, methods[k], SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    for (int k = 0; k < METHODS; ++k) {
+        scene s = open_heap(1e30, methods[k]);
         CHECK(se3d_solver_run(s.solver, 0.12) < 0);
         CHECK_CONTAINS(se3d_system_get_error(s.system), "box ");
         scene_end(&s);

@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "se3d/io.h"
+#include "support/parts.h"
 
 #define G 9.81
 
@@ -102,16 +103,6 @@ static motion watch(const drive *d)
     return m;
 }
 
-/* What the energies and works leave over. */
-static double balance(const drive *d)
-{
-    se3d_energy energy;
-    se3d_work work;
-    CHECK(!se3d_system_get_energy(d->system, &energy));
-    CHECK(!se3d_system_get_work(d->system, &work));
-    return energy.total + work.dissipated - work.actuators - work.drivers;
-}
-
 /* No tyre gives more than its grip, whatever the directions of its slip. */
 static void forces_are_within_the_grip(const drive *d)
 {
@@ -128,7 +119,7 @@ static void a_step_of_the_hand_wheel_leads_to_a_steady_turn(void)
         return;
     }
     run(&d, 3.9);
-    const double before = balance(&d);
+    const double before = part_balance(d.system);
     const motion straight = watch(&d);
     CHECK(straight.speed > 8.5 && straight.speed < 10.0);
     CHECK_NEAR(straight.yaw, 0.0, 1e-3);
@@ -145,7 +136,7 @@ static void a_step_of_the_hand_wheel_leads_to_a_steady_turn(void)
     forces_are_within_the_grip(&d);
     run(&d, 6.5);
     CHECK_NEAR(watch(&d).yaw, turn.yaw, 0.02 * turn.yaw);
-    CHECK_NEAR(balance(&d), before, 0.5); /* of some 15 kJ */
+    CHECK_NEAR(part_balance(d.system), before, 0.5); /* of some 15 kJ */
     close_drive(&d);
 }
 
@@ -180,7 +171,7 @@ static void the_car_brakes_in_a_turn_and_stands(void)
         return;
     }
     run(&d, 5.0);
-    const double before = balance(&d);
+    const double before = part_balance(d.system);
     const motion turn = watch(&d);
     run(&d, 5.5);
     motion m = watch(&d);
@@ -196,7 +187,7 @@ static void the_car_brakes_in_a_turn_and_stands(void)
     CHECK(m.speed < 0.05);
     CHECK(m.r[1] > 10.0);
     CHECK_NEAR(sum_tyres(&d, SE3D_TYRE_FZ), d.mass * G, 0.03 * d.mass * G); /* it still rocks */
-    CHECK_NEAR(balance(&d), before, 0.5);
+    CHECK_NEAR(part_balance(d.system), before, 0.5);
     close_drive(&d);
 }
 

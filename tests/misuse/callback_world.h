@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/parts.h"
 
 typedef enum kind {
     KIND_FORCE = 0,
@@ -145,7 +146,6 @@ static void world_add_bodies(world *w)
 {
     se3d_body ground;
     se3d_body_def body = se3d_body_def_default();
-    se3d_joint_def pin = se3d_joint_def_default();
     se3d_marker_def marker = se3d_marker_def_default();
     CHECK(!se3d_system_get_ground(w->system, &ground));
     body.name = "name";
@@ -161,13 +161,7 @@ static void world_add_bodies(world *w)
     body.velocity[2] = 0.0;
     CHECK(!se3d_body_create(w->system, &body, &w->bar));
     CHECK(!se3d_body_create(w->system, &body, &w->kite));
-    pin.name = "name";
-    pin.body_i = ground;
-    pin.body_j = w->bar;
-    pin.point_j[0] = -0.25;
-    pin.axis_i[1] = pin.axis_j[1] = 1.0;
-    pin.axis_i[2] = pin.axis_j[2] = 0.0;
-    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    w->pin = part_hinge(w->system, "name", w->bar, -0.25);
     marker.name = "name";
     marker.body = w->bar;
     CHECK(!se3d_marker_create(w->system, &marker, &w->marker));

@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "misuse/element_defs.h"
+#include "support/parts.h"
 
 /* A hinged and a sliding body, a ball over a floor, a few particles beside it. */
 typedef struct world {
@@ -31,19 +32,6 @@ typedef struct subject {
     se3d_status (*create)(world *w, const void *def);
     int with_particles;
 } subject;
-
-static inline se3d_body world_body(world *w, const char *name, double x, double z)
-{
-    se3d_body body;
-    se3d_body_def def = se3d_body_def_default();
-    def.name = name;
-    def.mass = 2.0;
-    def.inertia[0] = def.inertia[1] = def.inertia[2] = 0.1;
-    def.position[0] = x;
-    def.position[2] = z;
-    CHECK(se3d_body_create(w->system, &def, &body) == SE3D_OK);
-    return body;
-}
 
 static inline void world_touch(world *w)
 {
@@ -78,9 +66,9 @@ static inline void world_open(world *w, int with_particles)
     se3d_solver_def how = se3d_solver_def_default();
     CHECK(se3d_system_create(NULL, &w->system) == SE3D_OK);
     CHECK(se3d_system_get_ground(w->system, &w->ground) == SE3D_OK);
-    w->hinged = world_body(w, "hinged", 1.0, 2.0);
-    w->sliding = world_body(w, "sliding", -1.0, 2.0);
-    w->ball = world_body(w, "ball", 0.0, 0.0999);
+    w->hinged = part_body(w->system, "hinged", 1.0, 2.0);
+    w->sliding = part_body(w->system, "sliding", -1.0, 2.0);
+    w->ball = part_body(w->system, "ball", 0.0, 0.0999);
     joint.body_i = w->ground;
     joint.body_j = w->hinged;
     joint.axis_i[1] = joint.axis_j[1] = 1.0;

@@ -5,6 +5,7 @@
 
 #include "misuse/misuse_definitions.h"
 #include "misuse/misuse_fields.h"
+#include "support/parts.h"
 
 static void define_body(arguments *a)
 {
@@ -134,26 +135,13 @@ static const field coupler_fields[] = {
     FUNCTION(se3d_coupler_def, function),
     FIELDS_END};
 
-static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
-                               double *jacobian, double *nu, double *gamma)
-{
-    (void)ctx;
-    (void)t;
-    (void)bodies;
-    (void)phi;
-    (void)jacobian;
-    (void)nu;
-    (void)gamma;
-    return SE3D_OK;
-}
-
 static void define_user_constraint(arguments *a)
 {
     se3d_user_constraint_def def = se3d_user_constraint_def_default();
     def.bodies[0] = ground_of(a);
     def.bodies[1] = a->use.body;
     def.body_count = 2;
-    def.callback = no_equation;
+    def.callback = part_no_equation;
     STORE(def);
 }
 static const field user_constraint_fields[] = {

@@ -328,6 +328,16 @@ static void check_both_explicit(const se3d_solver *one, const se3d_solver *two)
     CHECK(strcmp(method[0], "dop853") == 0 && strcmp(method[1], "dop853") == 0);
 }
 
+static void end_both_explicit(se3d_solver *one, se3d_solver *two, se3d_system *system,
+                              se3d_system *other)
+{
+    check_both_explicit(one, two);
+    se3d_solver_destroy(one);
+    se3d_solver_destroy(two);
+    se3d_system_destroy(system);
+    se3d_system_destroy(other);
+}
+
 static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
 {
     se3d_system *system = build_slowing(1e4, 4e4), *other = NULL;
@@ -342,11 +352,7 @@ static void new_solvers_of_auto_go_on_by_the_method_under_way(void)
         CHECK(se3d_solver_run(two, 3e-4 + 1e-5 * k) == SE3D_OK);
         CHECK(se3d_system_hash(system) == se3d_system_hash(other));
     }
-    check_both_explicit(one, two);
-    se3d_solver_destroy(one);
-    se3d_solver_destroy(two);
-    se3d_system_destroy(system);
-    se3d_system_destroy(other);
+    end_both_explicit(one, two, system, other);
 }
 
 /* Also if nothing of its history is left. */
@@ -370,11 +376,7 @@ static void a_solver_that_is_read_goes_on_by_its_method(void)
     CHECK(se3d_solver_run(one, 3.1e-4) == SE3D_OK);
     CHECK(se3d_solver_run(two, 3.1e-4) == SE3D_OK);
     CHECK(se3d_system_hash(system) == se3d_system_hash(other));
-    check_both_explicit(one, two);
-    se3d_solver_destroy(one);
-    se3d_solver_destroy(two);
-    se3d_system_destroy(system);
-    se3d_system_destroy(other);
+    end_both_explicit(one, two, system, other);
 }
 
 /* A spin of rounding is no motion beside which a damper is stiff. */

@@ -6,6 +6,7 @@
 #include "support/analyses.h"
 #include "support/counting.h"
 #include "support/models.h"
+#include "support/parts.h"
 
 /* A small model with one element of everything that others are attached to. */
 typedef struct workshop {
@@ -204,25 +205,12 @@ static se3d_status make_cd(workshop *w)
     return make_primitive(w, SE3D_PRIMITIVE_CD);
 }
 
-static se3d_status no_equation(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
-                               double *jacobian, double *nu, double *gamma)
-{
-    (void)ctx;
-    (void)t;
-    (void)bodies;
-    (void)phi;
-    (void)jacobian;
-    (void)nu;
-    (void)gamma;
-    return SE3D_OK;
-}
-
 static se3d_status make_user_constraint(workshop *w)
 {
     se3d_user_constraint_def def = se3d_user_constraint_def_default();
     se3d_constraint constraint;
     def.name = "user";
-    def.callback = no_equation;
+    def.callback = part_no_equation;
     def.bodies[0] = w->body[0];
     def.bodies[1] = w->body[1];
     def.body_count = 2;

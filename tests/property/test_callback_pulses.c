@@ -1,17 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Callbacks are asked for the times of steps only, so that a pulse may lie between: `step`, where
  * steps are chosen the largest one, finds it in every method. */
+#include "support/block_text.h"
 #include "support/methods.h"
 #include "support/text_model.h"
-
-#define BLOCK                                                                                      \
-    "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"                                                       \
-    "  - {name: a, mass: 2, inertia: [1, 1, 1]}\n"                                                 \
-    "joints: [{name: s, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, "  \
-    "0]}]\n"
-#define OUTPUT                                                                                     \
-    "analysis: {type: dynamics, duration: 6}\n"                                                    \
-    "output: [{file: r.csv, channels: [a.velocity, a.position]}]\n"
 
 #define SHORT 1e-3 /* s */
 

@@ -5,6 +5,7 @@
 #include "se3d/se3d.h"
 #include "support/ball_on_floor.h"
 #include "support/methods.h"
+#include "support/parts.h"
 
 /* Counts the calls of all callbacks, and fails at one of them, or from it on; or what it writes is
  * not finite. */
@@ -225,7 +226,6 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
 {
     se3d_body ground;
     se3d_body_def body = se3d_body_def_default();
-    se3d_joint_def pin = se3d_joint_def_default();
     se3d_tsda_def spring = se3d_tsda_def_default();
     se3d_force made;
     calls = fails_at = 0;
@@ -242,12 +242,7 @@ static void make(world *w, int scene, int32_t analysis, int32_t method)
     if (scene != SCENE_DRIVEN) {
         CHECK(!se3d_body_create(w->system, &body, &w->b));
     }
-    pin.body_i = ground;
-    pin.body_j = w->a;
-    pin.point_j[0] = -0.5;
-    pin.axis_i[1] = pin.axis_j[1] = 1.0;
-    pin.axis_i[2] = pin.axis_j[2] = 0.0;
-    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    w->pin = part_hinge(w->system, NULL, w->a, -0.5);
     spring.body_i = scene == SCENE_DRIVEN ? ground : w->a;
     spring.body_j = w->b;
     spring.point_i[0] = 0.5;
@@ -517,15 +512,6 @@ static void so_it_does_on_the_way_to_an_equilibrium(void)
     }
 }
 
-static double balance_of(const world *w)
-{
-    se3d_energy energy;
-    se3d_work work;
-    CHECK(!se3d_system_get_energy(w->system, &energy));
-    CHECK(!se3d_system_get_work(w->system, &work));
-    return energy.total + work.dissipated - work.actuators - work.drivers;
-}
-
 /* What a change of values does is work of actuators. If a callback fails before or after it, it
  * is not known: the audit begins anew there. */
 static void the_audit_closes_over_a_change_of_values_or_begins_anew(void)
@@ -537,16 +523,16 @@ static void the_audit_closes_over_a_change_of_values_or_begins_anew(void)
         se3d_work work;
         make(&w, SCENE_FORCE, SE3D_ANALYSIS_DYNAMICS, run % method_count());
         CHECK(se3d_solver_run(w.solver, 0.0625) >= 0);
-        double before = balance_of(&w);
+        double before = part_balance(w.system);
         fails_at = failing > 0 ? calls + failing : 0;
         CHECK(!se3d_system_set_gravity(w.system, gravity));
         fails_at = 0;
         CHECK(!se3d_system_get_work(w.system, &work));
         CHECK((fabs(work.actuators) > 0.0) == (failing == 0));
-        before = failing > 0 ? balance_of(&w) : before;
-        CHECK_NEAR(balance_of(&w), before, 1e-12);
+        before = failing > 0 ? part_balance(w.system) : before;
+        CHECK_NEAR(part_balance(w.system), before, 1e-12);
         CHECK(se3d_solver_run(w.solver, 0.125) >= 0);
-        CHECK_NEAR(balance_of(&w), before, 1e-4);
+        CHECK_NEAR(part_balance(w.system), before, 1e-4);
         destroy(&w);
     }
 }

@@ -4,6 +4,7 @@
 #include "check.h"
 #include "se3d/se3d.h"
 #include "support/methods.h"
+#include "support/parts.h"
 
 #define STEPS 40
 #define H     1e-3
@@ -314,7 +315,6 @@ static void make_bars(bars *w)
 {
     se3d_body ground;
     se3d_body_def body = se3d_body_def_default();
-    se3d_joint_def pin = se3d_joint_def_default();
     CHECK(!se3d_system_create(NULL, &w->system));
     CHECK(!se3d_system_get_ground(w->system, &ground));
     body.mass = 1.0;
@@ -325,12 +325,7 @@ static void make_bars(bars *w)
     body.position[0] = 1.5;
     body.velocity[1] = 0.3;
     CHECK(!se3d_body_create(w->system, &body, &w->b));
-    pin.body_i = ground;
-    pin.body_j = w->a;
-    pin.point_j[0] = -0.5;
-    pin.axis_i[1] = pin.axis_j[1] = 1.0;
-    pin.axis_i[2] = pin.axis_j[2] = 0.0;
-    CHECK(!se3d_joint_create_revolute(w->system, &pin, &w->pin));
+    w->pin = part_hinge(w->system, NULL, w->a, -0.5);
     add_elements(w, ground);
 }
 

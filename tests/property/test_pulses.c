@@ -1,17 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What acts for a short time only, after a long rest in which steps grow, is not stepped over, in
  * any method. */
+#include "support/block_text.h"
 #include "support/methods.h"
 #include "support/text_model.h"
-
-#define BLOCK                                                                                      \
-    "se3d: 1\ngravity: [0, 0, 0]\nbodies:\n"                                                       \
-    "  - {name: a, mass: 2, inertia: [1, 1, 1]}\n"                                                 \
-    "joints: [{name: s, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, 0, "  \
-    "0]}]\n"
-#define OUTPUT                                                                                     \
-    "analysis: {type: dynamics, duration: 6}\n"                                                    \
-    "output: [{file: r.csv, channels: [a.velocity, a.position]}]\n"
 
 /* 5 N s in a tenth of a second, and in a hundredth. */
 static const char *const pushes[] = {

@@ -68,6 +68,25 @@ static se3d_solver *solver_of(linkage *l, int rp)
                         rp ? SE3D_FORMULATION_RP : SE3D_FORMULATION_ROMEGA, 0.0);
 }
 
+/* A failure counts as one and is shown. */
+static int run_to(const linkage *l, se3d_solver *solver, double steps, double t)
+{
+    const se3d_status status = se3d_solver_run(solver, t);
+    CHECK(status >= 0);
+    if (status < 0) {
+        fprintf(stderr, "%g steps a turn, t = %g: %s\n", steps, t,
+                se3d_system_get_error(l->system));
+    }
+    return status >= 0;
+}
+
+static void get_motion(const linkage *l, se3d_body body, double r[3], double v[3], double a[3])
+{
+    CHECK(!se3d_body_get_position(l->system, body, r));
+    CHECK(!se3d_body_get_velocity(l->system, body, v));
+    CHECK(!se3d_body_get_acceleration(l->system, body, a));
+}
+
 /* The coupler of a parallelogram only shifts: its centre turns as the crank's end does. */
 static void the_parallelogram_passes_its_flat_positions(void)
 {
@@ -79,16 +98,10 @@ static void the_parallelogram_passes_its_flat_positions(void)
         se3d_solver *solver = solver_of(&l, run % 2);
         for (int k = 1; k <= (int)(3.0 * steps); ++k) { /* three turns, flat at t = 1/2, 3/2, ... */
             double t = 2.0 * k / steps, angle = 0.5 * PI + rate * t, r[3], v[3], a[3], w[3], effort;
-            se3d_status status = se3d_solver_run(solver, t);
-            CHECK(status >= 0);
-            if (status < 0) {
-                fprintf(stderr, "%g steps a turn, t = %g: %s\n", steps, t,
-                        se3d_system_get_error(l.system));
+            if (!run_to(&l, solver, steps, t)) {
                 break;
             }
-            CHECK(!se3d_body_get_position(l.system, l.coupler, r));
-            CHECK(!se3d_body_get_velocity(l.system, l.coupler, v));
-            CHECK(!se3d_body_get_acceleration(l.system, l.coupler, a));
+            get_motion(&l, l.coupler, r, v, a);
             CHECK(!se3d_body_get_angular_velocity(l.system, l.last, w));
             CHECK(!se3d_driver_get_effort(l.system, l.driver, &effort));
             CHECK_NEAR(r[0], 1.0 + cos(angle), 1e-10);
@@ -118,16 +131,10 @@ static void the_slider_crank_of_equal_lengths_passes_upright(void)
         se3d_solver *solver = solver_of(&l, run % 2);
         for (int k = 1; k <= (int)(2.0 * steps); ++k) {
             double t = 2.0 * k / steps, angle = PI / 3.0 + PI * t, r[3], v[3], a[3];
-            se3d_status status = se3d_solver_run(solver, t);
-            CHECK(status >= 0);
-            if (status < 0) {
-                fprintf(stderr, "%g steps a turn, t = %g: %s\n", steps, t,
-                        se3d_system_get_error(l.system));
+            if (!run_to(&l, solver, steps, t)) {
                 break;
             }
-            CHECK(!se3d_body_get_position(l.system, l.last, r));
-            CHECK(!se3d_body_get_velocity(l.system, l.last, v));
-            CHECK(!se3d_body_get_acceleration(l.system, l.last, a));
+            get_motion(&l, l.last, r, v, a);
             CHECK_NEAR(r[0], 0.25 + 2.0 * cos(angle), 1e-10);
             CHECK_NEAR(v[0], -2.0 * PI * sin(angle), 1e-8);
             CHECK_NEAR(a[0], -2.0 * PI * PI * cos(angle), 1e-6);

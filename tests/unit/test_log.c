@@ -3,6 +3,7 @@
  * once, none with an effect on results. And how much of a start was changed. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/parts.h"
 #include "support/world.h"
 
 typedef struct sheet {
@@ -43,14 +44,7 @@ static void open_sheet(sheet *s, int silent)
 
 static se3d_body add_bar(const sheet *s, const char *name, double x)
 {
-    se3d_body body;
-    se3d_body_def def = se3d_body_def_default();
-    def.name = name;
-    def.mass = 2.0;
-    def.inertia[0] = def.inertia[1] = def.inertia[2] = 0.1;
-    def.position[0] = x;
-    CHECK(!se3d_body_create(s->system, &def, &body));
-    return body;
+    return part_body(s->system, name, x, 0.0);
 }
 
 static se3d_constraint add_pin(const sheet *s, se3d_body body, const char *name)
