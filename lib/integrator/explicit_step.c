@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/explicit_step.h"
+#include "integrator/explicit_point.h"
 #include "integrator/memory.h"
 
 #include "assembly/energy.h"
-#include "assembly/loads.h"
 #include "base/pending.h"
 #include "contact/bodies/pace.h"
 #include "integrator/motion.h"
@@ -15,292 +15,10 @@
 #include <math.h>
 #include <string.h>
 
-#define PAST (sizeof(se3di_explicit_past) / sizeof(double))
-
-#define FORCED_MAX  3
-#define LEAST_STEP  3e-14 /* of the time */
-#define BALANCE     8e-15 /* rounding of accelerations, relative to those of forces that balance */
-#define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
-#define LARGEST     1e50  /* coordinate or velocity whose squares are far from infinite */
-#define GAP_PART    0.25  /* of what rows may violate, at the quarters of a step */
-#define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
-
-#define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
-
-/* As motion->count has it. */
-size_t se3di_explicit_history_count(const se3di_assembly *assembly)
-{
-    const int has_tree = assembly->tree_count > 0 &&
-                         assembly->model->left_out_count == assembly->model->broken_count;
-    const size_t count =
-        has_tree ? assembly->tree_count + SE3DI_STATE_WORK : se3di_state_count(assembly);
-    return PAST + VECTORS * count;
-}
-
-/* Work: that of the method, the state of a stage, what the force elements remember, and two changes
- * of the state as the bodies see them. */
-size_t se3di_explicit_work_count(const se3di_assembly *assembly)
-{
-    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
-    return (SE3DI_EXPLICIT_ROWS + 5) * se3di_state_count(assembly) + memories;
-}
-
-/* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
- * below what rounding allows. On open trees with nothing but plain forces the estimates of long
- * steps, which are of low orders, are far above the error: at 0.1 by three orders of magnitude. */
-static double inner_tolerance(const se3di_integration *integration, const se3di_motion *motion)
-{
-    const double tolerance = integration->settings.tolerance;
-    const int is_loose = tolerance > SE3DI_EXPLICIT_LOOSE &&
-                         integration->method->tag == SE3D_METHOD_DOP853 &&
-                         motion->can_wait(integration->equations);
-    const double more = is_loose ? sqrt(tolerance / SE3DI_EXPLICIT_LOOSE) : 1.0;
-    return fmax(SE3DI_EXPLICIT_PART * more * tolerance, SE3DI_EXPLICIT_LEAST);
-}
-
-/* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
- * positions; elsewhere a wider filter costs steps and accuracy. */
-static double regularisation(double tolerance)
-{
-    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
-}
-
-/* The violation of constraints that does not matter: near a singular position velocities magnify it
- * by the inverse of the distance, accelerations by its cube. */
-static double projection_accuracy(double tolerance)
-{
-    return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
-}
-
-static se3di_explicit_past *past_of(const se3di_model *model)
-{
-    return (se3di_explicit_past *)(void *)model->history;
-}
-
-/* The parts of history and work. */
-static se3di_explicit point(const se3di_integration *integration)
-{
-    se3di_assembly *assembly = &integration->equations->assembly;
-    const se3di_motion *motion = se3di_motion_find(integration->equations);
-    const size_t count = motion->count(integration->equations);
-    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
-    double *history = assembly->model->history;
-    double *memory = integration->work + (SE3DI_EXPLICIT_ROWS + 3) * count;
-    return (se3di_explicit){
-        .methods = integration->method->explicit_class,
-        .tableau = integration->method->tableau,
-        .motion = motion,
-        .equations = integration->equations,
-        .assembly = assembly,
-        .count = count,
-        .past = past_of(assembly->model),
-        .y1 = history + PAST,
-        .f1 = history + PAST + count,
-        .y0 = history + PAST + 2 * count,
-        .forms = history + PAST + 3 * count,
-        .K = integration->work,
-        .y = integration->work + SE3DI_EXPLICIT_ROWS * count,
-        .sum = integration->work + (SE3DI_EXPLICIT_ROWS + 1) * count,
-        .sum3 = integration->work + (SE3DI_EXPLICIT_ROWS + 2) * count,
-        .memory = memory,
-        .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
-        .tolerance = inner_tolerance(integration, motion),
-    };
-}
-
-static se3di_explicit begin(se3di_integration *integration)
-{
-    se3di_explicit m = point(integration);
-    m.step.integration = integration;
-    se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
-    m.kkt =
-        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
-    return m;
-}
-
-/* y'_1 as the bodies see it; y_1 was set last. */
-static const double *get_rates(const se3di_explicit *m)
-{
-    return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
-}
-
-/* Squares of the accelerations that a force and a torque (their squares) on a body would make. */
-static void grow_sums(const se3di_body *body, double force, double torque, double sums[2])
-{
-    const double J = fmax(body->J[0], fmax(body->J[1], body->J[2]));
-    if (!body->fixed && body->state == 0) {
-        sums[0] = fmax(sums[0], force / (body->mass * body->mass));
-        sums[1] = fmax(sums[1], torque / (J * J));
-    }
-}
-
-/* A contact's force is its stiffness times a difference of positions. */
-static void grow_by_contact(const se3di_model *model, const se3di_body_contact *contact,
-                            double sums[2])
-{
-    const uint32_t shapes[2] = {contact->shape_i, contact->shape_j};
-    const double overlap = contact->overlap;
-    const double stiffness =
-        overlap > 0.0 ? se3di_dot(contact->force, contact->force) / (overlap * overlap) : 0.0;
-    for (int k = 0; k < 2; ++k) {
-        const uint32_t body = model->shapes[shapes[k]].body;
-        double arm[3];
-        se3di_sub(contact->point, model->frames[body].r, arm);
-        const double size = se3di_dot(arm, arm);
-        const double force = 2.0 * stiffness * (se3di_dot(contact->point, contact->point) + size);
-        grow_sums(&model->bodies[body], force, force * size, sums);
-    }
-}
-
-/* What is at rest as its forces balance is moved by the rounding of their sums: the accelerations
- * that these are parts of. */
-static void grow_balance(se3di_explicit *m)
-{
-    const se3di_model *model = m->assembly->model;
-    const double length = m->past->scale.length;
-    double sums[2] = {se3di_dot(model->gravity, model->gravity), 0.0};
-    for (size_t k = 0; k < m->assembly->body_count; ++k) {
-        const size_t body = m->assembly->free_body[k];
-        const double *wrench = m->assembly->wrench + 6 * body;
-        const double force = se3di_dot(wrench, wrench);
-        grow_sums(&model->bodies[body], force,
-                  se3di_dot(wrench + 3, wrench + 3) + force * length * length, sums);
-    }
-    for (size_t k = 0; k < model->contacts.count; ++k) {
-        grow_by_contact(model, &model->contacts.list[k], sums);
-    }
-    for (int c = 0; c < 2; ++c) {
-        m->past->balance[c] = fmax(0.95 * m->past->balance[c], sqrt(sums[c]));
-    }
-}
-
-static void grow_scale(se3di_explicit *m)
-{
-    se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, get_rates(m), scale);
-    scale->energy = fmax(scale->energy, m->past->energy_least);
-    grow_balance(m);
-}
-
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-
-#define PAIRS 4 /* stay in registers */
-
-void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const double *base,
-                            double h, const double *coefficients, int limit, double *out)
-{
-    const double *stage[SE3DI_EXPLICIT_ROWS];
-    double factor[SE3DI_EXPLICIT_ROWS];
-    int used = 0;
-    for (int k = 0; k < limit; ++k) {
-        if (coefficients[k] != 0.0) {
-            stage[used] = rows + (size_t)k * m->count;
-            factor[used++] = h * coefficients[k];
-        }
-    }
-    size_t c = 0;
-    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
-        pair sum[PAIRS] = {{0.0, 0.0}};
-        if (base) {
-            memcpy(sum, base + c, sizeof sum);
-        }
-        for (int k = 0; k < used; ++k) {
-            const pair *part = (const pair *)(const void *)(stage[k] + c);
-            const pair f = {factor[k], factor[k]};
-            sum[0] += f * part[0];
-            sum[1] += f * part[1];
-            sum[2] += f * part[2];
-            sum[3] += f * part[3];
-        }
-        memcpy(out + c, sum, sizeof sum);
-    }
-    for (; c < m->count; ++c) {
-        double sum = base ? base[c] : 0.0;
-        for (int k = 0; k < used; ++k) {
-            sum += factor[k] * stage[k][c];
-        }
-        out[c] = sum;
-    }
-}
-
-/* Derivative at the state that was set last. */
-static se3d_status evaluate(se3di_explicit *m, double t, double *derivative)
-{
-    return m->motion->evaluate(m->equations, t, derivative);
-}
-
-se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
-                                    double *derivative)
-{
-    return m->motion->evaluate_at(m->equations, t, y, derivative);
-}
-
-/* What the velocities of the step that is tried are measured by: not below what rounding makes of
- * forces that balance. */
-static se3di_state_scale measure_by(const se3di_explicit *m)
-{
-    const double part = BALANCE / m->tolerance * m->h;
-    se3di_state_scale scale = m->past->scale;
-    scale.speed = fmax(scale.speed, part * m->past->balance[0]);
-    scale.spin = fmax(scale.spin, part * m->past->balance[1]);
-    return scale;
-}
-
-double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
-                              const double work[SE3DI_STATE_WORK])
-{
-    const se3di_state_scale scale = measure_by(m);
-    const double least = ROUNDING / m->tolerance;
-    const double speed = fmax(scale.speed, least * scale.spin * scale.length);
-    const double spin = fmax(scale.spin, least * scale.speed / scale.length);
-    const double r = sqrt(parts[0]) / scale.length + 2.0 * sqrt(parts[1]);
-    const double v = sqrt(parts[2]) / speed + sqrt(parts[3]) / spin;
-    const double e = se3di_norm(work) / scale.energy;
-    return r + v + WORK_WEIGHT * e;
-}
-
-double se3di_explicit_size(const se3di_explicit *m, const double *error)
-{
-    double most[4] = {0.0, 0.0, 0.0, 0.0}, z = 0.0;
-    const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
-    for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
-        const double *e = end;
-        if (se3di_state_is_carrier(m->assembly, k)) {
-            const double part = se3di_state_part(m->assembly, k, &m->past->scale, e + 7);
-            z = se3di_larger(z, part);
-            continue;
-        }
-        double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
-        double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
-                           se3di_dot(e + 10, e + 10)};
-        for (int c = 0; c < 4; ++c) {
-            most[c] = se3di_larger(most[c], parts[c]);
-        }
-    }
-    return se3di_explicit_size_of(m, most, end) + z;
-}
-
-double se3di_explicit_measure(const se3di_explicit *m, const double *error)
-{
-    return se3di_explicit_size(m, error) / m->tolerance;
-}
-
-double *se3di_explicit_end(const se3di_explicit *m)
-{
-    return m->K + (size_t)m->methods->get_end(m) * m->count;
-}
-
-/* The factorisation of the last evaluation, which was here or near, serves. */
-static se3d_status project(se3di_explicit *m, double t)
-{
-    return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
-                              1);
-}
-
-static int is_too_large(const se3di_explicit *m, double error)
-{
-    return !(error <= 1.0) && isfinite(m->tolerance);
-}
+#define FORCED_MAX 3
+#define LEAST_STEP 3e-14 /* of the time */
+#define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
+#define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step */
 
 /* The frames at the end, before the projection. */
 static void arrive(se3di_explicit *m, double h)
@@ -321,20 +39,22 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
     m->step.fraction = 0.0;
     SE3DI_TRY(m->methods->make_stages(m, h, &of_stages));
     *error = of_stages;
-    if (is_too_large(m, *error)) {
+    if (se3di_explicit_is_too_large(m, *error)) {
         return SE3D_OK;
     }
     arrive(m, h);
-    SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+    SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
     *error = m->methods->estimate_end(m, h, of_stages);
-    if (is_too_large(m, *error)) {
+    if (se3di_explicit_is_too_large(m, *error)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(project(m, t));
+    SE3DI_TRY(se3di_explicit_project(m, t));
     /* near a singular position (more rows are dependent than have been all along) accelerations at
      * a state that violates the constraints are others */
     const double dependent = m->motion->count_dependent(m->equations);
-    return dependent > m->past->redundant ? evaluate(m, t, se3di_explicit_end(m)) : SE3D_OK;
+    return dependent > m->past->redundant
+               ? se3di_explicit_differentiate(m, t, se3di_explicit_end(m))
+               : SE3D_OK;
 }
 
 /* The frames hold the projected y_1, at t. */
@@ -356,7 +76,7 @@ static void accept(se3di_explicit *m, double t)
     }
     m->past->unscaled = m->leaves_scale;
     if (!m->leaves_scale) {
-        grow_scale(m);
+        se3di_explicit_grow_scale(m);
     }
     double dependent = m->motion->count_dependent(m->equations);
     m->past->redundant = fmin(m->past->redundant, dependent);
@@ -386,7 +106,7 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
         return SE3D_OK;
     }
     se3di_memory_end end;
-    const se3di_state_scale scale = measure_by(m);
+    const se3di_state_scale scale = se3di_explicit_measure_by(m);
     const se3di_memory_step step = {.t = t,
                                     .h = h,
                                     .tolerance = m->tolerance,
@@ -425,7 +145,7 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
         m->sum3[k] = 0.5 * (m->y1[k] + m->y[k]) + 0.125 * h * (f0[k] - f[k]);
     }
     m->motion->set(m->equations, m->sum3);
-    const se3di_state_scale scale = measure_by(m);
+    const se3di_state_scale scale = se3di_explicit_measure_by(m);
     const se3d_status status =
         se3di_memory_review_contacts(m->equations, m->past->at.time + 0.5 * h, m->past->at.time + h,
                                      h, m->tolerance, &scale, &of_contacts);
@@ -502,7 +222,7 @@ static double largest_growth(const se3di_explicit *m)
 
 int se3di_explicit_is_held(const se3di_integration *integration)
 {
-    return past_of(integration->equations->assembly.model)->held >= SE3DI_HELD_MIN;
+    return se3di_explicit_past_of(integration->equations->assembly.model)->held >= SE3DI_HELD_MIN;
 }
 
 void se3di_explicit_count_sign(se3di_explicit *m, int is_held)
@@ -574,8 +294,8 @@ static se3d_status surrender(se3di_adaptive *step, double h, se3d_status status,
 /* The scale, after steps without error control. */
 static se3d_status catch_up(se3di_explicit *m)
 {
-    SE3DI_TRY(evaluate(m, m->past->at.time, m->sum));
-    grow_scale(m);
+    SE3DI_TRY(se3di_explicit_differentiate(m, m->past->at.time, m->sum));
+    se3di_explicit_grow_scale(m);
     m->past->unscaled = 0.0;
     return SE3D_OK;
 }
@@ -594,7 +314,7 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     se3di_forces_show(model, 0);
     m->motion->set(m->equations, m->y1);
     SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
-    se3di_state_set_rates(m->assembly, get_rates(m));
+    se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
     se3di_angles_accept(model); /* turns count from step to step, not from an output */
     return se3di_adaptive_advance(&m->step, t_end);
 }
@@ -628,7 +348,7 @@ static se3d_status adopt(se3di_explicit *m)
     se3di_assembly_get_acceleration(assembly, m->equations->x);
     SE3DI_TRY(
         m->motion->derive(m->equations, assembly->model->time, assembly->model->lambda, m->f1));
-    grow_scale(m);
+    se3di_explicit_grow_scale(m);
     return SE3D_OK;
 }
 
@@ -637,7 +357,7 @@ static se3d_status adopt(se3di_explicit *m)
 static se3d_status find_all(se3di_explicit *m, double t)
 {
     if (m->motion->may_report(m->equations)) {
-        SE3DI_TRY(evaluate(m, t, m->sum));
+        SE3DI_TRY(se3di_explicit_differentiate(m, t, m->sum));
         if (m->motion->report(m->equations)) {
             return SE3D_OK;
         }
@@ -687,7 +407,7 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
     }
     m->motion->set(m->equations, m->y);
     double d2 = 0.0;
-    const se3d_status status = evaluate(m, m->past->at.time + h0, m->K);
+    const se3d_status status = se3di_explicit_differentiate(m, m->past->at.time + h0, m->K);
     if (status >= 0) {
         for (size_t k = 0; k < m->count; ++k) {
             m->K[k] -= m->f1[k];
@@ -711,7 +431,7 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
 se3d_status se3di_explicit_start(se3di_integration *integration, double h)
 {
     (void)h; /* the first step is chosen */
-    se3di_explicit m = begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration);
     memset(m.past, 0, sizeof *m.past);
     memset(m.y0, 0, (SE3DI_EXPLICIT_FORMS + 1) * m.count * sizeof *m.y0);
     m.past->scale.length = se3di_state_length(m.assembly->model);
@@ -745,7 +465,7 @@ static se3d_status adopt_evaluated(se3di_explicit *m)
     const size_t work = m->count - SE3DI_STATE_WORK;
     take_state(m, is_at_end(m));
     m->step.integration->owes = 0;
-    SE3DI_TRY(evaluate(m, model->time, m->f1));
+    SE3DI_TRY(se3di_explicit_differentiate(m, model->time, m->f1));
     if (!waits_for_readers(m)) { /* else a step follows at once, which ends elsewhere */
         (void)m->motion->report(m->equations);
     }
@@ -762,7 +482,7 @@ int se3di_explicit_renews_all(const se3di_integration *integration)
 
 se3d_status se3di_explicit_renew(se3di_integration *integration)
 {
-    se3di_explicit m = begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration);
     const se3d_status status = m.motion->finds_all(m.equations) ? adopt_evaluated(&m) : adopt(&m);
     m.past->at.renewed = 1.0;
     se3di_state_end(m.equations, &m.kkt);
@@ -784,9 +504,9 @@ static int reports_end(const se3di_explicit *m)
  * the derivative that they are. */
 static se3d_status solve_end(se3di_explicit *m, double t)
 {
-    SE3DI_TRY(project(m, t));
+    SE3DI_TRY(se3di_explicit_project(m, t));
     if (m->motion->may_report(m->equations)) {
-        SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+        SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
         if (m->motion->report(m->equations)) {
             return SE3D_OK;
         }
@@ -799,7 +519,7 @@ static se3d_status solve_end(se3di_explicit *m, double t)
 /* The same by an evaluation that finds all. */
 static se3d_status evaluate_end(se3di_explicit *m, double t)
 {
-    SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
+    SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
     (void)m->motion->report(m->equations);
     return SE3D_OK;
 }
@@ -818,7 +538,7 @@ static int is_moderate(const double *y, size_t count)
 static void complete(void *ctx)
 {
     se3di_integration *integration = ctx;
-    se3di_explicit m = point(integration);
+    se3di_explicit m = se3di_explicit_point(integration);
     se3di_model *model = m.assembly->model;
     se3di_error ignored = {0}, *const error = m.equations->error;
     m.equations->error = &ignored; /* it may be a reader who asks */
@@ -836,14 +556,14 @@ static void complete(void *ctx)
 
 void se3di_explicit_put_off(se3di_integration *integration)
 {
-    const se3di_explicit m = point(integration);
+    const se3di_explicit m = se3di_explicit_point(integration);
     m.motion->keep_efforts(m.equations);
     se3di_pending_drop(m.assembly->model->pending);
 }
 
 void se3di_explicit_come_back(se3di_integration *integration)
 {
-    const se3di_explicit m = point(integration);
+    const se3di_explicit m = se3di_explicit_point(integration);
     m.motion->come_back(m.equations);
     complete(integration);
 }
@@ -864,8 +584,8 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
     } else if (*reported) {
         SE3DI_TRY(m->motion->finds_all(m->equations) ? evaluate_end(m, t) : solve_end(m, t));
     } else {
-        SE3DI_TRY(evaluate(m, t, se3di_explicit_end(m)));
-        SE3DI_TRY(project(m, t));
+        SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
+        SE3DI_TRY(se3di_explicit_project(m, t));
     }
     SE3DI_TRY(prepare(m, h, &error));
     accept(m, t);
@@ -874,7 +594,7 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
 
 se3d_status se3di_explicit_step(se3di_integration *integration, double h)
 {
-    se3di_explicit m = begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration);
     int reported = 0;
     se3d_status status = SE3D_OK;
     se3di_pending_complete(m.assembly->model->pending);
@@ -916,7 +636,7 @@ static se3d_status advance_to(se3di_explicit *m, double t_end)
 
 se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end)
 {
-    se3di_explicit m = begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration);
     se3d_status status = advance(&m, t_end);
     status = status < 0 || integration->at_kink ? status : m.methods->build_dense(&m);
     se3di_state_end(m.equations, &m.kkt);
@@ -925,7 +645,7 @@ se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end)
 
 void se3di_explicit_interpolate(const se3di_integration *integration, double t, double *y)
 {
-    const se3di_explicit m = point(integration);
+    const se3di_explicit m = se3di_explicit_point(integration);
     const int is_within = t < m.past->at.time;
     if (is_within) {
         m.methods->interpolate(&m, t, m.y);
@@ -969,7 +689,7 @@ static se3d_status needs_projection(se3di_explicit *m, int *needed)
 
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
 {
-    se3di_explicit m = begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration);
     const int at_begin = !(t_end > m.past->at.begin);
     se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);
@@ -992,5 +712,5 @@ static int is_count(double value)
 int se3di_explicit_is_sound(const double *history, size_t count)
 {
     const se3di_explicit_past *past = (const se3di_explicit_past *)history;
-    return count >= PAST && is_count(past->redundant) && is_count(past->stages);
+    return count >= SE3DI_EXPLICIT_PAST && is_count(past->redundant) && is_count(past->stages);
 }

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The state of an explicit method in a step: its vectors, derivatives, scales of errors. */
+#include "integrator/explicit_point.h"
+#include "integrator/explicit_step.h"
+
+#include "contact/bodies/body_contacts.h"
+#include "integrator/motion.h"
+#include "math/larger.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define BALANCE     8e-15 /* rounding of accelerations, relative to those of forces that balance */
+#define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
+#define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
+
+#define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
+
+/* As motion->count has it. */
+size_t se3di_explicit_history_count(const se3di_assembly *assembly)
+{
+    const int has_tree = assembly->tree_count > 0 &&
+                         assembly->model->left_out_count == assembly->model->broken_count;
+    const size_t count =
+        has_tree ? assembly->tree_count + SE3DI_STATE_WORK : se3di_state_count(assembly);
+    return SE3DI_EXPLICIT_PAST + VECTORS * count;
+}
+
+/* Work: that of the method, the state of a stage, what the force elements remember, and two changes
+ * of the state as the bodies see them. */
+size_t se3di_explicit_work_count(const se3di_assembly *assembly)
+{
+    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    return (SE3DI_EXPLICIT_ROWS + 5) * se3di_state_count(assembly) + memories;
+}
+
+/* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
+ * below what rounding allows. On open trees with nothing but plain forces the estimates of long
+ * steps, which are of low orders, are far above the error: at 0.1 by three orders of magnitude. */
+static double inner_tolerance(const se3di_integration *integration, const se3di_motion *motion)
+{
+    const double tolerance = integration->settings.tolerance;
+    const int is_loose = tolerance > SE3DI_EXPLICIT_LOOSE &&
+                         integration->method->tag == SE3D_METHOD_DOP853 &&
+                         motion->can_wait(integration->equations);
+    const double more = is_loose ? sqrt(tolerance / SE3DI_EXPLICIT_LOOSE) : 1.0;
+    return fmax(SE3DI_EXPLICIT_PART * more * tolerance, SE3DI_EXPLICIT_LEAST);
+}
+
+/* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
+ * positions; elsewhere a wider filter costs steps and accuracy. */
+static double regularisation(double tolerance)
+{
+    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
+}
+
+/* The violation of constraints that does not matter: near a singular position velocities magnify it
+ * by the inverse of the distance, accelerations by its cube. */
+static double projection_accuracy(double tolerance)
+{
+    return fmin(1e-13, fmax(1e-15, 1e-6 * tolerance));
+}
+
+se3di_explicit_past *se3di_explicit_past_of(const se3di_model *model)
+{
+    return (se3di_explicit_past *)(void *)model->history;
+}
+
+se3di_explicit se3di_explicit_point(const se3di_integration *integration)
+{
+    se3di_assembly *assembly = &integration->equations->assembly;
+    const se3di_motion *motion = se3di_motion_find(integration->equations);
+    const size_t count = motion->count(integration->equations);
+    const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    double *history = assembly->model->history;
+    double *memory = integration->work + (SE3DI_EXPLICIT_ROWS + 3) * count;
+    return (se3di_explicit){
+        .methods = integration->method->explicit_class,
+        .tableau = integration->method->tableau,
+        .motion = motion,
+        .equations = integration->equations,
+        .assembly = assembly,
+        .count = count,
+        .past = se3di_explicit_past_of(assembly->model),
+        .y1 = history + SE3DI_EXPLICIT_PAST,
+        .f1 = history + SE3DI_EXPLICIT_PAST + count,
+        .y0 = history + SE3DI_EXPLICIT_PAST + 2 * count,
+        .forms = history + SE3DI_EXPLICIT_PAST + 3 * count,
+        .K = integration->work,
+        .y = integration->work + SE3DI_EXPLICIT_ROWS * count,
+        .sum = integration->work + (SE3DI_EXPLICIT_ROWS + 1) * count,
+        .sum3 = integration->work + (SE3DI_EXPLICIT_ROWS + 2) * count,
+        .memory = memory,
+        .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
+        .tolerance = inner_tolerance(integration, motion),
+    };
+}
+
+se3di_explicit se3di_explicit_begin(se3di_integration *integration)
+{
+    se3di_explicit m = se3di_explicit_point(integration);
+    m.step.integration = integration;
+    se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
+    m.kkt =
+        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
+    return m;
+}
+
+const double *se3di_explicit_get_rates(const se3di_explicit *m)
+{
+    return m->motion->get_rates(m->equations, m->f1, m->bodies[0]);
+}
+
+/* Squares of the accelerations that a force and a torque (their squares) on a body would make. */
+static void grow_sums(const se3di_body *body, double force, double torque, double sums[2])
+{
+    const double J = fmax(body->J[0], fmax(body->J[1], body->J[2]));
+    if (!body->fixed && body->state == 0) {
+        sums[0] = fmax(sums[0], force / (body->mass * body->mass));
+        sums[1] = fmax(sums[1], torque / (J * J));
+    }
+}
+
+/* A contact's force is its stiffness times a difference of positions. */
+static void grow_by_contact(const se3di_model *model, const se3di_body_contact *contact,
+                            double sums[2])
+{
+    const uint32_t shapes[2] = {contact->shape_i, contact->shape_j};
+    const double overlap = contact->overlap;
+    const double stiffness =
+        overlap > 0.0 ? se3di_dot(contact->force, contact->force) / (overlap * overlap) : 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t body = model->shapes[shapes[k]].body;
+        double arm[3];
+        se3di_sub(contact->point, model->frames[body].r, arm);
+        const double size = se3di_dot(arm, arm);
+        const double force = 2.0 * stiffness * (se3di_dot(contact->point, contact->point) + size);
+        grow_sums(&model->bodies[body], force, force * size, sums);
+    }
+}
+
+/* What is at rest as its forces balance is moved by the rounding of their sums: the accelerations
+ * that these are parts of. */
+static void grow_balance(se3di_explicit *m)
+{
+    const se3di_model *model = m->assembly->model;
+    const double length = m->past->scale.length;
+    double sums[2] = {se3di_dot(model->gravity, model->gravity), 0.0};
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        const size_t body = m->assembly->free_body[k];
+        const double *wrench = m->assembly->wrench + 6 * body;
+        const double force = se3di_dot(wrench, wrench);
+        grow_sums(&model->bodies[body], force,
+                  se3di_dot(wrench + 3, wrench + 3) + force * length * length, sums);
+    }
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        grow_by_contact(model, &model->contacts.list[k], sums);
+    }
+    for (int c = 0; c < 2; ++c) {
+        m->past->balance[c] = fmax(0.95 * m->past->balance[c], sqrt(sums[c]));
+    }
+}
+
+void se3di_explicit_grow_scale(se3di_explicit *m)
+{
+    se3di_state_scale *scale = &m->past->scale;
+    se3di_state_scale_grow(m->assembly, se3di_explicit_get_rates(m), scale);
+    scale->energy = fmax(scale->energy, m->past->energy_least);
+    grow_balance(m);
+}
+
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
+#define PAIRS 4 /* stay in registers */
+
+void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const double *base,
+                            double h, const double *coefficients, int limit, double *out)
+{
+    const double *stage[SE3DI_EXPLICIT_ROWS];
+    double factor[SE3DI_EXPLICIT_ROWS];
+    int used = 0;
+    for (int k = 0; k < limit; ++k) {
+        if (coefficients[k] != 0.0) {
+            stage[used] = rows + (size_t)k * m->count;
+            factor[used++] = h * coefficients[k];
+        }
+    }
+    size_t c = 0;
+    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
+        pair sum[PAIRS] = {{0.0, 0.0}};
+        if (base) {
+            memcpy(sum, base + c, sizeof sum);
+        }
+        for (int k = 0; k < used; ++k) {
+            const pair *part = (const pair *)(const void *)(stage[k] + c);
+            const pair f = {factor[k], factor[k]};
+            sum[0] += f * part[0];
+            sum[1] += f * part[1];
+            sum[2] += f * part[2];
+            sum[3] += f * part[3];
+        }
+        memcpy(out + c, sum, sizeof sum);
+    }
+    for (; c < m->count; ++c) {
+        double sum = base ? base[c] : 0.0;
+        for (int k = 0; k < used; ++k) {
+            sum += factor[k] * stage[k][c];
+        }
+        out[c] = sum;
+    }
+}
+
+se3d_status se3di_explicit_differentiate(se3di_explicit *m, double t, double *derivative)
+{
+    return m->motion->evaluate(m->equations, t, derivative);
+}
+
+se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,
+                                    double *derivative)
+{
+    return m->motion->evaluate_at(m->equations, t, y, derivative);
+}
+
+se3di_state_scale se3di_explicit_measure_by(const se3di_explicit *m)
+{
+    const double part = BALANCE / m->tolerance * m->h;
+    se3di_state_scale scale = m->past->scale;
+    scale.speed = fmax(scale.speed, part * m->past->balance[0]);
+    scale.spin = fmax(scale.spin, part * m->past->balance[1]);
+    return scale;
+}
+
+double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
+                              const double work[SE3DI_STATE_WORK])
+{
+    const se3di_state_scale scale = se3di_explicit_measure_by(m);
+    const double least = ROUNDING / m->tolerance;
+    const double speed = fmax(scale.speed, least * scale.spin * scale.length);
+    const double spin = fmax(scale.spin, least * scale.speed / scale.length);
+    const double r = sqrt(parts[0]) / scale.length + 2.0 * sqrt(parts[1]);
+    const double v = sqrt(parts[2]) / speed + sqrt(parts[3]) / spin;
+    const double e = se3di_norm(work) / scale.energy;
+    return r + v + WORK_WEIGHT * e;
+}
+
+double se3di_explicit_size(const se3di_explicit *m, const double *error)
+{
+    double most[4] = {0.0, 0.0, 0.0, 0.0}, z = 0.0;
+    const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
+    for (size_t k = 0; k < m->assembly->body_count; ++k, end += SE3DI_STATE_SIZE) {
+        const double *e = end;
+        if (se3di_state_is_carrier(m->assembly, k)) {
+            const double part = se3di_state_part(m->assembly, k, &m->past->scale, e + 7);
+            z = se3di_larger(z, part);
+            continue;
+        }
+        double turn = e[3] * e[3] + e[4] * e[4] + e[5] * e[5] + e[6] * e[6];
+        double parts[4] = {se3di_dot(e, e), turn, se3di_dot(e + 7, e + 7),
+                           se3di_dot(e + 10, e + 10)};
+        for (int c = 0; c < 4; ++c) {
+            most[c] = se3di_larger(most[c], parts[c]);
+        }
+    }
+    return se3di_explicit_size_of(m, most, end) + z;
+}
+
+double se3di_explicit_measure(const se3di_explicit *m, const double *error)
+{
+    return se3di_explicit_size(m, error) / m->tolerance;
+}
+
+double *se3di_explicit_end(const se3di_explicit *m)
+{
+    return m->K + (size_t)m->methods->get_end(m) * m->count;
+}
+
+se3d_status se3di_explicit_project(se3di_explicit *m, double t)
+{
+    return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
+                              1);
+}
+
+int se3di_explicit_is_too_large(const se3di_explicit *m, double error)
+{
+    return !(error <= 1.0) && isfinite(m->tolerance);
+}
