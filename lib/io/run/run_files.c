@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Files of results while a model runs: opened, one row after the other, flushed, closed. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "io/base/file.h"
+#include "io/base/pool.h"
+#include "io/channel/channel.h"
+#include "io/channel/event.h"
+#include "io/channel/output.h"
+#include "io/channel/sample.h"
+#include "io/document/document.h"
+#include "io/model/model.h"
+#include "io/run/checkpoint.h"
+#include "io/run/run_files.h"
+#include "io/run/runner.h"
+#include "io/write/contact_list.h"
+#include "io/write/particle_list.h"
+
+#define FLUSH_EVERY 1.0 /* s */
+
+se3d_status se3di_files_fail(se3di_runner *r, se3d_status status, const char *text)
+{
+    se3di_document_report(r->error, "", 0, 0, "", text);
+    return status;
+}
+
+/* `why`: errno, 0 if memory is missing. */
+static se3d_status fail_path(se3di_runner *r, const char *path, int why)
+{
+    char text[800];
+    const bool memory = why == 0 || why == ENOMEM;
+    if (why == ESTALE) {
+        snprintf(text, sizeof text,
+                 "%.500s: cannot be resumed: it is not as the checkpoint has left it", path);
+        return se3di_files_fail(r, SE3D_ERR_STATE, text);
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", path,
+             memory ? "out of memory" : se3di_file_get_text(why));
+    return se3di_files_fail(r, memory ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
+}
+
+/* The rows that are on the disk stay there. */
+static se3d_status fail_csv(se3di_runner *r, const se3di_csv *csv)
+{
+    char text[800];
+    if (csv->failure == 0 || csv->failure == ENOMEM || csv->failure == ESTALE || csv->lines < 2) {
+        return fail_path(r, csv->path, csv->failure);
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s; the first %" PRIu64 " row%s kept",
+             csv->path, se3di_file_get_text(csv->failure), csv->lines - 1,
+             csv->lines == 2 ? " is" : "s are");
+    return se3di_files_fail(r, SE3D_ERR_IO, text);
+}
+
+static se3d_status fail_file(se3di_runner *r, const se3di_output_file *file)
+{
+    return fail_csv(r, &file->csv);
+}
+
+static se3d_status open_vtk(se3di_runner *r, const se3di_output_entry *entry, const char *path)
+{
+    se3di_output_file *file = &r->files[r->file_count];
+    file->entry = entry;
+    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path, file->entry->grid);
+    if (!file->vtk) {
+        return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    ++r->file_count;
+    return SE3D_OK;
+}
+
+/* The path of a file of the results, which lies in their folder. */
+static se3d_status join(se3di_runner *r, const char *file, char *path, size_t size)
+{
+    char text[800];
+    if (se3di_file_join(r->options->directory, file, path, size)) {
+        return SE3D_OK;
+    }
+    snprintf(text, sizeof text, "%.500s: cannot be written: %s", file,
+             errno == ELOOP ? "a symbolic link leads out of the results folder" : strerror(errno));
+    return se3di_files_fail(r, SE3D_ERR_IO, text);
+}
+
+static void put_summary_head(se3di_output_file *file)
+{
+    for (size_t k = 0; k < SE3DI_SUMMARY_COLUMNS; ++k) {
+        se3di_csv_put_name(&file->csv, se3di_summary_get_column(k), k + 1 == SE3DI_SUMMARY_COLUMNS);
+    }
+}
+
+/* The file of the next output. */
+static se3d_status open_csv(const se3di_runner *r, se3di_csv *csv, const char *path, size_t columns)
+{
+    se3di_iopool *pool = &r->run->pool;
+    return r->resume ? se3di_csv_continue(csv, pool, path, columns,
+                                          se3di_checkpoint_get_mark(r, r->file_count))
+                     : se3di_csv_open(csv, pool, path, columns);
+}
+
+void se3di_files_give_up(const se3di_runner *r, se3di_csv *csv)
+{
+    if (r->resume) {
+        se3di_csv_leave(csv);
+    } else {
+        se3di_csv_abandon(csv);
+    }
+}
+
+static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
+{
+    se3di_output_file *file = &r->files[r->file_count];
+    char path[4096];
+    char name[400];
+    size_t columns = 1;
+    const se3d_status joined = join(r, entry->file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
+    }
+    if (entry->vtk) {
+        return open_vtk(r, entry, path);
+    }
+    columns = entry->particles  ? se3di_tagged_count_columns(r->model)
+              : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
+                                : columns;
+    for (size_t k = 0; k < entry->count; ++k) {
+        columns += se3di_channel_get_width(&entry->channels[k]);
+    }
+    if (entry->summary) {
+        file->summary = se3di_summary_create(&r->run->pool, entry);
+        if (!file->summary) {
+            return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+    }
+    file->entry = entry;
+    file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
+    const se3d_status status = open_csv(r, &file->csv, path, columns);
+    if (status < 0 || !file->row) {
+        const se3d_status result = fail_file(r, file);
+        se3di_files_give_up(r, &file->csv);
+        return result;
+    }
+    ++r->file_count;
+    if (r->resume) {
+        return SE3D_OK; /* its first line is there */
+    }
+    if (entry->summary) {
+        put_summary_head(file);
+        return SE3D_OK;
+    }
+    for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
+        se3di_csv_put_name(&file->csv,
+                           entry->particles ? se3di_tagged_get_column(k)
+                                            : se3di_contacts_get_column(k),
+                           k + 1 == columns);
+    }
+    if (entry->particles || entry->contacts) {
+        return SE3D_OK;
+    }
+    se3di_csv_put_name(&file->csv, "time", columns == 1);
+    size_t column = 1;
+    for (size_t k = 0; k < entry->count; ++k) {
+        const size_t width = se3di_channel_get_width(&entry->channels[k]);
+        for (size_t i = 0; i < width; ++i) {
+            se3di_channel_format_column(&entry->channels[k], i, name, sizeof name);
+            se3di_csv_put_name(&file->csv, name, ++column == columns);
+        }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status open_events(se3di_runner *r)
+{
+    char path[4096];
+    se3di_event_list *events = &r->run->events;
+    const se3d_status joined = join(r, se3di_events_file, path, sizeof path);
+    if (joined < 0) {
+        return joined;
+    }
+    const se3d_status status = se3di_event_list_open(
+        events, &r->run->pool, path, r->resume ? se3di_checkpoint_get_events(r) : NULL);
+    return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
+}
+
+static se3d_status open_files(se3di_runner *r)
+{
+    se3d_model *model = r->model;
+    r->files = se3di_iopool_array(&r->run->pool, model->output_count, sizeof *r->files);
+    if (!r->files) {
+        return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    for (size_t k = 0; k < model->output_count; ++k) {
+        const se3d_status status = open_file(r, &model->outputs[k]);
+        if (status < 0) {
+            return status;
+        }
+    }
+    for (size_t k = 0; k < model->picture_count; ++k) { /* they are made later, by others */
+        char path[4096];
+        const se3d_status status = join(r, model->pictures[k].file, path, sizeof path);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return se3di_event_list_is_wanted(model) ? open_events(r) : SE3D_OK;
+}
+
+bool se3di_files_is_watched(const se3di_runner *r)
+{
+    return r->watch && r->watch->analysis == r->analysis;
+}
+
+double se3di_files_row_time(const se3di_output_file *file, double number, double start,
+                            double duration)
+{
+    return number < file->count ? start + number * file->every : start + duration;
+}
+
+/* One row for each particle, or for each contact. */
+static se3d_status sample_list(se3di_runner *r, se3di_output_file *file)
+{
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &r->model->pool.allocator);
+    const se3d_status status =
+        file->entry->contacts ? se3di_contacts_write(r->model, &r->sample, &pool, &file->csv)
+                              : se3di_tagged_write(r->model, &pool, file->entry->set, &file->csv);
+    se3di_iopool_destroy(&pool);
+    if (status < 0) {
+        return se3di_files_fail(r, status, se3d_status_get_text(status));
+    }
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
+void se3di_files_begin_rows(se3di_runner *r)
+{
+    memset(&r->stats, 0, sizeof r->stats);
+    se3d_solver_get_stats(r->solver, &r->stats);
+    se3di_sample_renew(&r->sample, &r->stats);
+}
+
+se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double time)
+{
+    double *row = file->row;
+    if (r->watch && !se3di_files_is_watched(r)) {
+        return SE3D_OK;
+    }
+    if (file->vtk) {
+        se3di_vtk_record(file->vtk, &r->sample,
+                         time); /* a failure is reported at the end: others go on */
+        return SE3D_OK;
+    }
+    if (file->entry->particles || file->entry->contacts) {
+        return sample_list(r, file);
+    }
+    *row++ = time;
+    for (size_t k = 0; k < file->entry->count; ++k) {
+        const se3di_channel *channel = &file->entry->channels[k];
+        double value[4];
+        const se3d_status status = se3di_channel_eval(channel, &r->sample, value);
+        if (status < 0) {
+            char text[600];
+            snprintf(text, sizeof text, "the channel `%.300s` cannot be computed at t = %.9g: %s",
+                     channel->name, time, se3d_status_get_text(status));
+            return se3di_files_fail(r, status, text);
+        }
+        const size_t width = se3di_channel_get_width(channel);
+        memcpy(row, value, width * sizeof *row);
+        row += width;
+    }
+    if (file->summary) {
+        se3di_summary_add(file->summary, time, file->row + 1);
+        return SE3D_OK;
+    }
+    if (r->watch) {
+        se3d_status status =
+            r->watch->reach ? r->watch->reach(r->watch->ctx, r->solver, time) : SE3D_OK;
+        status = status < 0 ? status : r->watch->take(r->watch->ctx, file->row);
+        return status < 0 ? se3di_files_fail(r, status, se3d_status_get_text(status)) : status;
+    }
+    se3di_csv_put_row(&file->csv, file->row);
+    return file->csv.failure ? fail_file(r, file) : SE3D_OK;
+}
+
+double se3di_files_time_of_day(void)
+{
+    struct timespec now = {0, 0};
+    return timespec_get(&now, TIME_UTC) == TIME_UTC
+               ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec
+               : 0.0;
+}
+
+void se3di_files_flush(se3di_runner *r)
+{
+    const double now = se3di_files_time_of_day();
+    if (now - r->flushed < FLUSH_EVERY && now >= r->flushed) {
+        return;
+    }
+    r->flushed = now;
+    for (size_t k = 0; k < r->file_count; ++k) {
+        if (r->files[k].csv.file) {
+            se3di_csv_flush(&r->files[k].csv);
+        }
+    }
+    if (r->run->events.is_open) {
+        se3di_csv_flush(&r->run->events.csv);
+    }
+}
+
+static se3d_status close_csv(se3di_runner *r, se3di_csv *csv, se3d_run_file *about)
+{
+    about->path = csv->path;
+    about->columns = csv->columns;
+    const se3d_status status = se3di_csv_close(csv);
+    about->rows = csv->rows;
+    return status < 0 ? fail_csv(r, csv) : SE3D_OK;
+}
+
+/* Its rows, and the columns for those who ask the run. */
+static se3d_status close_summary(se3di_runner *r, se3di_output_file *file)
+{
+    se3d_run *run = r->run;
+    se3di_summary_finish(file->summary);
+    se3di_summary_write(file->summary, &file->csv);
+    for (size_t k = 0; k < file->summary->count && file->summary->begun; ++k) {
+        se3d_run_summary *grown = se3di_iopool_grow(&run->pool, run->summaries, run->summary_count,
+                                                    &run->summary_capacity, sizeof *grown);
+        if (!grown) {
+            return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+        run->summaries = grown;
+        run->summaries[run->summary_count++] = file->summary->columns[k];
+    }
+    return SE3D_OK;
+}
+
+/* Complete one file. */
+static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run_file *about)
+{
+    int why = 0;
+    if (file->vtk) {
+        const se3d_status status = se3di_vtk_close(file->vtk, &why);
+        about->path = se3di_vtk_get_path(file->vtk);
+        about->rows = se3di_vtk_count(file->vtk);
+        return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
+    }
+    if (file->summary) {
+        const se3d_status status = close_summary(r, file);
+        if (status < 0) {
+            se3di_csv_abandon(&file->csv);
+            return status;
+        }
+        file->csv.columns = SE3DI_SUMMARY_COLUMNS;
+    }
+    return close_csv(r, &file->csv, about);
+}
+
+/* One more file of the results, which `closed` says is complete, or which has rows that were kept;
+ * the first failure is reported. */
+static se3d_status list_file(se3di_runner *r, const se3d_run_file *file, se3d_status closed,
+                             se3d_status status)
+{
+    se3d_run *run = r->run;
+    se3d_run_file *grown = se3di_iopool_grow(&run->pool, run->files, run->file_count,
+                                             &run->file_capacity, sizeof *grown);
+    if (grown) {
+        run->files = grown;
+        run->files[run->file_count] = *file;
+        run->file_count += closed >= 0 || file->rows > 0;
+    } else if (status >= 0 && closed >= 0) {
+        return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    return status < 0 ? status : closed < 0 ? closed : status;
+}
+
+se3d_status se3di_files_close_all(se3di_runner *r, se3d_status status)
+{
+    se3d_model_error *reported = r->error;
+    const size_t count = r->file_count + (r->run->events.is_open ? 1 : 0);
+    for (size_t k = 0; k < count; ++k) {
+        se3d_run_file file = {NULL, 0, 0};
+        r->error = status < 0 ? NULL : reported;
+        const se3d_status closed = k < r->file_count ? close_file(r, &r->files[k], &file)
+                                                     : close_csv(r, &r->run->events.csv, &file);
+        status = list_file(r, &file, closed, status);
+        r->error = reported;
+    }
+    return status;
+}
+
+se3d_status se3di_files_begin(se3di_runner *r)
+{
+    if (r->options->checkpoint > 0.0 || r->options->resume) {
+        if (!se3di_checkpoint_listen(r)) {
+            return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+        }
+    }
+    se3d_status status = r->options->resume ? se3di_checkpoint_open(r) : SE3D_OK;
+    status = status < 0 ? status : open_files(r);
+    return status >= 0 && r->resume ? se3di_checkpoint_take(r) : status;
+}
