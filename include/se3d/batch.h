@@ -2,8 +2,10 @@
 /* Batches: many states of one system, stepped side by side in the lanes of vector registers and by
  * several threads: samples of a study, environments of a learner, trials of a controller.
  *
- * A batch is a copy of a system, whose joints have to form a tree: no loops, couplers, drivers,
- * contact, particles, friction and stops. Each of its states has positions q and velocities qdot
+ * A batch is a copy of a system without couplers, drivers, contact, particles, friction and stops,
+ * whose joints form a tree, or loops that pins in planes or balls close. States with loops are
+ * moved onto them when they are set and after each step; one that comes to a position at which the
+ * equations of the loops depend on each other fails. Each state has positions q and velocities qdot
  * in the joint coordinates of se3d/coordinates.h (the same numbers in the same order), a time,
  * efforts along the coordinates, and may have gravity and masses of its own. A state has the same
  * bits for any number of states and threads, wherever it stands.
@@ -72,7 +74,8 @@ SE3D_API const char *se3d_batch_get_error(const se3d_batch *batch);
  * @param[in] q      [count x positions] [rad, m]; quaternions are made unit ones
  * @param[in] qdot   [count x velocities] [rad/s, m/s]
  * @return OK, NULL (batch), STATE, INVALID_ARGUMENT (range; a quaternion of zero or too long),
- * NOT_FINITE; nothing is set then.
+ * NOT_FINITE; nothing is set then. States from which the loops do not close have failed
+ * (NO_CONVERGENCE): se3d_batch_get_status.
  * @since 0.1 */
 SE3D_API se3d_status se3d_batch_set_state(se3d_batch *batch, size_t first, size_t count,
                                           const double *q, const double *qdot);
@@ -142,7 +145,8 @@ SE3D_API se3d_status se3d_batch_set_mass(se3d_batch *batch, se3d_body body, size
  * @param[in] step    length [s], > 0
  * @param[in] steps   their number
  * @return OK, or that of the first state that has failed, also before (the message says which), of
- * NOT_FINITE, SINGULAR, CALLBACK; NULL, STATE, INVALID_ARGUMENT, UNSUPPORTED (method).
+ * NOT_FINITE, SINGULAR, NO_CONVERGENCE, CALLBACK; NULL, STATE, INVALID_ARGUMENT, UNSUPPORTED
+ * (method).
  * @since 0.1 */
 SE3D_API se3d_status se3d_batch_step(se3d_batch *batch, se3d_method method, double step,
                                      uint64_t steps);
@@ -158,17 +162,18 @@ SE3D_API se3d_status se3d_batch_get_status(const se3d_batch *batch, size_t first
 
 /* Compute the accelerations of all states, efforts included.
  * @param[out] qddot  [states x velocities]; zero for states that fail
- * @return OK, or that of the first state that has failed, also before, of NOT_FINITE, SINGULAR,
- * CALLBACK; NULL, STATE.
+ * @return OK, or that of the first state that has failed, also before and while it was set,
+ * of NOT_FINITE, SINGULAR, CALLBACK; NULL, STATE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_batch_compute_accelerations(se3d_batch *batch, double *qddot);
 
 /* Compute the efforts that give accelerations, against inertia and force elements: inverse dynamics
- * of all states. Efforts that were set take no part.
+ * of all states, of trees: with loops many efforts give the same accelerations. Efforts that were
+ * set take no part.
  * @param[in] qddot    [states x velocities]; NULL: zero
  * @param[out] effort  [states x velocities]; zero for states that fail
  * @return OK, or that of the first state that has failed, also before, of NOT_FINITE, SINGULAR,
- * CALLBACK; NULL, STATE.
+ * CALLBACK; NULL, STATE, UNSUPPORTED (loops).
  * @since 0.1 */
 SE3D_API se3d_status se3d_batch_compute_efforts(se3d_batch *batch, const double *qddot,
                                                 double *effort);

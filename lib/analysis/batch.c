@@ -26,10 +26,10 @@ static se3d_status check_constraints(const se3di_tree *tree, se3di_error *error)
                                    "'%.64s' (%s) may break: a batch has no such joints",
                                    name_of(c->name), c->type);
         }
-        if (tree->tree_of[k] < 0 || is_driver) {
+        if ((tree->tree_of[k] < 0 && c->pattern == SE3DI_PATTERN_NONE) || is_driver) {
             return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
-                                   "'%.64s' (%s) is not a joint of a tree: a batch has no loops, "
-                                   "couplers and drivers",
+                                   "'%.64s' (%s) is not a joint of a tree: a batch has no couplers "
+                                   "and drivers, and loops that pins of planes or balls close",
                                    name_of(c->name), c->type);
         }
     }
@@ -97,6 +97,39 @@ static se3d_status check_model(const se3di_tree *tree, se3di_error *error)
     SE3DI_TRY(check_constraints(tree, error));
     SE3DI_TRY(check_forces(tree, error));
     return check_shapes(tree->model, error);
+}
+
+/* ---- loops ---- */
+
+static se3d_status fail_loop(const se3di_batch *b, uint32_t constraint)
+{
+    const se3di_constraint *c = &b->model->constraints[constraint];
+    return se3di_error_set(b->error, SE3D_ERR_UNSUPPORTED,
+                           "'%.64s' (%s) closes a loop that is not in a plane: a batch has loops "
+                           "that pins of planes or balls close, whose equations do not depend on "
+                           "each other",
+                           name_of(c->name), c->type);
+}
+
+static se3d_status take_loops(se3di_batch *b)
+{
+    for (uint32_t k = 0; k < b->tree.constraint_count; ++k) {
+        b->has_loops |= se3di_tree_leaves(&b->tree, k);
+    }
+    if (!b->has_loops) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_assembly_init(&b->assembly, b->model, &se3di_formulation_romega, 0, b->error));
+    b->has_assembly = 1;
+    SE3DI_TRY(se3di_tree_loops_init(&b->loops, &b->tree, &b->assembly, b->error));
+    if (b->loops.other_count > 0) {
+        return fail_loop(b, b->loops.others[0]);
+    }
+    if (!se3di_tree_loops_need_links_only(&b->loops) ||
+        !se3di_loop_system_is_regular(&b->loops.system)) {
+        return fail_loop(b, b->loops.constraints[0]);
+    }
+    return se3di_lane_loops_init(&b->lane_loops, &b->loops);
 }
 
 /* ---- memory ---- */
@@ -184,12 +217,14 @@ static se3d_status take_model(se3di_batch *b, se3di_batch_worker *w)
 static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
 {
     const size_t width = (size_t)b->core->width, y = width * state_size(b);
+    const size_t rows = se3di_lane_loops_room(&b->lane_loops, b->tree.v_count);
     const room rooms[] = {{&w->y, y},
                           {&w->end, y},
                           {&w->rates, SE3DI_BATCH_STAGES * y},
                           {&w->effort, width * b->tree.v_count},
                           {&w->acting, width * b->tree.v_count},
                           {&w->verdict, width},
+                          {&w->rows, width * rows},
                           {&w->scalars, 6 * (size_t)b->tree.body_count}};
     SE3DI_TRY(se3di_lanes_init(&w->lanes, &b->tree, b->core, !b->is_in_lanes));
     w->lanes.wants_points = b->spring_count > 0;
@@ -197,6 +232,9 @@ static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
         take_rooms(&b->model->allocator, rooms, sizeof rooms / sizeof *rooms, &w->memory_count);
     if (!w->memory) {
         return SE3D_ERR_NO_MEMORY;
+    }
+    if (b->has_loops) {
+        se3di_lanes_take_loops(&w->lanes, &b->lane_loops, w->rows);
     }
     return b->is_in_lanes ? SE3D_OK : take_model(b, w);
 }
@@ -252,11 +290,13 @@ static se3d_status build(se3di_batch *b, int32_t threads)
 {
     SE3DI_TRY(se3di_tree_init(&b->tree, b->model, 0, b->error));
     SE3DI_TRY(check_model(&b->tree, b->error));
+    SE3DI_TRY(take_loops(b));
     SE3DI_TRY(se3di_batch_take_forces(b));
     SE3DI_TRY(take_numbers(b));
     SE3DI_TRY(take_workers(b, threads));
     se3di_tree_get(&b->tree, b->tree.q, b->tree.qdot);
     fill(b);
+    se3di_batch_settle(b, 0, b->count);
     return SE3D_OK;
 }
 
@@ -299,6 +339,11 @@ void se3di_batch_destroy(se3di_batch *batch)
     se3di_free(allocator, b->inertia_memory, count_inertias(b), sizeof(double));
     se3di_free(allocator, b->status, b->groups * (size_t)b->core->width, sizeof *b->status);
     se3di_batch_drop_forces(b);
+    se3di_lane_loops_destroy(&b->lane_loops);
+    se3di_tree_loops_destroy(&b->loops);
+    if (b->has_assembly) {
+        se3di_assembly_destroy(&b->assembly);
+    }
     se3di_tree_destroy(&b->tree);
     memset(b, 0, sizeof *b);
 }

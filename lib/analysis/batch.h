@@ -8,6 +8,7 @@
 
 #include "integrator/explicit_rk.h"
 #include "tree/lanes.h"
+#include "tree/loops.h"
 
 #define SE3DI_BATCH_STAGES 12 /* of a step, the most */
 
@@ -24,6 +25,7 @@ typedef struct se3di_batch_worker {
     double *effort;      /* [velocities][width] */
     double *acting;      /* [velocities][width] efforts and what follows laws */
     double *verdict;     /* [width] 1, or not a number */
+    double *rows;        /* work of the loops */
     double *scalars;     /* [6 bodies]: a wrench */
     se3di_frame *frames; /* [width][bodies] */
     se3di_angle *angles; /* [width][angles of the model] */
@@ -33,6 +35,10 @@ typedef struct se3di_batch {
     se3di_model *model;
     se3di_error *error;
     se3di_tree tree;
+    int32_t has_loops, has_assembly; /* then these are there: */
+    se3di_assembly assembly;
+    se3di_tree_loops loops;
+    se3di_lane_loops lane_loops;
     const se3di_lane_core *core;
     size_t count, groups; /* states */
     int32_t is_in_lanes;  /* all that acts is gravity that does not change, and what follows: */
@@ -85,6 +91,8 @@ se3di_batch_part se3di_batch_time(const se3di_batch *batch);
 
 /* Unit quaternions in the states that were written. */
 void se3di_batch_normalise(const se3di_batch *batch, size_t first, size_t count);
+/* With loops: move the states that were written onto them. Those that are too far off fail. */
+void se3di_batch_settle(se3di_batch *batch, size_t first, size_t count);
 /* The states go on from what was written. */
 void se3di_batch_revive(const se3di_batch *batch, size_t first, size_t count);
 

@@ -26,6 +26,7 @@ typedef struct errand {
     uint64_t steps;
     const double *in; /* [count][velocities] */
     double *out;
+    size_t first, count; /* states */
 } errand;
 
 /* ---- what acts ---- */
@@ -156,6 +157,81 @@ static void combine(const task *t, const double *y, double h, const double *coef
     t->batch->core->normalise(&w->lanes, out);
 }
 
+/* ---- loops ---- */
+
+#define PASSES         2     /* of a step's end: the same for all lanes, whatever they need */
+#define PASSES_SETTLED 8     /* of states that are set, each by factors of its own */
+#define CLOSED         1e-10 /* m, m/s: else states that are set fail */
+
+/* Positions, or velocities, move by the least change that closes the loops, by the last factors; by
+ * new ones if it renews. */
+static void project(const task *t, double *y, int rates, int passes, int renews)
+{
+    const se3di_lane_core *core = t->batch->core;
+    const se3di_lanes *lanes = &t->worker->lanes;
+    const size_t positions = t->batch->tree.q_count, velocities = t->batch->tree.v_count;
+    double *qdot = y + positions * t->width, *dq = t->worker->acting, *move = t->worker->y;
+    for (int k = 0; k < passes; ++k) {
+        if (renews) {
+            core->factor(lanes, NULL);
+            core->factor_rows(lanes);
+        }
+        core->find_gaps(lanes, rates, t->worker->verdict);
+        core->correct(lanes, dq);
+        if (rates) {
+            core->add(velocities, qdot, 1.0, dq, qdot);
+        } else {
+            core->find_rates(lanes, y, dq, move);
+            core->add(positions, y, 1.0, move, y);
+            core->normalise(lanes, y);
+        }
+        core->place(lanes, y, qdot);
+    }
+}
+
+/* Of the state at the end of a step. */
+static void close_loops(const task *t, double *y)
+{
+    t->batch->core->place(&t->worker->lanes, y, y + t->batch->tree.q_count * t->width);
+    t->batch->core->factor(&t->worker->lanes, NULL);
+    t->batch->core->factor_rows(&t->worker->lanes);
+    project(t, y, 0, PASSES, 0);
+    project(t, y, 1, PASSES, 0);
+}
+
+static void settle_group(const task *t, const errand *e)
+{
+    const se3di_batch *b = t->batch;
+    const size_t count = (size_t)b->tree.q_count + b->tree.v_count;
+    double *y = b->states + t->group * count * t->width, *end = t->worker->end;
+    double gaps[2][SE3DI_LANES_MAX];
+    const size_t begin = t->group * t->width;
+    if (begin >= e->first + e->count || begin + t->width <= e->first) {
+        return;
+    }
+    memcpy(end, y, count * t->width * sizeof *y);
+    se3di_lanes_load(&t->worker->lanes, NULL, 0);
+    b->core->place(&t->worker->lanes, end, end + b->tree.q_count * t->width);
+    project(t, end, 0, PASSES_SETTLED, 1);
+    project(t, end, 1, PASSES, 1);
+    for (int rates = 0; rates < 2; ++rates) {
+        b->core->find_gaps(&t->worker->lanes, rates, t->worker->verdict);
+        memcpy(gaps[rates], t->worker->verdict, t->width * sizeof *gaps[rates]);
+    }
+    for (size_t lane = 0; lane < t->width; ++lane) {
+        if (begin + lane < e->first || begin + lane >= e->first + e->count) {
+            continue;
+        }
+        const int fine = gaps[0][lane] <= CLOSED && gaps[1][lane] <= CLOSED;
+        for (size_t k = 0; fine && k < count; ++k) {
+            y[k * t->width + lane] = end[k * t->width + lane];
+        }
+        *status_of(t, lane) = fine ? SE3D_OK : SE3D_ERR_NO_CONVERGENCE;
+    }
+}
+
+/* ---- steps of all ---- */
+
 /* worker->end: y after a step. */
 static void make_step(const task *t, const double *y, const errand *e)
 {
@@ -168,6 +244,9 @@ static void make_step(const task *t, const double *y, const errand *e)
         evaluate(t, w->y, e->h * tableau->c[k], w->rates + (size_t)k * count * t->width);
     }
     combine(t, y, e->h, tableau->a[tableau->stages], tableau->stages, w->end);
+    if (t->batch->has_loops) {
+        close_loops(t, w->end);
+    }
     t->batch->core->check(count, w->end, w->verdict);
 }
 
@@ -311,4 +390,12 @@ void se3di_batch_find_efforts(se3di_batch *batch, const double *qddot, double *e
 {
     const errand e = {.run = find_group_efforts, .in = qddot, .out = effort};
     run_all(batch, &e);
+}
+
+void se3di_batch_settle(se3di_batch *batch, size_t first, size_t count)
+{
+    const errand e = {.run = settle_group, .first = first, .count = count};
+    if (batch->has_loops) {
+        run_all(batch, &e);
+    }
 }

@@ -169,6 +169,7 @@ se3d_status se3d_batch_set_state(se3d_batch *batch, size_t first, size_t count, 
         se3di_batch_write(&batch->of, &velocities, first, count, qdot);
     }
     se3di_batch_revive(&batch->of, first, count);
+    se3di_batch_settle(&batch->of, first, count);
     return SE3D_OK;
 }
 
@@ -329,6 +330,10 @@ se3d_status se3d_batch_compute_efforts(se3d_batch *batch, const double *qddot, d
 {
     SE3DI_EDIT_OF(batch);
     SE3DI_TRY(se3di_check_pointer(batch->system, "effort", effort));
+    if (batch->of.has_loops) {
+        return SE3DI_FAIL(batch->system, SE3D_ERR_UNSUPPORTED,
+                          "with loops there are many efforts that give the same accelerations");
+    }
     SE3DI_TRY(check_numbers(batch, "qddot", 0, batch->of.count, batch->of.tree.v_count, qddot));
     se3di_work_begin(batch->system);
     se3di_batch_find_efforts(&batch->of, qddot, effort);

@@ -144,5 +144,9 @@ void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts)
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot)
 {
     lanes->core->factor(lanes, effort);
+    if (lanes->loops) {
+        lanes->core->factor_rows(lanes);
+        lanes->core->close(lanes);
+    }
     lanes->core->accelerate(lanes, qddot);
 }

@@ -39,6 +39,25 @@ typedef struct se3di_lane_load {
     double force[3], torque[3];
 } se3di_lane_load;
 
+struct se3di_tree_loops;
+
+/* A row of a loop. */
+typedef struct se3di_lane_row {
+    int32_t loop, kept; /* its direction among the loop's */
+    int32_t from, to;   /* velocities between which its numbers stand */
+    int32_t first;      /* the first row that shares some of these, or that is beyond one, */
+    int32_t entry;      /* and where the row's part of L begins */
+    double least;       /* least of a pivot over the row's weight */
+} se3di_lane_row;
+
+/* Loops whose rows come from the links alone (tree/loop_points.c), the same for all lanes. */
+typedef struct se3di_lane_loops {
+    const struct se3di_tree_loops *loops;
+    se3di_lane_row *rows;
+    int32_t count, reserved;
+    size_t entry_count, path_max;
+} se3di_lane_loops;
+
 /* Compiled once for each width. All arrays are aligned to SE3DI_LANES_ALIGN. */
 typedef struct se3di_lane_core {
     int32_t width;
@@ -80,6 +99,15 @@ typedef struct se3di_lane_core {
     void (*measure)(const se3di_lanes *lanes, const double *q, const double *change, double *parts);
     /* change = factor (next - x), x = next: [count] numbers each. */
     void (*replace)(size_t count, double factor, const double *next, double *x, double *change);
+    /* With loops, after factor(): their rows and the factors, not numbers where rows are not clear
+     * of each other; */
+    void (*factor_rows)(const se3di_lanes *lanes);
+    /* before accelerate(): what the loops add; */
+    void (*close)(const se3di_lanes *lanes);
+    /* how far points of loops are apart at the state that was placed, or how fast they part, into
+     * lanes->c, and the largest; the least change, weighed by the masses, that closes them. */
+    void (*find_gaps)(const se3di_lanes *lanes, int rates, double *largest);
+    void (*correct)(const se3di_lanes *lanes, double *dq);
     /* 1.0 if all [count] numbers are finite, else not a number. */
     void (*check)(size_t count, const double *x, double *verdict);
 } se3di_lane_core;
@@ -107,6 +135,8 @@ struct se3di_lanes {
     int32_t wants_points;   /* points of links and their velocities, even without frames */
     double *memory;         /* all of it, as allocated */
     size_t memory_count;
+    const se3di_lane_loops *loops; /* NULL: there are none, or nobody closes them */
+    double *K, *Y, *L, *pivot, *c, *z;
 };
 
 /* Memory for `core`; with frames and loads of bodies if wanted. @return OK, NO_MEMORY */
@@ -122,6 +152,14 @@ size_t se3di_lanes_room(size_t nodes, size_t velocities, size_t branches, size_t
 /* Gravity [3] pulls at all links (NULL: it does not), and if something else acts, it is added to
  * wrenches that are zero now. At first there are wrenches and no gravity. */
 void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts);
+
+/* Find out how rows stand, of loops that need links only, which stay. @return OK, NO_MEMORY */
+se3d_status se3di_lane_loops_init(se3di_lane_loops *lane_loops,
+                                  const struct se3di_tree_loops *loops);
+void se3di_lane_loops_destroy(se3di_lane_loops *lane_loops);
+/* Numbers of a state that their work takes, in memory that somebody else has, aligned. */
+size_t se3di_lane_loops_room(const se3di_lane_loops *lane_loops, size_t velocities);
+void se3di_lanes_take_loops(se3di_lanes *lanes, const se3di_lane_loops *lane_loops, double *memory);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot);

@@ -8,6 +8,7 @@
 #include "tree/loops.h"
 
 #include "math/vec3.h"
+#include "tree/recursion.h"
 
 #include <string.h>
 
@@ -54,6 +55,7 @@ static void take_side(const se3di_tree_loops *loops, uint32_t loop, uint32_t bod
     const se3di_tree *tree = loops->tree;
     side->node = tree->node_of[body];
     if (side->node < 0) {
+        se3di_tree_point(tree, body, s, side->arm);
         return;
     }
     const se3di_tree_node *n = &tree->nodes[side->node];

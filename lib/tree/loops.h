@@ -31,7 +31,7 @@ typedef struct se3di_loop_turn {
 typedef struct se3di_loop_side {
     int32_t node;     /* -1: the ground */
     int32_t place;    /* of the node in the loop's path */
-    double arm[3];    /* from P to the point, triad */
+    double arm[3];    /* from P to the point, triad; of the ground: the point */
     double square[9]; /* d square d: what a row along d, triad, gives of the body's mobility */
 } se3di_loop_side;
 

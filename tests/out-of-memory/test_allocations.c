@@ -633,6 +633,23 @@ static se3d_status make_batch(workshop *w)
     return status;
 }
 
+static se3d_status make_batch_with_loop(workshop *w)
+{
+    se3d_batch *batch = NULL;
+    se3d_constraint loop = {0, 0};
+    const se3d_joint_def def = joint_between(w, w->body[0], w->body[1]);
+    se3d_status status = se3d_joint_create_spherical(w->system, &def, &loop);
+    if (status >= 0) {
+        status = se3d_batch_create(w->system, 2, 1, &batch);
+        CHECK((status >= 0) == (batch != NULL));
+    }
+    se3d_batch_destroy(batch);
+    if (loop.index1 > 0) {
+        CHECK(se3d_constraint_destroy(w->system, loop) == SE3D_OK);
+    }
+    return status;
+}
+
 typedef struct operation_row {
     const char *name;
     operation run;
@@ -669,6 +686,7 @@ static const operation_row operations[] = {
     {"check", make_check},
     {"coordinates", make_coordinates},
     {"batch", make_batch},
+    {"batch with a loop", make_batch_with_loop},
 };
 
 typedef struct census {
