@@ -38,7 +38,7 @@ CIRCLES = {
         "solving with friction, and for positions, is solving the equations several times",
     "analysis/kinematics analysis/singular":
         "a singular position is passed by the steps that could not pass it, made shorter",
-    "analysis/events analysis/run analysis/run_failure":
+    "analysis/events analysis/run analysis/run_failure analysis/run_prepare":
         "a run looks for events after each step, and a search for events makes steps",
     "io/document/reader io/document/reference io/document/value":
         "a text may hold numbers in braces, and a number may be written as a text",

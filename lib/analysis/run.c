@@ -2,28 +2,22 @@
 /* Preparation and control of a run. */
 #include "analysis/run.h"
 #include "analysis/run_end.h"
+#include "analysis/run_prepare.h"
 
-#include "analysis/breaks.h"
-#include "analysis/crowd.h"
 #include "analysis/dead_point.h"
 #include "analysis/equilibrium.h"
 #include "analysis/friction_start.h"
-#include "analysis/kinds.h"
 #include "analysis/start_moved.h"
 #include "analysis/stiffness.h"
 #include "assembly/energy.h"
-#include "assembly/loads.h"
 #include "assembly/user.h"
 #include "base/log.h"
 #include "base/pending.h"
 #include "contact/bodies/pace.h"
-#include "force/driver_rate.h"
-#include "integrator/convex.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
-#include "math/vec3.h"
 #include "model/integral.h"
 #include "nonlinear/jump.h"
 #include "nonlinear/kink.h"
@@ -36,280 +30,6 @@
 
 #define STEP_DEFAULT 1e-3 /* s, of fixed-step methods */
 #define TURN_MAX     3.0  /* rad, of a body in a step of an implicit method */
-
-void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
-{
-    run->model = model;
-    run->error = error;
-    run->prepared = 0;
-    run->determined = 0;
-    run->watch = (se3di_watch){&run->events, se3di_events_begin_step, se3di_events_end_step};
-    se3di_events_init(&run->events, run, system, (uint32_t)model->body_slots.salt);
-}
-
-static void release(se3di_run *run)
-{
-    se3di_free(&run->model->allocator, run->integration.work, run->work_count, sizeof(double));
-    run->integration.work = NULL;
-    run->work_count = 0;
-    se3di_newton_destroy(&run->integration.newton);
-    se3di_convex_destroy(run->integration.convex, &run->model->allocator);
-    run->integration.convex = NULL;
-    if (run->prepared) {
-        se3di_counters counters = run->equations.counters;
-        se3di_equations_destroy(&run->equations);
-        run->equations.counters = counters;
-    }
-    run->prepared = 0;
-}
-
-void se3di_run_destroy(se3di_run *run)
-{
-    release(run);
-    se3di_events_destroy(&run->events);
-    se3di_saved_destroy(&run->before, &run->model->allocator);
-    se3di_saved_destroy(&run->integration.before_trials, &run->model->allocator);
-}
-
-/* Steps and failures allocate nothing. */
-static se3d_status reserve_kept(se3di_run *run, size_t history)
-{
-    const se3d_allocator *allocator = &run->model->allocator;
-    const size_t memories = SE3DI_FORCE_STATES * run->model->force_slots.count;
-    se3di_saved_array *const arrays[] = {&run->before.history, &run->equations.kept.history,
-                                         &run->equations.kept.memory};
-    for (int k = 0; k < 3; ++k) {
-        se3di_saved_array *array = arrays[k];
-        SE3DI_TRY(se3di_array_reserve(allocator, &array->data, &array->capacity,
-                                      k < 2 ? history : memories, sizeof(double)));
-    }
-    return SE3D_OK;
-}
-
-/* Which rows are left out, and with them the state of explicit methods, is decided later. */
-static size_t largest_history(const se3di_run *run)
-{
-    se3di_assembly of_bodies = run->equations.assembly;
-    of_bodies.tree_count = 0;
-    return run->integration.method->history_count(&of_bodies);
-}
-
-static se3d_status allocate_work(se3di_run *run)
-{
-    const se3di_integrator *method = run->integration.method;
-    se3di_model *model = run->model;
-    if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
-        return SE3D_OK;
-    }
-    const size_t count = largest_history(run);
-    void *history = model->history;
-    se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
-                                             count, sizeof(double));
-    model->history = history;
-    SE3DI_TRY(status);
-    SE3DI_TRY(reserve_kept(run, count));
-    run->work_count = method->work_count(&run->equations.assembly);
-    run->integration.work = se3di_alloc(&model->allocator, run->work_count, sizeof(double));
-    if (!run->integration.work) {
-        return SE3D_ERR_NO_MEMORY;
-    }
-    return method->is_implicit ? se3di_newton_init(&run->integration.newton, &run->equations)
-                               : SE3D_OK;
-}
-
-static int is_history_of(const se3di_model *model, int32_t method)
-{
-    return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
-}
-
-static void use_method(se3di_run *run, const se3di_integrator *method)
-{
-    run->integration.method = method;
-    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
-}
-
-/* No tolerance is asked for, and many bodies touch. */
-static int is_crowded(const se3di_run *run)
-{
-    const se3di_model *model = run->model;
-    return run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
-           !is_history_of(model, SE3D_METHOD_DOP853) && !is_history_of(model, SE3D_METHOD_RADAU) &&
-           (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_crowd_is_large(model)) &&
-           se3di_crowd_suits(model);
-}
-
-/* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
- * small steps, or have done so before. A motion under way goes on by its method: the state would
- * now decide otherwise. */
-static void choose_method(se3di_run *run)
-{
-    const se3di_model *model = run->model;
-    if (!run->automatic) {
-        return;
-    }
-    const int stiff =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS &&
-        (is_history_of(model, SE3D_METHOD_RADAU) ||
-         (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
-    int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
-    if (model->sets) {
-        method = SE3D_METHOD_VERLET;
-    } else if (is_crowded(run)) {
-        method = SE3D_METHOD_CONVEX;
-    }
-    use_method(run, se3di_integrator_find(method));
-}
-
-/* The motion is to follow from constraints and drivers alone. */
-static int is_driven(const se3di_run *run)
-{
-    return se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_IS_DRIVEN);
-}
-
-static se3d_status build_equations(se3di_run *run)
-{
-    const se3di_integrator *method = run->integration.method;
-    const int reduces =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS && (method->is_explicit || method->is_reduced);
-    const se3di_formulation *formulation =
-        reduces ? se3di_formulation_reduce(run->formulation) : run->formulation;
-    return se3di_equations_init(&run->equations, run->model, formulation,
-                                run->analysis == SE3D_ANALYSIS_DYNAMICS, run->error);
-}
-
-/* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
-#define TOLERANCE_OF_LOOPS 2.3e-10
-
-/* And gauss passes singular positions in fewer steps, and more exactly, by the bodies. */
-static int takes_loops(const se3di_run *run)
-{
-    return run->integration.method->tag != SE3D_METHOD_GAUSS &&
-           !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
-}
-
-/* The formulation of `auto`. *picked: the equations are built, in joint coordinates. */
-static se3d_status try_joints(se3di_run *run, int *picked)
-{
-    se3di_model *model = run->model;
-    *picked = 0;
-    run->formulation = &se3di_formulation_romega;
-    if (run->analysis != SE3D_ANALYSIS_DYNAMICS || !run->integration.method->is_explicit ||
-        model->constraint_slots.count == 0) {
-        return SE3D_OK;
-    }
-    SE3DI_TRY(
-        se3di_equations_try_joints(&run->equations, model, takes_loops(run), run->error, picked));
-    if (*picked) {
-        run->formulation = &se3di_formulation_joint;
-    }
-    return SE3D_OK;
-}
-
-/* Methods that take bodies one by one. */
-static se3d_status check_armatures(se3di_run *run)
-{
-    const se3di_assembly *assembly = &run->equations.assembly;
-    const se3di_integrator *method = run->integration.method;
-    if (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->weighs_bodies ||
-        assembly->armature_count == 0) {
-        return SE3D_OK;
-    }
-    const char *name = run->model->forces[assembly->armature[0].force].name;
-    release(run);
-    return se3di_error_set(run->error, SE3D_ERR_UNSUPPORTED,
-                           "method %s takes no armatures ('%.64s'): they couple the bodies of a "
-                           "joint in the mass matrix",
-                           method->name, name ? name : "");
-}
-
-/* Drivers whose rates follow signals leave nothing to be solved for where there are only positions,
- * and methods that make steps of positions first do not see them. */
-static se3d_status check_rates(se3di_run *run)
-{
-    const se3di_integrator *method = run->integration.method;
-    const uint32_t driver = se3di_find_driver_rate(run->model);
-    const int is_of_positions =
-        run->analysis != SE3D_ANALYSIS_DYNAMICS && run->analysis != SE3D_ANALYSIS_ASSEMBLY;
-    if (driver == SE3DI_NO_INDEX ||
-        (!is_of_positions && (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->weighs_bodies))) {
-        return SE3D_OK;
-    }
-    const char *name = run->model->constraints[driver].name;
-    release(run);
-    return se3di_error_set(
-        run->error, SE3D_ERR_UNSUPPORTED,
-        "the rate of driver '%.64s' follows signals, which its coordinate is the integral of: "
-        "%s %s does not take it, dynamics by other methods does",
-        name ? name : "", is_of_positions ? "the analysis" : "method",
-        is_of_positions ? se3di_analysis_get_name(run->analysis) : method->name);
-}
-
-/* Build what the model's structure decides. */
-static se3d_status build(se3di_run *run)
-{
-    release(run);
-    se3di_counters counters = run->equations.counters;
-    const se3di_integrator *method = run->integration.method;
-    int picked = 0;
-    SE3DI_TRY(run->picks_formulation ? try_joints(run, &picked) : SE3D_OK);
-    SE3DI_TRY(picked ? SE3D_OK : build_equations(run));
-    run->equations.counters = counters;
-    run->equations.friction.is_rigid =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS && method->is_explicit;
-    run->equations.audits = run->analysis == SE3D_ANALYSIS_INVERSE_DYNAMICS;
-    run->equations.iterations_max = run->integration.settings.iterations_max;
-    run->integration.equations = &run->equations;
-    run->prepared = 1;
-    SE3DI_TRY(check_armatures(run));
-    SE3DI_TRY(check_rates(run));
-    run->told_redundant = run->told_left_out = 0;
-    run->determined = 0;
-    run->values_version = run->model->values_version;
-    if (is_driven(run)) {
-        se3di_assembly_level(&run->equations.assembly);
-    }
-    se3di_assembly_eval_mass(&run->equations.assembly); /* steps may rely on constant blocks */
-    se3d_status status = allocate_work(run);
-    if (status < 0) {
-        release(run);
-        return se3di_error_set(run->error, status, "no memory for the integrator");
-    }
-    return SE3D_OK;
-}
-
-static se3d_status prepare(se3di_run *run)
-{
-    SE3DI_TRY(se3di_breaks_check(run));
-    if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly)) {
-        choose_method(run);
-        SE3DI_TRY(build(run));
-    }
-    se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
-    if (run->values_version != run->model->values_version) {
-        se3di_assembly_take_values(&run->equations.assembly);
-        run->values_version = run->model->values_version;
-    }
-    run->equations.guard = &run->guard;
-    if (se3di_events_prepare(&run->events) < 0) {
-        return se3di_error_set(run->error, SE3D_ERR_NO_MEMORY, "no memory for events");
-    }
-    run->equations.watch = se3di_events_count(&run->events) > 0 ? &run->watch : NULL;
-    return SE3D_OK;
-}
-
-se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method)
-{
-    if (!run->automatic || method == run->integration.method) {
-        return SE3D_OK;
-    }
-    use_method(run, method);
-    return build(run);
-}
-
-se3d_status se3di_run_prepare(se3di_run *run)
-{
-    return prepare(run);
-}
 
 /* Contacts are taken up as they are. */
 static se3d_status start_contacts(const se3di_run *run, double t)
@@ -336,7 +56,8 @@ static se3d_status accelerate(se3di_run *run)
 static void note_start(se3di_run *run, double t)
 {
     const int free = run->analysis == SE3D_ANALYSIS_DYNAMICS;
-    se3di_start_change_measure(run->model, run->equations.accepted, is_driven(run), &run->start);
+    se3di_start_change_measure(run->model, run->equations.accepted, se3di_run_is_driven(run),
+                               &run->start);
     run->start.time = t;
     char far[400];
     if (run->start.moved.index1 != 0 &&
@@ -357,7 +78,7 @@ static se3d_status settle(se3di_run *run, double t)
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
     equations->unfolds = 1;
     se3d_status status = se3di_ranks_decide(equations, t);
-    if (status >= 0 && is_driven(run) &&
+    if (status >= 0 && se3di_run_is_driven(run) &&
         !run->determined) { /* before levels that may have no solution there */
         status = se3di_position_solve(equations, t);
         status = status < 0 ? status : se3di_equations_check_determined(equations);
@@ -620,12 +341,12 @@ static se3d_status switch_method(se3di_run *run)
 {
     run->left = run->integration.method;
     run->left_at = run->model->time;
-    use_method(run, se3di_integrator_find(SE3D_METHOD_RADAU));
+    se3di_run_use_method(run, se3di_integrator_find(SE3D_METHOD_RADAU));
     se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                     "t = %g s: stability limits the steps of %s, %s takes over", run->left_at,
                     run->left->name, run->integration.method->name);
-    SE3DI_TRY(build(run));
-    return prepare(run);
+    SE3DI_TRY(se3di_run_build(run));
+    return se3di_run_prepare(run);
 }
 
 se3d_status se3di_run_show(se3di_run *run, double t_end)
@@ -888,7 +609,7 @@ static se3d_status run_again(se3di_run *run, double t_end)
     do {
         run->refused = 0;
         run->events.goes_on = 0;
-        SE3DI_TRY(prepare(run));
+        SE3DI_TRY(se3di_run_prepare(run));
         SE3DI_TRY(prepare_integrals(run, t_end));
         const se3d_status told = begin(run);
         status = conclude(run, run_to(run, t_end), t_end, told);
@@ -936,7 +657,7 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     begin_guard(run, t_end);
     run->refused = 0;
     run->events.goes_on = 0;
-    SE3DI_TRY(prepare(run));
+    SE3DI_TRY(se3di_run_prepare(run));
     SE3DI_TRY(prepare_integrals(run, t_end));
     const se3d_status told = begin(run);
     run->steps_once = 1;

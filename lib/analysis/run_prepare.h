@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a run needs before its first step. */
+#ifndef SE3DI_ANALYSIS_RUN_PREPARE_H
+#define SE3DI_ANALYSIS_RUN_PREPARE_H
+
+#include "analysis/run.h"
+
+void se3di_run_use_method(se3di_run *run, const se3di_integrator *method);
+/* The motion is to follow from constraints and drivers alone. */
+int se3di_run_is_driven(const se3di_run *run);
+/* Build what the model's structure decides. */
+se3d_status se3di_run_build(se3di_run *run);
+
+#endif
