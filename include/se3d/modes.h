@@ -47,6 +47,9 @@ typedef struct se3d_modes_def {
     size_t input_count;               /* default 0 */
     const se3d_modes_output *outputs; /* [output_count] */
     size_t output_count;              /* default 0 */
+    size_t lowest; /* not 0: only that many modes of the lowest |s|, as far as there are; no lists
+                      then, and matrices are 0 x 0. Of large models at rest without damping they
+                      are found without dense matrices. Default 0: all */
 } se3d_modes_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_modes_def_default. @since 0.1 */

@@ -30,7 +30,7 @@ static int is_conservative(size_t f, const double *D, const double *K)
     return !(largest(D, f * f) > 0.0) && skew <= 1e-11 * size;
 }
 
-static void add_mode(se3di_eigen *e, double re, double im, const double *y_re, const double *y_im)
+void se3di_eigen_add(se3di_eigen *e, double re, double im, const double *y_re, const double *y_im)
 {
     size_t f = (size_t)e->f;
     size_t k = (size_t)e->count++;
@@ -112,10 +112,10 @@ static se3d_status solve_conservative(const se3d_allocator *allocator, const dou
         solve_upper(f, L, y);
         double root = fabs(mu[k]) > noise ? sqrt(fabs(mu[k])) : 0.0;
         if (mu[k] < -noise) {
-            add_mode(e, -root, 0.0, y, NULL);
-            add_mode(e, root, 0.0, y, NULL);
+            se3di_eigen_add(e, -root, 0.0, y, NULL);
+            se3di_eigen_add(e, root, 0.0, y, NULL);
         } else {
-            add_mode(e, 0.0, root, y, NULL);
+            se3di_eigen_add(e, 0.0, root, y, NULL);
         }
     }
     return SE3D_OK;
@@ -166,7 +166,7 @@ static se3d_status solve_damped(const se3d_allocator *allocator, const double *L
         if (y_im) {
             solve_upper(f, L, y_im);
         }
-        add_mode(e, re[k], im[k], V + k * 2 * f, y_im);
+        se3di_eigen_add(e, re[k], im[k], V + k * 2 * f, y_im);
     }
     return SE3D_OK;
 }
@@ -183,11 +183,31 @@ static se3d_status factor_mass(int32_t freedoms, const double *M, double *L)
     return SE3D_OK;
 }
 
+static size_t memory_of(const se3di_eigen *e)
+{
+    return 2 * (size_t)e->room * (1 + (size_t)e->f);
+}
+
 void se3di_eigen_destroy(const se3d_allocator *allocator, se3di_eigen *e)
 {
-    size_t f = (size_t)e->f;
-    se3di_free(allocator, e->re, 4 * f + 4 * f * f, sizeof(double));
+    se3di_free(allocator, e->re, memory_of(e), sizeof(double));
     memset(e, 0, sizeof *e);
+}
+
+se3d_status se3di_eigen_reserve(const se3d_allocator *allocator, int32_t f, int32_t room,
+                                se3di_eigen *e)
+{
+    const size_t count = (size_t)room;
+    *e = (se3di_eigen){.f = f, .room = room};
+    e->re = se3di_alloc(allocator, memory_of(e), sizeof *e->re);
+    if (!e->re) {
+        memset(e, 0, sizeof *e);
+        return SE3D_ERR_NO_MEMORY;
+    }
+    e->im = e->re + count;
+    e->y_re = e->im + count;
+    e->y_im = e->y_re + count * (size_t)f;
+    return SE3D_OK;
 }
 
 se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms, const double *M,
@@ -200,14 +220,8 @@ se3d_status se3di_eigen_solve(const se3d_allocator *allocator, int32_t freedoms,
     }
     size_t work_count = 11 * f * f + 4 * f;
     double *work = se3di_alloc(allocator, work_count, sizeof *work);
-    e->re = se3di_alloc(allocator, 4 * f + 4 * f * f, sizeof *e->re);
-    se3d_status status = work && e->re ? SE3D_OK : SE3D_ERR_NO_MEMORY;
-    if (status >= 0) {
-        e->im = e->re + 2 * f;
-        e->y_re = e->re + 4 * f;
-        e->y_im = e->y_re + 2 * f * f;
-        status = factor_mass(e->f, M, work);
-    }
+    se3d_status status = se3di_eigen_reserve(allocator, freedoms, 2 * freedoms, e);
+    status = status >= 0 && work ? factor_mass(e->f, M, work) : SE3D_ERR_NO_MEMORY;
     if (status >= 0) {
         status = is_conservative(f, D, K) ? solve_conservative(allocator, work, K, work + f * f, e)
                                           : solve_damped(allocator, work, D, K, work + f * f, e);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/modes.h"
 
+#include "analysis/lowest_modes.h"
 #include "analysis/steady.h"
 #include "force/driver_rate.h"
 #include "linsol/dense.h"
@@ -16,7 +17,7 @@
 
 static void list_arrays(se3di_modes *m, se3di_array list[MODES_ARRAYS])
 {
-    size_t f = m->f;
+    size_t f = m->is_sparse ? 0 : m->f;
     const se3di_array arrays[] = {
         {(void **)&m->M, f * f, sizeof *m->M},
         {(void **)&m->D, f * f, sizeof *m->D},
@@ -27,7 +28,8 @@ static void list_arrays(se3di_modes *m, se3di_array list[MODES_ARRAYS])
         {(void **)&m->A, 4 * f * f, sizeof *m->A},
         {(void **)&m->B, m->inputs * 2 * f, sizeof *m->B},
         {(void **)&m->rotation, m->bodies * 9, sizeof *m->rotation},
-        {(void **)&m->largest, 4 * f, sizeof *m->largest},
+        {(void **)&m->largest, m->is_sparse ? 2 * (size_t)m->eigen.room : 4 * f,
+         sizeof *m->largest},
     };
     _Static_assert(sizeof arrays == MODES_ARRAYS * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -112,9 +114,16 @@ static se3d_status fill_state_space(se3di_modes *m)
     return status;
 }
 
-/* x [6] of one body, ground frame, of a real vector over freedoms. */
+/* x [6] of one body, ground frame, of a real shape. */
 static void expand(const se3di_modes *m, const double *y, size_t body, double x[6])
 {
+    if (m->is_sparse) {
+        const double none[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+        const double *own = m->free[body] < 0 ? none : y + 6 * (size_t)m->free[body];
+        se3di_copy(own, x);
+        se3di_mul(m->rotation + 9 * body, own + 3, x + 3);
+        return;
+    }
     double local[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     for (size_t r = 0; r < m->f && m->free[body] >= 0; ++r) {
         for (size_t c = 0; c < 6; ++c) {
@@ -133,8 +142,8 @@ static void find_largest(const se3di_modes *m, size_t k, double scale[2])
     scale[1] = 0.0;
     for (size_t body = 0; body < m->bodies; ++body) {
         double re[6], im[6];
-        expand(m, m->eigen.y_re + k * m->f, body, re);
-        expand(m, m->eigen.y_im + k * m->f, body, im);
+        expand(m, m->eigen.y_re + k * (size_t)m->eigen.f, body, re);
+        expand(m, m->eigen.y_im + k * (size_t)m->eigen.f, body, im);
         for (int c = 0; c < 6; ++c) {
             double size = se3di_hypot(re[c], im[c]);
             if (size > best * (1.0 + 1e-9)) {
@@ -146,18 +155,29 @@ static void find_largest(const se3di_modes *m, size_t k, double scale[2])
     }
 }
 
-static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *ports, se3di_modes *m)
+static void keep_bodies(se3di_modes *m, const se3di_assembly *assembly)
 {
-    size_t f = m->f;
-    const se3di_assembly *assembly = &linear->equations->assembly;
-    memcpy(m->M, linear->Mr, f * f * sizeof *m->M);
-    memcpy(m->D, linear->Dr, f * f * sizeof *m->D);
-    memcpy(m->K, linear->Kr, f * f * sizeof *m->K);
-    memcpy(m->Z, linear->Z, f * m->n * sizeof *m->Z);
     for (size_t k = 0; k < m->bodies; ++k) {
         m->free[k] = assembly->free_index[k];
         memcpy(m->rotation + 9 * k, assembly->model->frames[k].A, 9 * sizeof *m->rotation);
     }
+}
+
+static void find_all_largest(const se3di_modes *m)
+{
+    for (size_t k = 0; k < (size_t)m->eigen.count; ++k) {
+        find_largest(m, k, m->largest + 2 * k);
+    }
+}
+
+static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *ports, se3di_modes *m)
+{
+    size_t f = m->f;
+    memcpy(m->M, linear->Mr, f * f * sizeof *m->M);
+    memcpy(m->D, linear->Dr, f * f * sizeof *m->D);
+    memcpy(m->K, linear->Kr, f * f * sizeof *m->K);
+    memcpy(m->Z, linear->Z, f * m->n * sizeof *m->Z);
+    keep_bodies(m, &linear->equations->assembly);
     for (size_t k = 0; k < m->inputs; ++k) {
         fill_row(linear, &ports[k], m->b + k * f);
     }
@@ -166,9 +186,10 @@ static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *port
     }
     SE3DI_TRY(fill_state_space(m));
     SE3DI_TRY(se3di_eigen_solve(&m->allocator, (int32_t)f, m->M, m->D, m->K, &m->eigen));
-    for (size_t k = 0; k < (size_t)m->eigen.count; ++k) {
-        find_largest(m, k, m->largest + 2 * k);
+    if (m->lowest > 0 && (size_t)m->eigen.count > m->lowest) {
+        m->eigen.count = (int32_t)m->lowest;
     }
+    find_all_largest(m);
     return SE3D_OK;
 }
 
@@ -186,6 +207,27 @@ static se3d_status check_poses(se3di_equations *equations, double t)
                            t, gap);
 }
 
+/* Only the modes that are asked for. m->is_sparse: they were found. */
+static se3d_status find_lowest(se3di_modes *m, se3di_equations *equations, double t)
+{
+    int32_t freedoms = 0;
+    SE3DI_TRY(
+        se3di_lowest_modes_find(equations, t, m->lowest, &m->eigen, &freedoms, &m->is_sparse));
+    if (!m->is_sparse) {
+        return SE3D_OK;
+    }
+    m->f = (size_t)freedoms;
+    m->n = equations->assembly.unknown_count;
+    const se3d_status status = allocate(m);
+    if (status < 0) {
+        se3di_modes_destroy(m);
+        return status;
+    }
+    keep_bodies(m, &equations->assembly);
+    find_all_largest(m);
+    return SE3D_OK;
+}
+
 /* Linearise and keep what the queries need. */
 static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_modes_port *ports,
                         const int32_t *quantity)
@@ -195,6 +237,12 @@ static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_
     SE3DI_TRY(se3di_ranks_decide(equations, time));
     SE3DI_TRY(check_poses(equations, time));
     SE3DI_TRY(se3di_acceleration_solve(equations, time));
+    if (m->lowest > 0) {
+        SE3DI_TRY(find_lowest(m, equations, time));
+        if (m->is_sparse) {
+            return SE3D_OK;
+        }
+    }
     SE3DI_TRY(se3di_linear_init(&linear, equations));
     se3d_status status = se3di_steady_linearise(&linear, time);
     if (status >= 0) {
@@ -215,13 +263,14 @@ static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_
 
 se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error *error,
                              size_t inputs, size_t outputs, const se3di_modes_port *ports,
-                             const int32_t *quantity)
+                             const int32_t *quantity, size_t lowest)
 {
     se3di_equations equations;
     *modes = (se3di_modes){.allocator = model->allocator,
                            .inputs = inputs,
                            .outputs = outputs,
-                           .bodies = model->body_slots.count};
+                           .bodies = model->body_slots.count,
+                           .lowest = lowest};
     if (se3di_find_driver_rate(model) != SE3DI_NO_INDEX) {
         return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
                                "the rate of a driver follows signals: no position is held, about "
@@ -239,8 +288,8 @@ void se3di_modes_shape(const se3di_modes *modes, size_t k, size_t body, double r
 {
     double re[6], im[6];
     const double *scale = modes->largest + 2 * k;
-    expand(modes, modes->eigen.y_re + k * modes->f, body, re);
-    expand(modes, modes->eigen.y_im + k * modes->f, body, im);
+    expand(modes, modes->eigen.y_re + k * (size_t)modes->eigen.f, body, re);
+    expand(modes, modes->eigen.y_im + k * (size_t)modes->eigen.f, body, im);
     double square = scale[0] * scale[0] + scale[1] * scale[1];
     for (int c = 0; c < 6; ++c) {
         real[c] = (re[c] * scale[0] + im[c] * scale[1]) / square;

@@ -15,6 +15,9 @@
 typedef struct se3di_modes {
     se3d_allocator allocator;
     size_t f, n, inputs, outputs, bodies; /* bodies: dense */
+    size_t lowest;                        /* modes that are asked for; 0: all, and matrices */
+    int32_t is_sparse;                    /* shapes are over unknowns; no matrices */
+    int32_t reserved;
     se3di_eigen eigen;
     double *M, *D, *K; /* [f f] */
     double *Z;         /* [f n], rows */
@@ -25,7 +28,7 @@ typedef struct se3di_modes {
     int32_t *quantity; /* [outputs] */
     int32_t *free;     /* [bodies] -1: fixed */
     double *rotation;  /* [bodies 9] */
-    double *largest;   /* [2 f 2] largest component of each mode, complex */
+    double *largest;   /* [eigen.room 2] largest component of each mode, complex */
 } se3di_modes;
 
 /* A point (a body's axes) or a body, and a unit vector (ground frame) there. */
@@ -37,10 +40,11 @@ typedef struct se3di_modes_port {
 } se3di_modes_port;
 
 /* Linearise at the present state. `ports` are the inputs, then the outputs, whose quantities
- * (se3d_modes_quantity) follow. On failure nothing is held. */
+ * (se3d_modes_quantity) follow; none if only the `lowest` modes are asked for, not 0. On failure
+ * nothing is held. */
 se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error *error,
                              size_t inputs, size_t outputs, const se3di_modes_port *ports,
-                             const int32_t *quantity);
+                             const int32_t *quantity, size_t lowest);
 void se3di_modes_destroy(se3di_modes *modes);
 
 /* Displacement and rotation of a body in mode k, ground frame, such that the largest component of

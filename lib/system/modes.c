@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { LOWEST_MAX = 1000000 };
+
 #define TWO_PI 6.283185307179586476925286766559
 
 struct se3d_modes {
@@ -80,7 +82,7 @@ static se3d_status linearise(se3d_system *system, const se3d_modes_def *def,
     se3di_work_begin(system);
     const se3d_status status = se3di_work_end(
         system, se3di_modes_init(&modes->of, &system->model, &system->found, def->input_count,
-                                 def->output_count, ports, quantity));
+                                 def->output_count, ports, quantity, def->lowest));
     if (status < 0) {
         se3di_free(&system->model.allocator, modes, 1, sizeof *modes);
         return status;
@@ -120,6 +122,12 @@ se3d_status se3d_modes_create(se3d_system *system, const se3d_modes_def *def, se
     }
     if ((full.input_count > 0 && !full.inputs) || (full.output_count > 0 && !full.outputs)) {
         return SE3DI_FAIL(system, SE3D_ERR_NULL, "inputs or outputs is NULL");
+    }
+    if (full.lowest > LOWEST_MAX || (full.lowest > 0 && full.input_count + full.output_count > 0)) {
+        return SE3DI_FAIL_OF(system, "lowest", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be 0 with inputs or outputs, which need all modes, and "
+                             "at most %d",
+                             full.lowest, LOWEST_MAX);
     }
     return create(system, &full, out);
 }
@@ -194,8 +202,8 @@ se3d_status se3d_modes_get_matrix(const se3d_modes *modes, int32_t matrix, size_
     }
     size_t size[2];
     se3di_modes_size(&modes->of, matrix, size);
-    *rows = size[0];
-    *columns = size[1];
+    *rows = modes->of.lowest > 0 ? 0 : size[0];
+    *columns = modes->of.lowest > 0 ? 0 : size[1];
     if (values && capacity < *rows * *columns) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }

@@ -78,6 +78,7 @@ typedef struct se3di_modes_entry {
     size_t output_count;
     double from, to; /* frequencies of the transfer functions [Hz] */
     size_t frequency_count;
+    double count; /* of the lowest modes; 0: all */
 } se3di_modes_entry;
 
 typedef struct se3di_analysis_entry {

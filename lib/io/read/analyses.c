@@ -80,6 +80,8 @@ static const se3di_key analysis_keys[] = {
      .text = "of modes: components of the motion"},
     {"frequencies", SE3DI_KIND_OBJECT, .object = "frequencies",
      .text = "of modes: of the transfer functions"},
+    {"count", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .standard = "all",
+     .text = "of modes: only so many of the lowest frequencies, without `inputs` and `outputs`"},
     {.key = NULL}};
 const se3di_object se3di_object_analysis = {
     "analysis",

@@ -179,6 +179,24 @@ static bool read_file(se3di_reader *reader, const se3di_node *node, se3di_modes_
     return true;
 }
 
+/* `count`: a few modes of a large model. */
+static bool read_count(se3di_reader *reader, const se3di_node *node, se3di_modes_entry *modes)
+{
+    if (!se3di_node_get(node, "count")) {
+        return true;
+    }
+    if (!se3di_read_key(reader, node, &se3di_object_analysis, NULL, "count", &modes->count)) {
+        return false;
+    }
+    if (modes->count < 1.0 || modes->count > 1e6 || floor(modes->count) < modes->count) {
+        return se3di_reader_fail_key(
+            reader, node, "count", "is %g, must be a whole number from 1 to 1000000", modes->count);
+    }
+    return modes->input_count + modes->output_count == 0 ||
+           se3di_reader_fail_key(reader, node, "count",
+                                 "does not go with `inputs` and `outputs`, which need all modes");
+}
+
 bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analysis_entry *entry)
 {
     if (strcmp(entry->analysis.type, "modes") == 0) {
@@ -187,11 +205,12 @@ bool se3di_read_modes(se3di_reader *reader, const se3di_node *node, se3di_analys
             return true;
         }
         return read_file(reader, node, &entry->modes) && read_lists(reader, node, &entry->modes) &&
-               read_frequencies(reader, node, &entry->modes);
+               read_frequencies(reader, node, &entry->modes) &&
+               read_count(reader, node, &entry->modes);
     }
     for (const se3di_node *child = node ? node->first : NULL; child; child = child->next) {
         if (!reader->options->analysis &&
-            se3di_keys_contain(" file inputs outputs frequencies ", child->key)) {
+            se3di_keys_contain(" file inputs outputs frequencies count ", child->key)) {
             return se3di_reader_fail(reader, child, "is only for an analysis of type modes");
         }
     }

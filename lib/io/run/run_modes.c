@@ -225,6 +225,7 @@ se3d_status se3di_modes_run_write(se3di_modes_run *run)
     def.input_count = entry->input_count;
     def.outputs = entry->outputs;
     def.output_count = entry->output_count;
+    def.lowest = (size_t)entry->count;
     se3d_status status = se3d_modes_create(run->model->system, &def, &modes);
     if (status >= 0) {
         status = run->watch ? show_modes(run->watch, modes) : write_files(run, modes);
