@@ -41,6 +41,7 @@ int se3d_python_signals(void *calls);
 SOURCE = """
 #include <se3d/io.h>
 #include <se3d/import.h>
+#include <se3d/study.h>
 
 static int se3d_python_signals(void *calls)
 {
@@ -88,7 +89,7 @@ def declarations(includes):
                 pass
         source = os.path.join(folder, "all.c")
         with open(source, "w", encoding="ascii") as file:
-            file.write("#include <se3d/io.h>\n#include <se3d/import.h>\n")
+            file.write("#include <se3d/io.h>\n#include <se3d/import.h>\n#include <se3d/study.h>\n")
         paths = [f"-I{path}" for path in (folder, *includes)]
         text = subprocess.run([*compiler, "-E", "-P", "-nostdinc", "-U__GNUC__", *paths, source],
                               check=True, capture_output=True, text=True).stdout

@@ -17,10 +17,11 @@ from se3d.coordinates import Coordinates
 from se3d.elements import (Body, Constraint, Force, Function, Marker, Material, Shape)
 from se3d.model import Analysis, Model, Run, Statistics
 from se3d.solver import Solver, Stats
+from se3d.study import Samples, Study
 from se3d.system import Contact, Energy, State, System, Work
 
 __version__ = text(lib.se3d_version_get_text())
 __all__ = ["Analysis", "Batch", "Body", "Constraint", "Contact", "Coordinates", "Energy", "Error",
            "EventRecord", "Force", "Function", "Marker", "Material", "Model", "ModelError",
-           "Motion", "Run", "STATUS", "Shape", "Solver", "State", "Statistics", "Stats", "System",
-           "Work", "ffi", "lib"]
+           "Motion", "Run", "STATUS", "Samples", "Shape", "Solver", "State", "Statistics", "Stats",
+           "Study", "System", "Work", "ffi", "lib"]

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python package: motions against closed forms, and what happens when something is wrong."""
 
+import ast
 import gc
+import inspect
 import os
 import signal
 import tempfile
@@ -373,6 +375,78 @@ output:
             se3d.Model("/nowhere/model.yaml")
         with self.assertRaises(se3d.ModelError):
             se3d.Model(text=self.TEXT, parameters={"n": 3})
+
+
+class Studies(unittest.TestCase):
+    TEXT = """se3d: 1
+gravity: [0, 0, 0]
+parameters: {m: 2, v: 3}
+bodies: [{name: block, mass: m, inertia: [1, 1, 1], velocity: [v, 0, 0]}]
+analysis: {type: dynamics, duration: 1}
+study:
+  parameters: {m: [1, 2, 4], v: [3, 5]}
+  method: grid
+  measures:
+    energy: {at: energy.kinetic, time: 1}
+    way: {at: block.position.x, time: 1}
+"""
+
+    def test_samples_are_arrays(self):
+        study = se3d.Study(se3d.Model(text=self.TEXT))
+        self.assertEqual((study.parameters, study.measures, len(study)),
+                         (("m", "v"), ("energy", "way"), 6))
+        told = []
+        done = study.run(progress=lambda k, of: told.append((k, of)))
+        numpy.testing.assert_array_equal(done.parameters, study.samples())
+        m, v = done.parameters.T
+        self.assertEqual(sorted(zip(m, v)), [(a, b) for a in (1, 2, 4) for b in (3, 5)])
+        numpy.testing.assert_allclose(done.measures, numpy.transpose([m * v**2 / 2, v]),
+                                      rtol=1e-12)
+        self.assertEqual((done.failures, told[-1]), ({}, (6, 6)))
+        some = study.run([4, 1])
+        numpy.testing.assert_array_equal(some.measures, done.measures[[4, 1]])
+        self.assertEqual(len(study.run(progress=lambda k, of: k == 2).numbers), 2)
+
+    def test_other_parameters_are_measured(self):
+        study = se3d.Study(se3d.Model(text=self.TEXT))
+        numpy.testing.assert_allclose(study.eval([10, 2]), [20, 2], rtol=1e-12)
+        rows = study.eval([[10, 2], [-1, 2], [1, 4]])
+        numpy.testing.assert_allclose(rows[[0, 2]], [[20, 2], [8, 4]], rtol=1e-12)
+        self.assertTrue(numpy.isnan(rows[1]).all())
+        with self.assertRaises(se3d.ModelError) as caught:
+            study.eval([-1, 2])
+        self.assertIn("mass", str(caught.exception))
+        with self.assertRaises(ValueError):
+            study.eval([1, 2, 3])
+        with self.assertRaises(se3d.Error):
+            study.sample(6)
+
+    def test_derivatives(self):
+        nominal, slopes, names = se3d.Study(se3d.Model(text=self.TEXT)).sensitivities()
+        self.assertEqual(names, ("m", "v"))
+        numpy.testing.assert_allclose(nominal, [9, 3], rtol=1e-9)
+        numpy.testing.assert_allclose(slopes, [[4.5, 6], [0, 1]], atol=1e-6)
+
+    def test_stubs_say_what_there_is(self):
+        with open(os.path.join(os.path.dirname(se3d.__file__), "study.pyi"),
+                  encoding="utf-8") as file:
+            stubs = ast.parse(file.read())
+        stub = next(node for node in stubs.body if getattr(node, "name", "") == "Study")
+        told = {each.name: [a.arg for a in each.args.args + each.args.kwonlyargs]
+                for each in stub.body if isinstance(each, ast.FunctionDef)}
+        there = {name: list(inspect.signature(call).parameters)
+                 for name, call in vars(se3d.Study).items()
+                 if inspect.isfunction(call) and (not name.startswith("_") or name in told)}
+        self.assertEqual(told, there)
+        fields = next(node for node in stubs.body if getattr(node, "name", "") == "Samples").body
+        self.assertEqual(tuple(field.target.id for field in fields), se3d.Samples._fields)
+
+    def test_a_study_keeps_its_model_and_needs_one(self):
+        study = se3d.Study(se3d.Model(text=self.TEXT))
+        gc.collect()
+        self.assertAlmostEqual(study.eval([1, 2])[1], 2)
+        with self.assertRaises(se3d.ModelError):
+            se3d.Study(se3d.Model(text=Models.TEXT))
 
 
 if __name__ == "__main__":
