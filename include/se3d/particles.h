@@ -30,10 +30,11 @@ typedef enum se3d_domain_boundary {
 /* The definition of a set of particles. @since 0.1 */
 typedef struct se3d_particles_def {
     size_t struct_size;
-    int32_t threads;     /* 1: default; results do not depend on it */
-    int32_t portable;    /* not 0: kernels without vectors; the same bits, slower */
-    int32_t boundary[3]; /* se3d_domain_boundary along x, y, z */
-    int32_t reserved;
+    int32_t threads;           /* 1: default; results do not depend on it */
+    int32_t portable;          /* not 0: kernels without vectors; the same bits, slower */
+    int32_t boundary[3];       /* se3d_domain_boundary along x, y, z */
+    int32_t audit;             /* not 0: where energy goes is added up, see
+                          * se3d_particles_get_dissipation; steps take longer */
     double lower[3], upper[3]; /* of the domain [m]; if an open boundary has none: unbounded */
     double step;               /* [s]; 0: that of the system's contact settings */
     double skin;               /* of the neighbour list, over the mean diameter; default 0.1 */
@@ -470,6 +471,35 @@ typedef struct se3d_particles_energy {
  * se3d_particles_get_energy, and INVALID_ARGUMENT (size). @since 0.1 */
 SE3D_API se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
                                                      se3d_particles_energy *energy, size_t size);
+
+/* What contacts have turned to heat since the set was made, by kinds [J]: kinetic energy, potential
+ * energy of gravity, what contacts and bonds store and all that was dissipated change together by
+ * the work of walls. Springs of contacts that end hold what is dissipated then. @since 0.1 */
+typedef struct se3d_particles_dissipation {
+    double normal;     /* by damping along the normal, */
+    double tangential; /* sliding, */
+    double rolling;    /* rolling */
+    double torsion;    /* and torsional resistance; */
+    double bonds;      /* by bonds */
+    double elastic;    /* stored in contacts now [J] */
+    double wall_work;  /* of walls on particles [J] */
+} se3d_particles_dissipation;
+
+/* As se3d_particles_get_dissipation, told the size of *out in bytes. @return as
+ * se3d_particles_get_dissipation, and INVALID_ARGUMENT (size). @since 0.1 */
+SE3D_API se3d_status se3d_particles_get_dissipation_sized(const se3d_particles *particles,
+                                                          se3d_particles_dissipation *out,
+                                                          size_t size);
+
+/* Get what a set has dissipated; a law of contact of the user's own is not audited: steps then are
+ * UNSUPPORTED.
+ * @return OK, NULL, STATE (the set was made without `audit`).
+ * @since 0.1 */
+static inline se3d_status se3d_particles_get_dissipation(const se3d_particles *particles,
+                                                         se3d_particles_dissipation *out)
+{
+    return se3d_particles_get_dissipation_sized(particles, out, sizeof *out);
+}
 
 /* Get the energy of the particles of a set. @return OK, NULL, STATE (the system is gone),
  * CALLBACK, NOT_FINITE (functions of gravity). @since 0.1 */

@@ -142,6 +142,16 @@ static void code_passed(se3di_coder *c, se3di_particles *set)
     }
 }
 
+/* What contacts have taken of the energy. */
+static void code_audit(se3di_coder *c, se3di_particles *set)
+{
+    if (set->audits) {
+        se3di_code_numbers(c, set->audit_work, SE3DI_AUDIT_KINDS);
+        se3di_code_numbers(c, &set->wall_work, 1);
+        se3di_code_numbers(c, set->audit_power, SE3DI_AUDIT_KINDS + 1);
+    }
+}
+
 /* What servo walls have done. */
 static void code_servos(se3di_coder *c, se3di_particles *set)
 {
@@ -313,6 +323,13 @@ static void code_loads(se3di_coder *c, se3di_particles *set)
         se3di_code_numbers(c, set->origin + 3 * k, 3);
         se3di_code_numbers(c, se3di_particles_reach(set) + k, 1);
         se3di_code_numbers(c, se3di_particles_wear(set) + k, 1);
+        if (set->audits) {
+            se3di_code_numbers(c, set->audit[k].damping, 3);
+            se3di_code_numbers(c, set->audit[k].slide, 3);
+            se3di_code_numbers(c, set->audit[k].turn, 3);
+            se3di_code_numbers(c, set->audit[k].roll, 3);
+            se3di_code_numbers(c, set->audit[k].twist, 3);
+        }
     }
 }
 
@@ -446,6 +463,7 @@ static void write_set(se3di_coder *c, const se3di_particles *set)
     code_flow(c, &same);
     code_passed(c, &same);
     code_servos(c, &same);
+    code_audit(c, &same);
     code_cell(c, &same);
     code_bond_groups(c, &same);
     for (size_t k = 0; k < n.walls; ++k) {
@@ -617,6 +635,7 @@ static se3d_status read_set(se3di_coder *c, const se3di_model *model, se3di_part
     code_flow(c, set);
     code_passed(c, set);
     code_servos(c, set);
+    code_audit(c, set);
     code_cell(c, set);
     code_bond_groups(c, set);
     SE3DI_TRY(read_walls(c, set));

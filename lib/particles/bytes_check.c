@@ -63,6 +63,18 @@ static int are_servos(const se3di_particles *set)
     return good;
 }
 
+static int is_audit(const se3di_particles *set)
+{
+    int good = are_finite(set->audit_work, SE3DI_AUDIT_KINDS) && isfinite(set->wall_work) &&
+               are_finite(set->audit_power, SE3DI_AUDIT_KINDS + 1);
+    for (size_t k = 0; set->audits && set->list_valid && k < set->count; ++k) {
+        const se3di_audit_load *a = &set->audit[k];
+        good = good && are_finite(a->damping, 3) && are_finite(a->slide, 3) &&
+               are_finite(a->turn, 3) && are_finite(a->roll, 3) && are_finite(a->twist, 3);
+    }
+    return good;
+}
+
 static int is_map(const se3di_domain_map *map)
 {
     return are_finite(map->along, 3) && isfinite(map->shear);
@@ -348,6 +360,6 @@ static int are_bonds(se3di_particles *set)
 int se3di_particles_are_sound(se3di_particles *set)
 {
     return are_numbers(set) && are_particles(set) && are_clumps(set) && are_bonds(set) &&
-           are_sources(set) && are_flows(set) && are_servos(set) && is_cell(set) &&
+           are_sources(set) && are_flows(set) && are_servos(set) && is_audit(set) && is_cell(set) &&
            are_walls(set) && (set->list_valid ? are_lists(set) : is_history(set));
 }

@@ -26,7 +26,7 @@ typedef struct part {
     size_t bytes;
 } part;
 
-enum { PARTS_SLOW = 12, PARTS = 28 };
+enum { PARTS_SLOW = 12, PARTS = 29 };
 
 /* The arrays in use of a set: those that change with the lists, then the others. */
 static void list_parts(const se3di_particles *set, part parts[PARTS])
@@ -60,6 +60,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->sources, set->source_count * sizeof *set->sources},
         {set->sinks, set->sink_count * sizeof *set->sinks},
         {set->flows, set->flow_count * sizeof *set->flows},
+        {set->audit, set->audits ? set->count * sizeof *set->audit : 0},
         {set->servos, set->servo_count * sizeof *set->servos},
         {set->bonds, set->bond_count * sizeof *set->bonds},
         {set->bond_ends, set->bond_end_count * sizeof *set->bond_ends},
@@ -105,7 +106,8 @@ static size_t room_of(const se3di_particles *set)
            (set->mesh_capacity + set->mesh_old_capacity) * sizeof *set->mesh_pairs +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
            set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
-           set->servo_capacity * sizeof *set->servos + set->bond_capacity * sizeof *set->bonds +
+           set->servo_capacity * sizeof *set->servos + set->audit_capacity * sizeof *set->audit +
+           set->bond_capacity * sizeof *set->bonds +
            set->bond_end_capacity * sizeof *set->bond_ends +
            set->bond_group_capacity * sizeof *set->bond_groups;
 }
@@ -197,6 +199,8 @@ se3d_status se3di_particles_keep(se3di_particles *set)
     X(mesh_capacity)                                                                               \
     X(mesh_old)                                                                                    \
     X(mesh_old_capacity)                                                                           \
+    X(audit)                                                                                       \
+    X(audit_capacity)                                                                              \
     X(wall_sums)                                                                                   \
     X(wall_sum_capacity)
 

@@ -140,6 +140,7 @@ void se3di_particles_mesh_forces(se3di_particles *set, const se3di_slab *slab,
     }
     task->overlap = local.overlap;
     task->touching = local.touching;
+    memcpy(task->power, local.power, sizeof task->power);
     task->failure = local.failure;
 }
 

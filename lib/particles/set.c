@@ -71,6 +71,7 @@ void se3di_particles_destroy(se3di_particles *set)
     se3di_free(a, set->sources, set->source_capacity, sizeof *set->sources);
     se3di_free(a, set->sinks, set->sink_capacity, sizeof *set->sinks);
     se3di_free(a, set->flows, set->flow_capacity, sizeof *set->flows);
+    se3di_free(a, set->audit, set->audit_capacity, sizeof *set->audit);
     se3di_free(a, set->servos, set->servo_capacity, sizeof *set->servos);
     se3di_free(a, set->bonds, set->bond_capacity, sizeof *set->bonds);
     se3di_free(a, set->bond_ends, set->bond_end_capacity, sizeof *set->bond_ends);
@@ -107,7 +108,8 @@ size_t se3di_particles_memory(const se3di_particles *set)
            set->clump_of_capacity * sizeof *set->clump_of +
            set->wall_capacity * sizeof *set->walls + set->source_capacity * sizeof *set->sources +
            set->sink_capacity * sizeof *set->sinks + set->flow_capacity * sizeof *set->flows +
-           set->servo_capacity * sizeof *set->servos + set->bond_capacity * sizeof *set->bonds +
+           set->servo_capacity * sizeof *set->servos + set->audit_capacity * sizeof *set->audit +
+           set->bond_capacity * sizeof *set->bonds +
            set->bond_end_capacity * sizeof *set->bond_ends +
            set->bond_group_capacity * sizeof *set->bond_groups +
            sizeof(uint32_t) * (set->bond_place_capacity + set->bond_end_of_capacity) +
@@ -184,6 +186,22 @@ static se3d_status reserve_arrays(se3di_particles *set, size_t count)
     return SE3D_OK;
 }
 
+/* For as many particles and the partner of unused lanes. */
+static se3d_status reserve_audit(se3di_particles *set, size_t count)
+{
+    const size_t old = set->audit_capacity;
+    if (!set->audits || count < old) {
+        return SE3D_OK;
+    }
+    void *memory = set->audit;
+    const se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->audit_capacity,
+                                                   count + 1, sizeof *set->audit);
+    set->audit = memory;
+    SE3DI_TRY(status);
+    memset(set->audit + old, 0, (set->audit_capacity - old) * sizeof *set->audit);
+    return SE3D_OK;
+}
+
 se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
 {
     if (count >= SE3DI_CARRY_WALL) {
@@ -200,6 +218,7 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
         set->index_capacity = ids;
     }
     SE3DI_TRY(se3di_clumps_reserve(set, ids, 0));
+    SE3DI_TRY(reserve_audit(set, count > set->capacity ? count : set->capacity));
     SE3DI_TRY(se3di_particles_collect(set));
     SE3DI_TRY(se3di_particles_grow(set, &set->first, &set->first_capacity, count + 1));
     return count <= set->capacity ? SE3D_OK : reserve_arrays(set, count);
@@ -282,6 +301,7 @@ static se3d_status copy_arrays(const se3di_particles *from, se3di_particles *to)
         {&to->sources, from->sources, from->source_capacity, sizeof(se3di_source)},
         {&to->sinks, from->sinks, from->sink_capacity, sizeof(se3di_sink)},
         {&to->flows, from->flows, from->flow_capacity, sizeof(se3di_flow)},
+        {&to->audit, from->audit, from->audit_capacity, sizeof(se3di_audit_load)},
         {&to->servos, from->servos, from->servo_capacity, sizeof(se3di_servo)},
         {&to->bonds, from->bonds, from->bond_capacity, sizeof(se3di_bond)},
         {&to->bond_ends, from->bond_ends, from->bond_end_capacity, sizeof(se3di_bond_end)},

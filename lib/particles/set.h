@@ -64,6 +64,17 @@ typedef struct se3di_carry {
     double xi[3];
 } se3di_carry; /* of i, in a chain that starts at carry_first[i] */
 
+/* Of an audited set: what the contacts of a particle do to it, by kinds, without the springs along
+ * the normal; and its velocities before a kick. */
+typedef struct se3di_audit_load {
+    double damping[3], slide[3]; /* forces, */
+    double turn[3];              /* torques of `slide`, */
+    double roll[3], twist[3];    /* of rolling and torsional resistance */
+    double v[3], w[3];
+} se3di_audit_load;
+
+#define SE3DI_AUDIT_KINDS 4 /* normal damping, sliding, rolling, torsion */
+
 #define SE3DI_CARRY_WALL  0x80000000u
 #define SE3DI_LIST_ACTIVE 0x80000000u /* in entries of the list: nearer than `near` */
 
@@ -140,16 +151,17 @@ typedef struct se3di_law_failure {
 } se3di_law_failure;
 
 typedef struct se3di_slab {
-    uint32_t begin, end;           /* particles */
-    uint32_t pair_begin, pair_end; /* blocks */
-    uint32_t wall_begin, wall_end; /* blocks of walls */
-    uint32_t near_begin, near_end; /* candidates of walls */
-    size_t moved;                  /* springs that hold something */
-    uint32_t mesh_begin, mesh_end; /* pairs with meshes */
-    double overlap;                /* largest excess over what is allowed */
-    double fastest;                /* squared speed after the last motion, */
-    double hasty;                  /* the same over the squared small reach */
-    double virial[9];              /* of its pairs, in a cell that strains: force x branch */
+    uint32_t begin, end;                 /* particles */
+    uint32_t pair_begin, pair_end;       /* blocks */
+    uint32_t wall_begin, wall_end;       /* blocks of walls */
+    uint32_t near_begin, near_end;       /* candidates of walls */
+    size_t moved;                        /* springs that hold something */
+    uint32_t mesh_begin, mesh_end;       /* pairs with meshes */
+    double overlap;                      /* largest excess over what is allowed */
+    double fastest;                      /* squared speed after the last motion, */
+    double hasty;                        /* the same over the squared small reach */
+    double virial[9];                    /* of its pairs, in a cell that strains: force x branch */
+    double power[SE3DI_AUDIT_KINDS + 1]; /* of an audited set: as audit_power */
     uint64_t touching;
     se3di_law_failure failure;
     int32_t begun;  /* in this sweep somebody evaluates its forces, */
@@ -471,6 +483,14 @@ typedef struct se3di_particles {
     uint64_t steps_near; /* steps when they were made */
 
     /* what is told */
+    int32_t audits; /* it is told where the energy goes */
+    int32_t audits_reserved;
+    se3di_audit_load *audit; /* [capacity + 1] */
+    size_t audit_capacity;
+    double audit_work[SE3DI_AUDIT_KINDS];      /* taken by contacts so far, */
+    double wall_work;                          /* given by walls [J] */
+    double audit_power[SE3DI_AUDIT_KINDS + 1]; /* of the last forces on particles with the velocity
+                                                * of walls or images; [4]: of all [W] */
     uint64_t steps, rebuilds, refreshes, lost;
     uint64_t lost_of[SE3D_PARTICLES_TAGS];
     double home_low[3], home_high[3]; /* the box of all places where particles were added */
@@ -533,17 +553,19 @@ typedef struct se3di_force_task {
     uint32_t materials;
     uint32_t begin, end; /* blocks */
     int32_t law, periodic, uniform, cohesive;
-    double h;                   /* what the springs advance by */
-    double length[3], rate[3];  /* of the period and its inverse; 0: none */
-    const se3di_strain *strain; /* of a cell that strains; NULL: none */
-    double virial[9];           /* out: force x branch of its pairs, added to */
-    double limit;               /* allowed overlap over the smaller radius */
-    double overlap;             /* out: largest excess, starts at the caller's value */
-    uint64_t touching;          /* out: added to */
-    double *wall_sums;          /* walls: [walls * 6], added to */
-    double *exact;              /* the same without rounding; NULL: no; share.h */
-    const double *exact_steps;  /* [SE3DI_EXACT_PARTS] */
-    int32_t in_turn;            /* loads are added to i and j pair by pair */
+    double h;                            /* what the springs advance by */
+    double length[3], rate[3];           /* of the period and its inverse; 0: none */
+    const se3di_strain *strain;          /* of a cell that strains; NULL: none */
+    double virial[9];                    /* out: force x branch of its pairs, added to */
+    double limit;                        /* allowed overlap over the smaller radius */
+    double overlap;                      /* out: largest excess, starts at the caller's value */
+    uint64_t touching;                   /* out: added to */
+    double *wall_sums;                   /* walls: [walls * 6], added to */
+    double *exact;                       /* the same without rounding; NULL: no; share.h */
+    const double *exact_steps;           /* [SE3DI_EXACT_PARTS] */
+    se3di_audit_load *audit;             /* of an audited set, added to; NULL: no */
+    double power[SE3DI_AUDIT_KINDS + 1]; /* the same, out: added to */
+    int32_t in_turn;                     /* loads are added to i and j pair by pair */
     int32_t reserved;
     const se3di_stuff *stuffs; /* of a user-defined law, as the next three */
     se3d_contact_callback callback;

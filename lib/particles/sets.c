@@ -132,6 +132,19 @@ static se3d_status check_cell(const se3di_particles *set, se3di_error *error)
     return SE3D_OK;
 }
 
+static se3d_status check_audit(const se3di_particles *set, se3di_error *error)
+{
+    if (set->audits && set->law == SE3DI_LAW_CALLBACK) {
+        const char *of;
+        const char *name = set_name(set, &of);
+        return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
+                               "the particles%s%.80s are audited, but a law of the user's own does "
+                               "not tell what it stores",
+                               of, name);
+    }
+    return SE3D_OK;
+}
+
 /* What a set touches, where the model has it now. */
 static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3di_error *error)
 {
@@ -140,6 +153,7 @@ static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3
         return report(set, status, error);
     }
     SE3DI_TRY(check_cell(set, error));
+    SE3DI_TRY(check_audit(set, error));
     se3di_particles_move_walls(set, model->frames);
     se3di_particles_free_walls(set, NULL);
     return SE3D_OK;

@@ -222,6 +222,10 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .clumped = set->clump_count > 0 ? set : NULL,
         .strain = se3di_domain_strains(set) ? strain : NULL,
     };
+    if (set->audits) {
+        memset(set->audit, 0, (set->capacity + 1) * sizeof *set->audit);
+        task.audit = set->audit;
+    }
     if (se3di_share_is_spread(set)) {
         task.in_turn = 1;
         task.exact = set->share->sums;

@@ -13,6 +13,7 @@
 #include "base/floats.h"
 #include "base/threads.h"
 #include "math/larger.h"
+#include "particles/audit.h"
 #include "particles/bond.h"
 #include "particles/cell.h"
 #include "particles/clump.h"
@@ -197,7 +198,7 @@ static void pass_part(se3di_particles *set, size_t c, void *ctx)
     se3di_clumps_move(set, first, end, w->motion, &w->most[c].fastest, &w->most[c].hasty);
 }
 
-static void pass(se3di_particles *set, const se3di_particle_motion *motion)
+static void move_all(se3di_particles *set, const se3di_particle_motion *motion)
 {
     if (se3di_domain_strains(set)) {
         if (set->count > 0) {
@@ -212,6 +213,17 @@ static void pass(se3di_particles *set, const se3di_particle_motion *motion)
         most = hastier(most, work.most[c]);
     }
     note_motion(set, motion, most);
+}
+
+static void pass(se3di_particles *set, const se3di_particle_motion *motion)
+{
+    if (set->audits) {
+        se3di_audit_mark(set);
+    }
+    move_all(set, motion);
+    if (set->audits) {
+        se3di_audit_add(set, 0.5 * motion->kicks * motion->h);
+    }
 }
 
 void se3di_particles_kick(se3di_particles *set, double h)
@@ -284,6 +296,7 @@ static void evaluate_forces(const sweep *w, uint32_t s)
         se3di_particles_mesh_forces(set, slab, &task);
     }
     memcpy(slab->virial, task.virial, sizeof slab->virial);
+    memcpy(slab->power, task.power, sizeof slab->power);
     slab->overlap = task.overlap;
     slab->failure = task.failure;
     slab->touching = task.touching;
@@ -437,10 +450,14 @@ static void sweep_together(const sweep *w)
 #endif
 }
 
-static void sum_virial(se3di_particles *set)
+static void sum_slabs(se3di_particles *set)
 {
     double sum[9] = {0.0};
+    memset(set->audit_power, 0, sizeof set->audit_power);
     for (uint32_t s = 0; s < set->slab_count; ++s) {
+        for (int k = 0; k <= SE3DI_AUDIT_KINDS; ++k) {
+            set->audit_power[k] += set->slabs[s].power[k];
+        }
         for (int k = 0; k < 9; ++k) {
             sum[k] += set->slabs[s].virial[k];
         }
@@ -453,8 +470,9 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
 {
     static const se3di_particle_motion still = {0, 0.0, 0.0};
     /* clumps move when all of their spheres are done, cells when their stress is known, and bonds
-     * hold spheres of any slabs */
-    const int waits = set->clump_count > 0 || set->bond_count > 0 || se3di_domain_strains(set);
+     * hold spheres of any slabs; an audit needs the velocities before and after */
+    const int waits =
+        set->clump_count > 0 || set->bond_count > 0 || set->audits || se3di_domain_strains(set);
     const sweep w = {set, task, waits ? &still : motion};
     set->team = 1;
     for (uint32_t s = 0; s < set->slab_count; ++s) {
@@ -466,7 +484,7 @@ void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,
         sweep_share(&w, 0, 1);
     }
     if (waits) {
-        sum_virial(set);
+        sum_slabs(set);
         se3di_bonds_forces(set, task->h);
         if (motion->kicks > 0) {
             pass(set, motion);

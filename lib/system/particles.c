@@ -2,8 +2,10 @@
 /* Particles: creation, bulk access, stepping. */
 #include "system/particles.h"
 
+#include "base/sized.h"
 #include "force/force.h"
 #include "math/vec3.h"
+#include "particles/audit.h"
 #include "particles/chain.h"
 #include "particles/clump.h"
 #include "particles/energy.h"
@@ -86,6 +88,7 @@ se3d_status se3d_particles_create(se3d_system *system, const se3d_particles_def 
     particles->is_copy = particles->kept = 0;
     set->threads = full.threads;
     set->kernels = se3di_particle_kernels_choose(full.portable);
+    set->audits = full.audit != 0;
     memcpy(set->boundary, full.boundary, sizeof set->boundary);
     memcpy(set->lower, full.lower, sizeof set->lower);
     memcpy(set->upper, full.upper, sizeof set->upper);
@@ -545,6 +548,35 @@ se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
     SE3DI_TRY(se3di_particles_gravity(particles, g));
     const se3d_particles_energy full = se3di_particles_energy(&particles->set, g);
     return se3di_sized_give(energy, size, &full, sizeof full);
+}
+
+se3d_status se3d_particles_get_dissipation_sized(const se3d_particles *particles,
+                                                 se3d_particles_dissipation *out, size_t size)
+{
+    if (!particles || !out) {
+        return SE3D_ERR_NULL;
+    }
+    const se3di_particles *set = &particles->set;
+    if (!set->audits) {
+        return SE3D_ERR_STATE;
+    }
+    double elastic[SE3DI_AUDIT_KINDS];
+    se3di_audit_elastic(set, elastic);
+    se3d_particles_dissipation full = {.normal = set->audit_work[0],
+                                       .tangential = set->audit_work[1] - elastic[1],
+                                       .rolling = set->audit_work[2] - elastic[2],
+                                       .torsion = set->audit_work[3] - elastic[3],
+                                       .wall_work = set->wall_work};
+    for (int k = 0; k < SE3DI_AUDIT_KINDS; ++k) {
+        full.elastic += elastic[k];
+    }
+    for (size_t k = 0; k < set->bond_group_count; ++k) {
+        full.bonds += set->bond_groups[k].dissipated;
+    }
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        full.bonds += set->bonds[k].dissipated;
+    }
+    return se3di_sized_give(out, size, &full, sizeof full);
 }
 
 se3d_status se3d_particles_get_stats_sized(const se3d_particles *particles,

@@ -49,9 +49,9 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
                                      (uint32_t)set->cell.gradient};
             hash = add_words(hash, cell, 3);
         }
-        if (set->servo_count > 0) {
-            const uint32_t servos[] = {(uint32_t)set->servo_count, 1};
-            hash = add_words(hash, servos, 2);
+        if (set->servo_count > 0 || set->audits) {
+            const uint32_t more[] = {(uint32_t)set->servo_count, 1 + (uint32_t)set->audits};
+            hash = add_words(hash, more, 2);
         }
         if (set->bond_group_count > 0) {
             const uint32_t groups = (uint32_t)set->bond_group_count;

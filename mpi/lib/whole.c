@@ -35,6 +35,7 @@ static const char *refusal(const se3di_particles *set)
 {
     return set->clump_count > 0 || set->template_count > 0 ? "cannot be clumps"
            : set->flow_count > 0                           ? "cannot be counted by flows"
+           : set->audits                                   ? "cannot be audited"
            : set->servo_count > 0                          ? "cannot be pressed by servo walls"
            : set->cell.count > 0                           ? "cannot be in a cell that strains"
            : set->bond_end_count > 0                       ? "cannot be bonded, nor have been"

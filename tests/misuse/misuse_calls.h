@@ -835,6 +835,7 @@ static const row rows[] = {
     {"se3d_particles_get_contacts", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_step", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_time", particle_readers_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_dissipation", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_energy", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_stats", particle_readers_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_wrench", particle_readers_reject_misuse, "", NULL, NULL},

@@ -248,6 +248,10 @@ static se3d_status particle_readers_reject_misuse(arguments *a)
     CHECK(se3d_particles_get_step(p, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_time(NULL, x) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_time(p, NULL) == SE3D_ERR_NULL);
+    se3d_particles_dissipation lost;
+    CHECK(se3d_particles_get_dissipation(NULL, &lost) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_dissipation(p, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_dissipation(p, &lost) == SE3D_ERR_STATE);
     CHECK(se3d_particles_get_energy(NULL, &energy) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_energy(p, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_stats(NULL, &stats) == SE3D_ERR_NULL);

@@ -228,11 +228,15 @@ static se3d_status create_particles(world *w, const void *def)
     w->set = set ? set : w->set;
     return status;
 }
-static const field particles_fields[] = {
-    INTEGER(se3d_particles_def, threads),  INTEGER(se3d_particles_def, portable),
-    INTEGER(se3d_particles_def, boundary), NUMBERS(se3d_particles_def, lower),
-    NUMBERS(se3d_particles_def, upper),    NUMBERS(se3d_particles_def, step),
-    NUMBERS(se3d_particles_def, skin),     FIELDS_END};
+static const field particles_fields[] = {INTEGER(se3d_particles_def, threads),
+                                         INTEGER(se3d_particles_def, portable),
+                                         INTEGER(se3d_particles_def, boundary),
+                                         NUMBERS(se3d_particles_def, lower),
+                                         NUMBERS(se3d_particles_def, upper),
+                                         NUMBERS(se3d_particles_def, step),
+                                         NUMBERS(se3d_particles_def, skin),
+                                         INTEGER(se3d_particles_def, audit),
+                                         FIELDS_END};
 
 FILL_IN(se3d_fill_def, region)
 {

@@ -46,6 +46,7 @@ FILL(particles_get_bond_stats, se3d_bond_stats, p->w.particles, -1)
 FILL(particles_get_clump_template, se3d_clump_template_info, p->w.particles, 0)
 FILL(particles_get_contacts, se3d_particles_contact, p->particles, 1)
 FILL(particles_get_energy, se3d_particles_energy, p->w.particles)
+FILL(particles_get_dissipation, se3d_particles_dissipation, p->particles)
 FILL(particles_get_stats, se3d_particles_stats, p->w.particles)
 FILL(model_get_analysis, se3d_model_analysis, p->model, 0)
 FILL(model_get_output, se3d_model_output, p->model, 0)
@@ -89,6 +90,7 @@ static const filler fillers[] = {
     ROW(particles_get_clump_template, se3d_clump_template_info),
     ROW(particles_get_contacts, se3d_particles_contact),
     ROW(particles_get_energy, se3d_particles_energy),
+    ROW(particles_get_dissipation, se3d_particles_dissipation),
     ROW(particles_get_stats, se3d_particles_stats),
     ROW(model_get_analysis, se3d_model_analysis),
     ROW(model_get_output, se3d_model_output),
@@ -124,7 +126,9 @@ static void open_pair(place *p)
     stuff.stiffness = 1e4;
     CHECK(!se3d_system_create(NULL, &p->pair));
     CHECK(!se3d_material_create(p->pair, &stuff, &material));
-    CHECK(!se3d_particles_create(p->pair, NULL, &p->particles));
+    se3d_particles_def audited = se3d_particles_def_default();
+    audited.audit = 1;
+    CHECK(!se3d_particles_create(p->pair, &audited, &p->particles));
     CHECK(!se3d_particles_add(p->particles, material, 2, r, radius, NULL, NULL, NULL));
     CHECK(!se3d_particles_step(p->particles, 1));
 }

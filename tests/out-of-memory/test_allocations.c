@@ -506,6 +506,7 @@ static se3d_status make_cell(workshop *w)
         box.upper[k] = 1.0;
     }
     box.mask = 0;
+    box.audit = 1;
     stage.rate[0] = 0.5;
     se3d_status status = make_set(w, &box, &material, &set);
     status =

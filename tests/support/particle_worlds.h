@@ -77,12 +77,13 @@ static inline void particle_funnel(se3d_system *system, se3d_material material)
     CHECK(!se3d_shape_create_funnel(system, &def, &shape));
 }
 
-static inline se3d_particles *particle_set(se3d_system *system, int32_t threads, int periodic)
+static inline se3d_particles *particle_set(se3d_system *system, int32_t threads, int kind)
 {
     se3d_particles_def def = se3d_particles_def_default();
     se3d_particles *set = NULL;
     def.threads = threads;
-    for (int a = 0; a < 3 && periodic; ++a) {
+    def.audit = kind == PARTICLES_HEAP || kind == PARTICLES_MESH || kind == PARTICLES_CLUMPS;
+    for (int a = 0; a < 3 && kind == PARTICLES_PERIOD; ++a) {
         def.boundary[a] = a < 2 ? SE3D_DOMAIN_BOUNDARY_PERIODIC : SE3D_DOMAIN_BOUNDARY_OPEN;
         def.lower[a] = -0.1;
         def.upper[a] = a < 2 ? 0.1 : 2.0;
@@ -301,7 +302,7 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     } else {
         particle_plane(system, floor);
     }
-    se3d_particles *set = particle_set(system, threads, kind == PARTICLES_PERIOD);
+    se3d_particles *set = particle_set(system, threads, kind);
     const double low = kind == PARTICLES_MESH ? 0.11 : kind == PARTICLES_FUNNEL ? 0.2 : 0.0;
     const double high = kind == PARTICLES_MESH ? 0.18 : kind == PARTICLES_FUNNEL ? 0.28 : 0.1;
     se3d_fill_def fill = particle_fill(stone, low, high);
@@ -324,7 +325,7 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
         particle_bodies(system, floor);
     }
     if (kind == PARTICLES_TWO_SETS) {
-        set = particle_set(system, threads, 0);
+        set = particle_set(system, threads, kind);
         fill.material = floor;
         CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
     }

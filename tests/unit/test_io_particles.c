@@ -454,7 +454,7 @@ static void servo_walls_are_read_and_press(void)
 {
     static const char text[] =
         "se3d: 1\ngravity: [0, 0, 0]\n"
-        "materials: [{name: m, density: 1000, stiffness: 1e4}]\n"
+        "materials: [{name: m, density: 1000, stiffness: 1e4}]\ncontact: {audit: true}\n"
         "bodies: [{name: ground, shapes: [{type: plane, material: m}, {type: plane, name: top, "
         "normal: [0, 0, -1], position: [0, 0, 0.21], material: m}]}]\n"
         "particles: [{material: m, radius: 0.1, packing: random, count: 1, lower: [-0.1, -0.1, 0], "
@@ -464,7 +464,8 @@ static void servo_walls_are_read_and_press(void)
         "speed_max: 0.1, start: 0.1}]\n"
         "analysis: {type: dynamics, duration: 1}\n"
         "output: [{file: s.csv, every: 0.5, channels: [lid.position, lid.speed, lid.force, "
-        "lid.wanted, lid.work]}]\n";
+        "lid.wanted, lid.work, dissipation.total, dissipation.normal, dissipation.elastic, "
+        "dissipation.wall_work]}]\n";
     se3d_status status;
     se3d_model *model = run_model(text, results_folder(), &status);
     CHECK(status >= 0);
@@ -473,6 +474,10 @@ static void servo_walls_are_read_and_press(void)
     CHECK(channel(model, 0) > 0.01 && channel(model, 0) < 0.015);
     CHECK(channel(model, 1) > 0.0 && channel(model, 1) < 0.05);
     CHECK_NEAR(channel(model, 4), 0.5 * channel(model, 2) * (channel(model, 0) - 0.01), 2e-3);
+    CHECK(channel(model, 5) > 0.0);
+    CHECK_NEAR(channel(model, 6), channel(model, 5), 1e-15);
+    CHECK_NEAR(channel(model, 8), channel(model, 4), 1e-4);
+    CHECK_NEAR(channel(model, 5) + channel(model, 7), channel(model, 8), 1e-4);
     se3d_model_destroy(model);
 }
 
@@ -514,6 +519,9 @@ static const refusal refusals[] = {
     {CELL "cell: [{volume: x, rate: [1, 0, 0]}]\n", 5, {"volume[0] = 1, must be 0 beside"}},
     {CELL "cell: [{shear_gain: 1}]\n", 5, {"cell[0].shear_gain", "without `shear_stress`"}},
     {CELL "cell: [{shear_stress: 1, shear_rate: 1}]\n", 5, {"cell[0]", "beside shear_servo"}},
+    {WITH_SET "output: [{file: a.csv, channels: [dissipation.normal]}]\n",
+     4,
+     {"`dissipation.normal` is unknown", "audit: true"}},
     {"se3d: 1\nclumps: []\n", 2, {"clumps: needs `particles`"}},
     {WITH_SET "clumps: [{name: a}]\n", 4, {"clumps[0].spheres", "is missing"}},
     {WITH_SET "clumps: [{spheres: [{position: [0, 0, 0], radius: 1}]}]\n", 4, {"name: is missing"}},

@@ -161,6 +161,17 @@ static const quantity_name cell_names[] = {{"cell.length", SE3DI_CELL_LENGTH},
                                            {"cell.work", SE3DI_CELL_WORK},
                                            {NULL, SE3DI_STEPS}};
 
+static const quantity_name audit_names[] = {
+    {"dissipation.normal", SE3DI_DISSIPATION_NORMAL},
+    {"dissipation.tangential", SE3DI_DISSIPATION_TANGENTIAL},
+    {"dissipation.rolling", SE3DI_DISSIPATION_ROLLING},
+    {"dissipation.torsion", SE3DI_DISSIPATION_TORSION},
+    {"dissipation.bonds", SE3DI_DISSIPATION_BONDS},
+    {"dissipation.total", SE3DI_DISSIPATION_TOTAL},
+    {"dissipation.elastic", SE3DI_DISSIPATION_ELASTIC},
+    {"dissipation.wall_work", SE3DI_DISSIPATION_WALL_WORK},
+    {NULL, SE3DI_STEPS}};
+
 static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
                                           {"lost", SE3DI_SET_LOST},
                                           {"left", SE3DI_SET_LEFT},
@@ -385,17 +396,25 @@ static bool find_particles(const se3d_model *model, const char *name, se3di_chan
     return false;
 }
 
-/* There are some if the model has a `cell`. */
-static bool find_cell(const se3d_model *model, const char *name, se3di_channel *channel)
+/* Those of a model that has a `cell`, or an audit of its particles. */
+static bool find_among(const quantity_name *q, const se3d_model *model, const char *name,
+                       se3di_channel *channel)
 {
-    for (const quantity_name *q = cell_names; model->particles && q->name; ++q) {
-        if (model->particles->cell && strcmp(q->name, name) == 0) {
+    for (; q->name; ++q) {
+        if (strcmp(q->name, name) == 0) {
             channel->quantity = q->quantity;
             channel->particles = model->particles->set;
             return true;
         }
     }
     return false;
+}
+
+static bool find_cell(const se3d_model *model, const char *name, se3di_channel *channel)
+{
+    return model->particles &&
+           ((model->particles->cell && find_among(cell_names, model, name, channel)) ||
+            (model->particles->audit && find_among(audit_names, model, name, channel)));
 }
 
 static bool find_system(const char *name, se3di_channel *channel)
@@ -438,6 +457,14 @@ static bool explain_system(const char *head, const char *name, char *problem, si
                  "`%.60s.%.60s` is unknown, there are, with `cell`, cell.length, cell.strain, "
                  "cell.rate, cell.stress, cell.shear, cell.shear_strain, cell.shear_rate, "
                  "cell.offset, cell.volume, cell.solid_fraction, cell.kinetic, cell.work",
+                 head, name);
+        return true;
+    }
+    if (strcmp(head, "dissipation") == 0) {
+        snprintf(problem, size,
+                 "`%.60s.%.60s` is unknown, there are, with `contact: {audit: true}`, "
+                 "dissipation.normal, .tangential, .rolling, .torsion, .bonds, .total, .elastic, "
+                 ".wall_work",
                  head, name);
         return true;
     }

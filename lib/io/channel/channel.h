@@ -161,6 +161,14 @@
     X(CELL_SOLID_FRACTION, 1, CELL, 19, JUMPS, 0, 0, 0, 0)                                         \
     X(CELL_KINETIC, 1, CELL, 20, JUMPS, 2, 2, 1, 0)                                                \
     X(CELL_WORK, 1, CELL, 21, JUMPS, 2, 2, 1, 0)                                                   \
+    X(DISSIPATION_NORMAL, 1, DISSIPATION, 0, JUMPS, 2, 2, 1, 0)                                    \
+    X(DISSIPATION_TANGENTIAL, 1, DISSIPATION, 1, JUMPS, 2, 2, 1, 0)                                \
+    X(DISSIPATION_ROLLING, 1, DISSIPATION, 2, JUMPS, 2, 2, 1, 0)                                   \
+    X(DISSIPATION_TORSION, 1, DISSIPATION, 3, JUMPS, 2, 2, 1, 0)                                   \
+    X(DISSIPATION_BONDS, 1, DISSIPATION, 4, JUMPS, 2, 2, 1, 0)                                     \
+    X(DISSIPATION_TOTAL, 1, DISSIPATION, 5, JUMPS, 2, 2, 1, 0)                                     \
+    X(DISSIPATION_ELASTIC, 1, DISSIPATION, 6, SOLVED, 2, 2, 1, 0)                                  \
+    X(DISSIPATION_WALL_WORK, 1, DISSIPATION, 7, JUMPS, 2, 2, 1, 0)                                 \
     X(STEPS, 1, SOLVER, 0, JUMPS, 0, 0, 0, 0)                                                      \
     X(ITERATIONS, 1, SOLVER, 1, JUMPS, 0, 0, 0, 0)
 /* clang-format on */
@@ -204,6 +212,7 @@ typedef enum se3di_question {
     SE3DI_ASK_SINK,
     SE3DI_ASK_AVERAGE, /* of a region */
     SE3DI_ASK_PASSED,  /* of a flow */
+    SE3DI_ASK_DISSIPATION,
     SE3DI_ASK_CELL,
     SE3DI_ASK_SERVO,
     SE3DI_ASK_BONDS, /* of a group */

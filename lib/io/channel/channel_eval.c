@@ -276,6 +276,8 @@ static se3d_status ask(se3di_question question, const se3di_channel *c, se3di_sa
         return se3di_tagged_ask_average(c, numbers);
     case SE3DI_ASK_PASSED:
         return se3di_tagged_ask_passed(c, numbers);
+    case SE3DI_ASK_DISSIPATION:
+        return se3di_tagged_ask_dissipation(c, numbers);
     case SE3DI_ASK_SERVO:
         return se3di_tagged_ask_servo(c, numbers);
     case SE3DI_ASK_CELL:

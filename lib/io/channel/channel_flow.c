@@ -95,6 +95,23 @@ se3d_status se3di_tagged_ask_passed(const se3di_channel *c, double numbers[12])
     return status;
 }
 
+se3d_status se3di_tagged_ask_dissipation(const se3di_channel *c, double numbers[8])
+{
+    se3d_particles_dissipation d;
+    const se3d_status status = se3d_particles_get_dissipation(c->particles, &d);
+    if (status >= 0) {
+        numbers[0] = d.normal;
+        numbers[1] = d.tangential;
+        numbers[2] = d.rolling;
+        numbers[3] = d.torsion;
+        numbers[4] = d.bonds;
+        numbers[5] = d.normal + d.tangential + d.rolling + d.torsion + d.bonds;
+        numbers[6] = d.elastic;
+        numbers[7] = d.wall_work;
+    }
+    return status;
+}
+
 se3d_status se3di_tagged_ask_servo(const se3di_channel *c, double numbers[5])
 {
     se3d_servo_state servo;

@@ -34,6 +34,7 @@ typedef struct se3di_tagged {
     const char **bonds; /* names of the groups */
     size_t bond_count;
     bool cell;           /* the domain strains */
+    bool audit;          /* where energy goes is told */
     const char **clumps; /* names of the templates of clumps */
     size_t clump_count;
 } se3di_tagged;

@@ -44,6 +44,8 @@ static const se3di_key contact_keys[] = {
      .text = "corner of the domain [m]"},
     {"upper", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_particles_def, upper),
      .text = "corner of the domain [m]"},
+    {"audit", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_particles_def, audit), .standard = "false",
+     .text = "add up what particles dissipate, by kinds: the channels `dissipation`; slower"},
     {"pairs", SE3DI_KIND_LIST, .object = "pair",
      .text = "what holds between two materials in place of the mixing rules"},
     {.key = NULL}};

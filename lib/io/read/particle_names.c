@@ -13,7 +13,7 @@
 bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const char *name)
 {
     static const char words[] =
-        " particles contacts bonds cell energy violation work steps iterations ";
+        " particles contacts bonds cell dissipation energy violation work steps iterations ";
     const se3d_model *model = reader->model;
     if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
         se3di_ionames_find(&model->element_names, name, NULL) ||

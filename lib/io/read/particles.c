@@ -179,6 +179,7 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
     }
     def.threads = (int32_t)threads;
     def.name = "particles";
+    reader->model->particles->audit = def.audit != 0;
     const se3d_status status =
         se3d_particles_create(reader->system, &def, &reader->model->particles->set);
     return status < 0

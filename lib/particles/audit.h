@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* The energy that particles lose: what contacts turn to heat, by kinds. */
+#ifndef SE3DI_PARTICLES_AUDIT_H
+#define SE3DI_PARTICLES_AUDIT_H
+
+#include "particles/set.h"
+
+/* Before a kick: keep the velocities. */
+void se3di_audit_mark(se3di_particles *set);
+/* After it: add the work of the forces in a time of `span`. */
+void se3di_audit_add(se3di_particles *set, double span);
+/* What contacts store now, by kinds [J]. */
+void se3di_audit_elastic(const se3di_particles *set, double elastic[SE3DI_AUDIT_KINDS]);
+
+#endif
