@@ -304,6 +304,37 @@ static void compare_systems(case_of *c, se3di_tree_loops *loops)
     CHECK(!se3di_tree_loops_accelerate(loops, other));
 }
 
+static void solve_closed(case_of *c, se3di_tree_loops *loops, double *qddot)
+{
+    CHECK(!se3di_tree_factor(&c->tree, NULL));
+    CHECK(se3di_tree_loops_factor(loops) >= 0);
+    CHECK(se3di_tree_loops_accelerate(loops, qddot) >= 0);
+}
+
+/* Gravity as weights of the bodies, and as an acceleration of the ground: the same motion, with and
+ * without the KKT solver. */
+static void compare_pull(case_of *c, se3di_tree_loops *loops)
+{
+    static const double g[3] = {1.0, -9.0, 2.0};
+    double weight[6 * (TREE_BODIES_MAX + 1)] = {0.0}, weighed[6 * TREE_BODIES_MAX];
+    double pulled[6 * TREE_BODIES_MAX];
+    const int32_t is_there = loops->system.is_there;
+    for (size_t k = 0; k < 3 * c->model->body_slots.count; ++k) {
+        weight[k / 3 * 6 + k % 3] = c->model->bodies[k / 3].mass * g[k % 3];
+    }
+    se3di_tree_take_wrenches(&c->tree, c->model->frames, weight);
+    solve_closed(c, loops, weighed);
+    se3di_tree_pull(&c->tree, g);
+    for (int32_t k = is_there; k >= 0; --k) {
+        loops->system.is_there = k;
+        solve_closed(c, loops, pulled);
+        CHECK_NEAR(difference(weighed, pulled, c->tree.v_count) /
+                       (1.0 + largest(weighed, c->tree.v_count)),
+                   0.0, 1e-10);
+    }
+    loops->system.is_there = is_there;
+}
+
 /* The same state, both ways: the largest difference of accelerations, and that of multipliers, both
  * relative to the largest. Returns 0 where the constraints depend on each other. */
 static int compare_closed(case_of *c, double time, double *accelerations, double *multipliers)
@@ -332,6 +363,9 @@ static int compare_closed(case_of *c, double time, double *accelerations, double
     c->clear += loops.is_clear;
     c->loops += loops.row_count > 0;
     compare_systems(c, &loops);
+    compare_pull(c, &loops);
+    se3di_tree_take_wrenches(&c->tree, c->model->frames, wrench);
+    solve_closed(c, &loops, c->tree.qddot);
     se3di_tree_loops_add_wrenches(&loops, loops.lambda, c->tree.wrench);
     c->tree.core->transmit(&c->tree, c->tree.wrench, joint);
     memcpy(lambda, loops.lambda, rows * sizeof *lambda);
