@@ -68,6 +68,7 @@ static void point_into(se3di_bdf *m, const se3di_integration *integration, size_
                      .past = (se3di_bdf_past *)(void *)assembly->model->history,
                      .base = integration->work + before,
                      .iterations_max = ITERATIONS_CONTROLLED,
+                     .is_controlled = 1,
                      .tolerance = local_tolerance(integration->settings.tolerance)};
     m->accuracy = fmin(1e-13, fmax(1e-15, 1e-6 * m->tolerance));
     m->times = m->past->times;
@@ -641,6 +642,7 @@ static se3d_status step(se3di_integration *integration, double h)
     const int is_bdf = se3di_bdf_is_even(&m, order, h);
     m.h = h;
     m.iterations_max = ITERATIONS_STEP;
+    m.is_controlled = 0;
     if (is_bdf) {
         se3di_bdf_predict(&m, order);
     }

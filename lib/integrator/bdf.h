@@ -51,7 +51,7 @@ typedef struct se3di_bdf {
     double *relaxation;   /* [2 * unknowns + rows] */
     se3di_fastness fast;
     int32_t iterations_max;
-    int32_t reserved;
+    int32_t is_controlled; /* shorter steps find where contact begins */
 } se3di_bdf;
 
 /* ---- bdf_history.c ---- */

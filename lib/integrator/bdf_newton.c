@@ -213,7 +213,7 @@ static se3d_status predict_multipliers(se3di_bdf *m)
 se3d_status se3di_bdf_solve(se3di_bdf *m)
 {
     se3di_kkt *kkt = m->integration->newton.kkt;
-    se3di_contacts_begin(m->assembly->model, m->h, 1.0, 0);
+    se3di_contacts_begin(m->assembly->model, m->is_controlled ? 0.0 : m->h, 1.0, 0);
     SE3DI_TRY(se3di_assembly_eval_functions(m->assembly, m->t, m->equations->error));
     SE3DI_TRY(project_prediction(m));
     SE3DI_TRY(predict_multipliers(m));
