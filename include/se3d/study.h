@@ -106,9 +106,9 @@ SE3D_API se3d_status se3d_study_eval_nominal(se3d_study *study, double *measures
                                              se3d_model_error *error);
 
 /* Take the derivatives of all measures with respect to one parameter, where all parameters are as
- * in the model: of kinematics, inverse dynamics and equilibria by the implicit function theorem;
- * else by differences of runs, extrapolated to the step 0; of one side, where runs on the other one
- * fail. docs/theory/sensitivities.md
+ * in the model: of kinematics, inverse dynamics and equilibria by the implicit function theorem, of
+ * dynamics by explicit methods with the steps of one run; else by differences of runs, extrapolated
+ * to the step 0; of one side, where runs on the other one fail. docs/theory/sensitivities.md
  * @param[in] index         from 0, below se3d_study_count_sensitivities
  * @param[out] value        of the parameter, in SI units [SI] if it has a unit, else in those of
  *                          the file

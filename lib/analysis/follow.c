@@ -30,8 +30,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STATIC_STEPS 4    /* of equilibria */
-#define STATIC_LEFT  1e-6 /* of the first one, that the last one may be */
+#define STATIC_STEPS 4     /* of equilibria */
+#define STATIC_LEFT  1e-2  /* of the first one, that the last one may be, */
+#define ROUNDING     1e-11 /* and this of it [m, rad] */
 
 static se3d_status refuse(const se3di_run *run, se3d_status status, const char *why)
 {
@@ -64,25 +65,33 @@ static int are_alike(const se3di_model *a, const se3di_model *b)
 /* What is no smooth function of the data, or has a past. */
 static se3d_status check(const se3di_run *run, const se3di_run *from)
 {
-    const se3di_equations *equations = &from->equations;
     const se3di_model *model = from->model;
-    const int is_static = from->analysis == SE3D_ANALYSIS_EQUILIBRIUM;
-    if (run->analysis != from->analysis ||
-        !(is_static || se3di_analysis_is(from->analysis, SE3DI_ANALYSIS_IS_DRIVEN))) {
+    if (run->analysis != from->analysis || from->analysis == SE3D_ANALYSIS_ASSEMBLY) {
         return refuse(run, SE3D_ERR_UNSUPPORTED,
-                      "only kinematics, inverse dynamics and equilibria can be followed");
+                      "an assembly cannot be followed, nor another analysis");
     }
-    if (!from->prepared || !se3di_assembly_fits(&equations->assembly) ||
-        (!is_static && model->settled != SE3DI_SETTLED)) {
+    if (!from->prepared || !se3di_assembly_fits(&from->equations.assembly)) {
         return refuse(run, SE3D_ERR_STATE, "the other solver has not come to a solution");
     }
-    if (!are_alike(run->model, model) || run->formulation != from->formulation) {
+    if (!are_alike(run->model, model)) {
         return refuse(run, SE3D_ERR_STATE, "the systems have not the same structure");
     }
-    if (equations->assembly.formulation->block != 6 || equations->friction.count > 0 ||
-        model->left_out_count > 0 || model->sets || model->contacts.pair_count > 0) {
+    if (from->equations.friction.count > 0 || model->sets || model->contacts.pair_count > 0) {
         return refuse(run, SE3D_ERR_UNSUPPORTED,
-                      "friction, contacts, particles, broken joints and r-p cannot be followed");
+                      "friction, contacts and particles cannot be followed");
+    }
+    return SE3D_OK;
+}
+
+/* The same, of what no steps lead to. */
+static se3d_status check_solution(const se3di_run *run, const se3di_run *from)
+{
+    if (from->analysis != SE3D_ANALYSIS_EQUILIBRIUM && from->model->settled != SE3DI_SETTLED) {
+        return refuse(run, SE3D_ERR_STATE, "the other solver has not come to a solution");
+    }
+    if (from->equations.assembly.formulation->block != 6 || run->formulation != from->formulation ||
+        from->model->left_out_count > 0) {
+        return refuse(run, SE3D_ERR_UNSUPPORTED, "r-p and broken joints cannot be followed");
     }
     return SE3D_OK;
 }
@@ -264,7 +273,7 @@ static se3d_status follow_statics(se3di_run *run, se3di_static_newton *newton)
         SE3DI_TRY(follow_static(&run->equations, newton, &length));
         first = fmax(first, length);
     }
-    return length <= STATIC_LEFT * first + 1e-14
+    return length <= STATIC_LEFT * first + ROUNDING
                ? SE3D_OK
                : refuse(run, SE3D_ERR_NO_CONVERGENCE, "the equilibrium leaves a freedom");
 }
@@ -293,12 +302,36 @@ static se3d_status follow_equilibrium(se3di_run *run, se3di_run *from)
     return status;
 }
 
-se3d_status se3di_run_follow(se3di_run *run, se3di_run *from)
+/* ---- dynamics ---- */
+
+/* By the steps that the other run has made since others follow it. */
+static se3d_status follow_dynamics(se3di_run *run, se3di_run *from)
+{
+    if (!from->integration.method->explicit_class || from->integration.settings.step > 0.0) {
+        return refuse(run, SE3D_ERR_UNSUPPORTED,
+                      "of dynamics only explicit methods that choose their steps can be followed");
+    }
+    if (!from->integration.record && from->equations.counters.steps > 0) {
+        return refuse(run, SE3D_ERR_STATE, "the other run is to be followed from its beginning on");
+    }
+    from->integration.record = &from->steps;
+    run->integration.repeat = &from->steps;
+    run->shows_motion = from->shows_motion;
+    const se3d_status status = se3di_run_to(run, from->model->time);
+    run->integration.repeat = NULL;
+    return status >= 0 && run->integration.method != from->integration.method
+               ? refuse(run, SE3D_ERR_UNSUPPORTED, "the systems move by different methods")
+               : status;
+}
+
+/* ---- all ---- */
+
+static se3d_status follow_solution(se3di_run *run, se3di_run *from)
 {
     se3di_model *model = run->model;
     const double t = from->model->time;
     const int is_static = from->analysis == SE3D_ANALYSIS_EQUILIBRIUM;
-    SE3DI_TRY(check(run, from));
+    SE3DI_TRY(check_solution(run, from));
     SE3DI_TRY(se3di_run_prepare(run));
     if (se3di_integrals_reserve(model, t) < 0) {
         return refuse(run, SE3D_ERR_NO_MEMORY, "no memory for integrals of rates");
@@ -312,4 +345,11 @@ se3d_status se3di_run_follow(se3di_run *run, se3di_run *from)
         se3di_model_touch_state(model);
     }
     return SE3D_OK;
+}
+
+se3d_status se3di_run_follow(se3di_run *run, se3di_run *from)
+{
+    SE3DI_TRY(check(run, from));
+    return from->analysis == SE3D_ANALYSIS_DYNAMICS ? follow_dynamics(run, from)
+                                                    : follow_solution(run, from);
 }

@@ -38,6 +38,7 @@ typedef struct se3di_run {
     se3di_start_change start; /* of the last start that the user gave */
     int32_t told_redundant;   /* the log was told of these equations, */
     int32_t told_left_out;    /* and that rows that are left out are off */
+    se3di_step_list steps;    /* that others repeat (analysis/follow.h) */
     uint64_t followed_at;     /* factorisations there were when others followed this run, */
     double followed_time;     /* and where [s] (analysis/follow.h) */
     const se3di_integrator *told_reach;  /* the log was told what this method reaches, */

@@ -46,6 +46,7 @@ void se3di_run_destroy(se3di_run *run)
     se3di_events_destroy(&run->events);
     se3di_saved_destroy(&run->before, &run->model->allocator);
     se3di_saved_destroy(&run->integration.before_trials, &run->model->allocator);
+    se3di_free(&run->model->allocator, run->steps.ends, run->steps.capacity, sizeof(double));
 }
 
 /* Steps and failures allocate nothing. */

@@ -7,6 +7,7 @@
 #include "base/pending.h"
 #include "contact/bodies/pace.h"
 #include "integrator/motion.h"
+#include "integrator/step_list.h"
 #include "math/elementary.h"
 #include "math/larger.h"
 #include "math/vec3.h"
@@ -184,24 +185,32 @@ static se3d_status fail_small(se3di_explicit *m, double h)
     return status;
 }
 
+/* A step of h to t without control of its error; *error above 1: it leads to no number. */
+static se3d_status make_step(se3di_explicit *m, double t, double h, double *error)
+{
+    const double tolerance = m->tolerance;
+    m->tolerance = HUGE_VAL;
+    se3d_status status = attempt(m, h, error);
+    status = status < 0 ? status : prepare(m, h, error);
+    m->tolerance = tolerance;
+    if (status >= 0 && *error <= 1.0) {
+        accept(m, t);
+    }
+    return status;
+}
+
 /* If the accelerations jump, as under a driver or a load that is switched, no step is short
  * enough for a tight tolerance. One of the least length crosses the jump; what it makes of error is
  * the jump times h. If no ordinary step follows, it was no jump. */
 static se3d_status cross_jump(se3di_explicit *m, double h, double error)
 {
-    const double t = m->past->at.time + h, tolerance = m->tolerance;
-    if (!(error * tolerance < 1e-3) || m->past->forced >= FORCED_MAX) {
+    if (!(error * m->tolerance < 1e-3) || m->past->forced >= FORCED_MAX) {
         return fail_small(m, h);
     }
-    m->tolerance = HUGE_VAL; /* no error control */
-    se3d_status status = attempt(m, h, &error);
-    status = status < 0 ? status : prepare(m, h, &error);
-    m->tolerance = tolerance;
-    SE3DI_TRY(status);
-    if (!(error <= 1.0)) { /* nor is what it leads to a number */
+    SE3DI_TRY(make_step(m, m->past->at.time + h, h, &error));
+    if (!(error <= 1.0)) {
         return fail_small(m, h);
     }
-    accept(m, t);
     m->past->forced += 1.0;
     m->past->at.next = se3di_adaptive_limit(m->step.integration, 1e6 * h);
     m->past->at.error = 1e-2;
@@ -218,24 +227,6 @@ static double largest_growth(const se3di_explicit *m)
         largest = fmax(largest, se3di_norm(assembly->model->acceleration + 6 * body + 3));
     }
     return 2.0 * largest;
-}
-
-int se3di_explicit_is_held(const se3di_integration *integration)
-{
-    return se3di_explicit_past_of(integration->equations->assembly.model)->held >= SE3DI_HELD_MIN;
-}
-
-void se3di_explicit_count_sign(se3di_explicit *m, int is_held)
-{
-    double *held = &m->past->held, *free = &m->past->free;
-    if (is_held) {
-        *held += 1.0;
-        *free = 0.0;
-    } else if (*held > 0.0) {
-        *free += 1.0;
-        *held = *free < SE3DI_FREE_MIN ? *held : 0.0;
-        *free = *free < SE3DI_FREE_MIN ? *free : 0.0;
-    }
 }
 
 /* The run is to end at the forward state. */
@@ -300,6 +291,15 @@ static se3d_status catch_up(se3di_explicit *m)
     return SE3D_OK;
 }
 
+/* The next step of a list, without control of its error. */
+static se3d_status repeat(se3di_explicit *m)
+{
+    double h = 0.0, error = 0.0;
+    SE3DI_TRY(se3di_step_list_next(m->step.integration, m->past->at.time, &h, &m->step.t));
+    SE3DI_TRY(h > 0.0 ? make_step(m, m->step.t, h, &error) : SE3D_OK);
+    return error <= 1.0 ? SE3D_OK : se3di_step_list_fail(m->step.integration);
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
@@ -316,7 +316,11 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
     se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
     se3di_angles_accept(model); /* turns count from step to step, not from an output */
-    return se3di_adaptive_advance(&m->step, t_end);
+    if (m->step.integration->repeat) {
+        return repeat(m);
+    }
+    SE3DI_TRY(se3di_adaptive_advance(&m->step, t_end));
+    return se3di_step_list_note(m->step.integration, m->past->at.time);
 }
 
 /* The forward state is the model's own; its derivative remains to be found. `stands`: y_1 is it. */

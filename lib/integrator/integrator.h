@@ -100,6 +100,12 @@ typedef struct se3di_integrator {
     int32_t reserved;
 } se3di_integrator;
 
+/* The ends of accepted steps [s]. */
+typedef struct se3di_step_list {
+    double *ends;
+    size_t count, capacity;
+} se3di_step_list;
+
 struct se3di_integration {
     const se3di_integrator *method;
     se3di_equations *equations;
@@ -117,6 +123,9 @@ struct se3di_integration {
     int32_t is_moved;            /* for `renew`: the state was settled since the last step */
     int32_t may_wait; /* nobody reads the accelerations that the step under way ends with at once */
     int32_t owes;     /* the evaluation that the last step has left is not counted yet */
+    se3di_step_list *record; /* of explicit methods: every step is noted here; NULL: none is */
+    const se3di_step_list *repeat; /* and these are made, whatever their errors; NULL: own ones */
+    size_t repeated;               /* how many of them are over */
     int32_t reserved;
 };
 

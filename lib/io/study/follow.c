@@ -7,14 +7,17 @@
  * differentiate.c. docs/theory/sensitivities.md */
 #include "io/study/follow.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "io/channel/event.h"
 #include "io/channel/sample.h"
+#include "io/run/watch.h"
 #include "io/study/trial.h"
 
 enum { LEVELS = 5, FOLLOWERS = 2 * LEVELS };
-#define SHARE 0.25 /* of the first step of differences of runs */
+#define SHARE 0.5 /* of the first step of differences of runs */
 
 typedef struct follower {
     se3di_trial trial;
@@ -28,20 +31,19 @@ typedef struct followers {
     follower of[FOLLOWERS];
     size_t count;
     bool has_failed;
+    se3d_model_error error; /* of any of them: told to nobody */
 } followers;
 
-/* Whether rows are all that the measures are made of, and a state all that rows are. */
+/* Whether rows are all that the measures are made of, and what leads to them can be followed. */
 static bool is_followable(const se3d_study *study)
 {
     const se3d_model *model = study->model;
-    const se3di_analysis_entry *entry = &model->analyses[study->analysis];
-    const int32_t kind = entry->solver.analysis;
-    bool good = study->analysis == 0 && !entry->modes.file && !model->particles &&
-                model->event_count == 0 && model->guest_count == 0 &&
-                (kind == SE3D_ANALYSIS_KINEMATICS || kind == SE3D_ANALYSIS_INVERSE_DYNAMICS ||
-                 kind == SE3D_ANALYSIS_EQUILIBRIUM);
-    for (size_t k = 0; k < study->entry->measure_count && good; ++k) {
-        good = !study->entry->measures[k].event;
+    bool good = !model->particles && model->guest_count == 0;
+    for (size_t k = 0; k <= study->analysis && good; ++k) {
+        good = !model->analyses[k].modes.file;
+    }
+    for (size_t k = 0; k < model->event_count && good; ++k) {
+        good = model->events[k].action == SE3D_EVENT_RECORD;
     }
     return good;
 }
@@ -57,13 +59,54 @@ static void destroy(followers *all)
     }
 }
 
+static se3d_status pass_row(void *ctx, const double *row)
+{
+    (void)ctx;
+    (void)row;
+    return SE3D_OK;
+}
+
+/* Through the analyses before that which is measured, to where it begins. */
+static se3d_status begin(se3di_trial *t)
+{
+    const size_t index = t->study->analysis;
+    const double start = t->model->analyses[index].analysis.start;
+    const se3d_run_options how = se3d_run_options_default();
+    const se3di_output_entry nothing = {.set = -1};
+    if (index > 0) {
+        const se3di_watch watch = {.output = &nothing, .analysis = index - 1, .take = pass_row};
+        const se3d_status status = se3di_model_watch(t->model, &watch, &how, t->error);
+        if (status < 0) {
+            return status;
+        }
+    }
+    return isnan(start) ? SE3D_OK : se3d_system_set_time(t->model->system, start);
+}
+
+/* The solver of what is measured, as a run of the model has it. */
+static se3d_status create_solver(follower *one)
+{
+    se3di_trial *t = &one->trial;
+    const se3di_analysis_entry *entry = &t->model->analyses[t->study->analysis];
+    se3d_solver_def def = entry->solver;
+    double start = 0.0;
+    se3d_system_get_time(t->model->system, &start);
+    const double end = start + entry->analysis.duration;
+    def.horizon = fabs(end) > 0.0 ? end : DBL_MIN;
+    const se3d_status status = se3d_solver_create(t->model->system, &def, &one->solver);
+    return status >= 0 && se3di_analysis_has_motion(entry)
+               ? se3di_events_create(t->model, one->solver, se3di_trial_take_event, t)
+               : status;
+}
+
 /* Its channels, tallies and solver. */
 static se3d_status prepare(follower *one)
 {
     se3di_trial *t = &one->trial;
     const se3d_study *study = t->study;
-    const se3d_solver_def *def = &t->model->analyses[0].solver;
-    const se3d_status status = se3di_trial_find_channels(t, &one->output);
+    se3di_trial_sharpen(t);
+    se3d_status status = begin(t);
+    status = status < 0 ? status : se3di_trial_find_channels(t, &one->output);
     size_t columns = 1;
     if (status < 0) {
         return status;
@@ -77,23 +120,23 @@ static se3d_status prepare(follower *one)
         return SE3D_ERR_NO_MEMORY;
     }
     se3di_trial_begin(t);
-    return se3d_solver_create(t->model->system, def, &one->solver);
+    return create_solver(one);
 }
 
 /* A model with the parameter at p + shift. */
 static se3d_status add(followers *all, se3d_study *study, const se3di_study_point *point,
-                       double shift, se3d_model_error *error)
+                       double shift)
 {
     follower *one = &all->of[all->count++];
     double *value = &point->values[point->which].value.v[0];
     const double p = *value;
     memset(one, 0, sizeof *one);
     one->trial.study = study;
-    one->trial.error = error;
+    one->trial.error = &all->error;
     se3di_iopool_init(&one->trial.pool, &study->pool.allocator);
     *value = p + shift;
     se3d_status status =
-        se3di_study_read(study, point->values, point->count, &one->trial.model, error);
+        se3di_study_read(study, point->values, point->count, &one->trial.model, &all->error);
     *value = p;
     if (one->trial.model) {
         se3di_sample_init(&one->sample, one->trial.model->system,
@@ -110,12 +153,11 @@ static bool is_within(const se3di_study_point *point, double h)
 
 static se3d_status create(followers *all, se3d_study *study, const se3di_study_point *point)
 {
-    se3d_model_error error;
     double h = se3di_study_first_step(point);
     se3d_status status = is_within(point, h) ? SE3D_OK : SE3D_ERR_UNSUPPORTED;
     for (size_t k = 0; k < LEVELS && status >= 0; ++k, h *= 0.5) {
-        status = add(all, study, point, -h, &error);
-        status = status < 0 ? status : add(all, study, point, h, &error);
+        status = add(all, study, point, -h);
+        status = status < 0 ? status : add(all, study, point, h);
     }
     return status;
 }

@@ -97,7 +97,7 @@ static se3d_status reach(void *ctx, se3d_solver *solver, double time)
     return t->listener->reach(t->listener->ctx, solver, time);
 }
 
-static se3d_status take_event(void *ctx, se3d_system *system, const se3d_event_record *record)
+se3d_status se3di_trial_take_event(void *ctx, se3d_system *system, const se3d_event_record *record)
 {
     const trial *t = ctx;
     const se3d_study *study = t->study;
@@ -239,7 +239,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
                                .analysis = study->analysis,
                                .take = take_row,
                                .reach = t->listener ? reach : NULL,
-                               .event = take_event,
+                               .event = se3di_trial_take_event,
                                .mode = take_mode,
                                .ctx = t};
     status = se3di_model_watch(t->model, &watch, &how, t->error);

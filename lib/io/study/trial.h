@@ -22,6 +22,8 @@ se3d_status se3di_trial_find_channels(se3di_trial *t, se3di_output_entry *output
 void se3di_trial_begin(se3di_trial *t);
 /* Take a row: the time, then the numbers of the channels. @return OK, NO_MEMORY */
 se3d_status se3di_trial_take_row(se3di_trial *t, const double *row);
+/* Take what is measured at an event; ctx: the trial. */
+se3d_status se3di_trial_take_event(void *ctx, se3d_system *system, const se3d_event_record *record);
 /* All measures at the end of the run, NaN: none. @return OK, NOT_FINITE, NO_MEMORY */
 se3d_status se3di_trial_conclude(se3di_trial *t, double *measures);
 /* Let methods of high order hold their errors near rounding, if the study wants it. */
