@@ -129,7 +129,7 @@ static void a_study_survives_every_failed_allocation(void)
 static const char still[] =
     "se3d: 1\nparameters: {h: 1}\n"
     "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
-    "analysis: {type: assembly}\n"
+    "analysis: {type: dynamics, duration: 0.01}\n"
     "study: {sensitivities: [h], measures: {z: {final: block.position.z}}}\n";
 
 static attempt differentiate_once(size_t k, int for_ever)

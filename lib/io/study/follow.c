@@ -235,6 +235,7 @@ se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point
     const se3di_row_listener listener = {.reach = take_rows, .ctx = &all};
     se3di_study_point near = *point;
     *done = false;
+    memset(error, 0, sizeof *error);
     if (!is_followable(study)) {
         return SE3D_OK;
     }

@@ -106,6 +106,9 @@ static se3d_status differentiate(se3d_study *study, size_t index, double *deriva
     bool followed;
     se3d_status status =
         se3di_study_follow(study, &point, study->measures, derivatives, errors, &followed, error);
+    if (status < 0 && error->message[0] == '\0') {
+        return fail(study, error, status, se3d_status_get_text(status));
+    }
     if (status < 0 || followed) {
         return status;
     }
