@@ -66,6 +66,19 @@ static se3d_status pass_row(void *ctx, const double *row)
     return SE3D_OK;
 }
 
+/* Whether rows are at the times of the model of the study. */
+static bool has_same_times(const se3di_trial *t)
+{
+    bool same = true;
+    for (size_t k = 0; k <= t->study->analysis; ++k) {
+        const se3d_model_analysis *a = &t->model->analyses[k].analysis;
+        const se3d_model_analysis *b = &t->study->model->analyses[k].analysis;
+        same = same && !(fabs(a->duration - b->duration) > 0.0) &&
+               (isnan(a->start) ? isnan(b->start) : !(fabs(a->start - b->start) > 0.0));
+    }
+    return same;
+}
+
 /* Through the analyses before that which is measured, to where it begins. */
 static se3d_status begin(se3di_trial *t)
 {
@@ -104,6 +117,9 @@ static se3d_status prepare(follower *one)
 {
     se3di_trial *t = &one->trial;
     const se3d_study *study = t->study;
+    if (!has_same_times(t)) {
+        return SE3D_ERR_UNSUPPORTED;
+    }
     se3di_trial_sharpen(t);
     se3d_status status = begin(t);
     status = status < 0 ? status : se3di_trial_find_channels(t, &one->output);
