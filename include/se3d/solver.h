@@ -139,9 +139,10 @@ SE3D_API se3d_status se3d_solver_set_shown(se3d_solver *solver, int32_t shown);
  * systems have the same bodies, constraints and forces, with other masses, points or values. States
  * that follow so have the derivatives with respect to these data of the exact solutions (implicit
  * function theorem); the solutions themselves they approach as the data do. Kinematics, inverse
- * dynamics (but works, which become NaN), and equilibria, in r-omega, without friction, contacts and
- * particles. Dynamics by explicit methods that choose their steps is moved to the present time of `from` by
- * the steps of that run, which is followed from its first state on. docs/theory/sensitivities.md
+ * dynamics (but works, which become NaN), and equilibria, in r-omega, without friction, contacts
+ * and particles. Dynamics by explicit methods that choose their steps is moved to the present time
+ * of `from` by the steps of that run, which is followed from its first state on.
+ * docs/theory/sensitivities.md
  * @param[in] from  a solver of the same analysis that has come to a solution, of another system,
  *                  which stays as it is
  * @return OK, NULL, INVALID_ARGUMENT (the same system), STATE (a system is gone, `from` has no

@@ -200,6 +200,27 @@ static void of_a_period(void)
     close_study(s);
 }
 
+/* A body comes back from a stop at 0.5 m with half of its speed, after a time t_c that does not
+ * depend on it: x = 0.75 m - v (T - t_c) / 2. When it comes depends on v. */
+static void of_an_impact(void)
+{
+    const opened s = open_study(
+        "se3d: 1\nparameters: {v: 1}\ngravity: [0, 0, 0]\n"
+        "bodies: [{name: b, mass: 2, inertia: [1, 1, 1], position: [0, 0, 0], velocity: [v, 0, "
+        "0]}]\n"
+        "joints: [{name: rail, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], "
+        "axis: [1, 0, 0]}]\n"
+        "forces: [{name: s, type: stop, joint: rail, upper: 0.5, k: 2e4, restitution: 0.5}]\n"
+        "analysis: {type: dynamics, duration: 0.7}\n"
+        "study: {sensitivities: [v], measures: {x: {final: b.position.x}, u: {final: "
+        "b.velocity.x}}}\n");
+    double y[2];
+    CHECK(se3d_study_eval_nominal(s.study, y, NULL) == SE3D_OK);
+    const double wanted[] = {y[0] - 0.75, -0.5};
+    check_derivatives(s, 0, wanted, 1e-8);
+    close_study(s);
+}
+
 /* |p - 1| at p = 1: there is no derivative, and the estimate says so. */
 static void a_corner_is_told(void)
 {
@@ -283,6 +304,7 @@ int main(void)
     RUN(of_modes);
     RUN(of_a_four_bar);
     RUN(of_a_period);
+    RUN(of_an_impact);
     RUN(a_corner_is_told);
     RUN(one_side_is_enough);
     RUN(bounds_are_kept);

@@ -17,7 +17,9 @@
 #include "io/study/trial.h"
 
 enum { LEVELS = 5, FOLLOWERS = 2 * LEVELS };
-#define SHARE 0.5 /* of the first step of differences of runs */
+#define SHARE 0.5  /* of the first step of differences of runs */
+#define ROUGH 1e-6 /* error of the derivative of what is not smooth, */
+#define FINE  1e-3 /* or of this part of what changes it by itself in a step */
 
 typedef struct follower {
     se3di_trial trial;
@@ -233,14 +235,17 @@ static se3d_status conclude(followers *all, se3d_study *study, const se3di_study
     return se3di_study_differentiate(study, &known, centre, derivatives, errors);
 }
 
-/* Steps on one side of a measure's end may be too few. */
-static bool is_complete(const se3d_study *study, const double *measures, const double *derivatives)
+/* Whether there is a derivative of each measure, which is no corner: forces that jump within a step
+ * are told better by runs with steps of their own. */
+static bool is_good(const se3d_study *study, double step, const double *measures,
+                    const double *derivatives, const double *errors)
 {
-    bool complete = true;
+    bool good = true;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
-        complete = complete && (isfinite(derivatives[k]) || !isfinite(measures[k]));
+        const double most = ROUGH * (fabs(derivatives[k]) + FINE * fabs(measures[k]) / step);
+        good = good && (!isfinite(measures[k]) || errors[k] <= most + DBL_MIN);
     }
-    return complete;
+    return good;
 }
 
 se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point, double *measures,
@@ -264,9 +269,14 @@ se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point
         *done = !all.has_failed && (status >= 0 || status == SE3D_ERR_NOT_FINITE);
     }
     if (*done) {
-        const se3d_status told = conclude(&all, study, &near, measures, derivatives, errors);
+        double *own =
+            se3di_iopool_array(&all.of[0].trial.pool, study->entry->measure_count, sizeof *own);
+        double *const estimates = errors ? errors : own;
+        const se3d_status told =
+            own ? conclude(&all, study, &near, measures, derivatives, estimates)
+                : SE3D_ERR_NO_MEMORY;
         status = told < 0 ? told : status;
-        *done = told < 0 || is_complete(study, measures, derivatives);
+        *done = told < 0 || is_good(study, near.step, measures, derivatives, estimates);
     }
     destroy(&all);
     return *done || status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ? status
