@@ -74,7 +74,7 @@ static void summaries_are_those_of_the_motion(void)
     se3d_model_error error = {0};
     se3d_run *run = NULL;
     se3d_run_options how = se3d_run_options_default();
-    se3d_run_summary s[3];
+    se3d_run_summary s[4];
     const char *build = getenv("SE3D_BUILD_DIR");
     snprintf(folder, sizeof folder, "%s/expressions", build ? build : "/tmp");
     how.directory = folder;
@@ -82,12 +82,14 @@ static void summaries_are_those_of_the_motion(void)
         BALL "events:\n  - {name: level, channel: \"ball.position.z + ball.position.x\", value: "
              "5.8, direction: rising}\n"
              "output:\n  - summary: s.csv\n    channels: [ball.position.z, {shift: ball.position.x "
-             "- 1}, {one: 1 + 0*ball.position.x}]\n");
+             "- 1}, {one: 1 + 0*ball.position.x}]\n"
+             "  - {summary: w.csv, every: 0.1, start: 0.2, stop: 0.6, channels: [{shift: "
+             "ball.position.x - 1}]}\n");
     CHECK(se3d_model_run(model, &how, &run, &error) >= 0);
-    CHECK(se3d_run_count_summaries(run) == 3);
-    for (size_t k = 0; k < 3; ++k) {
+    CHECK(se3d_run_count_summaries(run) == 4);
+    for (size_t k = 0; k < 4; ++k) {
         CHECK(!se3d_run_get_summary(run, k, &s[k]));
-        CHECK(strcmp(s[k].file, "s.csv") == 0);
+        CHECK(strcmp(s[k].file, k < 3 ? "s.csv" : "w.csv") == 0);
     }
     const double h2 = 1e-4;
     CHECK(strcmp(s[0].channel, "ball.position.z") == 0);
@@ -102,6 +104,10 @@ static void summaries_are_those_of_the_motion(void)
     CHECK_NEAR(s[1].rms, sqrt(3.0), 1e-12); /* of 3 t */
     CHECK_NEAR(s[1].integral, 1.5, 1e-12);
     CHECK_NEAR(s[2].rms, 1.0, 1e-15);
+    CHECK_NEAR(s[3].mean, 3.0 * 0.4, 1e-12); /* of 3 t from 0.2 to 0.6 */
+    CHECK_NEAR(s[3].integral, 3.0 * 0.4 * 0.4, 1e-12);
+    CHECK_NEAR(s[3].min_time, 0.2, 1e-15);
+    CHECK_NEAR(s[3].last, 3.0 * 0.6, 1e-12);
     se3d_run_event event;
     CHECK(se3d_run_count_events(run) == 1 && !se3d_run_get_event(run, 0, &event));
     CHECK_NEAR(event.time, 0.7 - sqrt(0.49 - 0.36), 1e-9); /* 4 + 7 t - 5 t^2 = 5.8 */

@@ -57,7 +57,11 @@ static const se3di_key output_keys[] = {
     {"fields", SE3DI_KIND_OBJECT, .object = "fields", .types = " vtk ",
      .text = "density, velocity, temperature and stress of the particles on a grid, too"},
     {"summary", SE3DI_KIND_FILE, .types = " summary ",
-     .text = "minimum, maximum, mean, rms and integral of each channel over all rows, as CSV"},
+     .text = "minimum, maximum, mean, rms and integral of each channel over the rows, as CSV"},
+    {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, start), .types = " summary ",
+     .standard = "the first row", .text = "rows from this time on count [s]"},
+    {"stop", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, stop), .types = " summary ",
+     .standard = "the last row", .text = "rows up to this time count [s]"},
     {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
      .text = "SVG, PNG and the script .gp, as [se3d plot](../plots.md)"},
     {"from", SE3DI_KIND_TEXT, .types = " plot ", .standard = "the first with channels",
@@ -346,6 +350,15 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
     return true;
 }
 
+/* A summary has some time to be of. */
+static bool check_window(se3di_reader *reader, const se3di_node *node,
+                         const se3di_output_entry *output)
+{
+    return output->stop > output->start ||
+           se3di_reader_fail_key(reader, node, "stop", "is %g s, must be after `start`, %g s",
+                                 output->stop, output->start);
+}
+
 static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
 {
     se3d_model *model = reader->model;
@@ -353,11 +366,14 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     const se3di_node *file = se3di_node_get(node, output_types[kind]);
     output->vtk = kind == KIND_VTK;
     output->summary = kind == KIND_SUMMARY;
+    output->start = -HUGE_VAL;
+    output->stop = HUGE_VAL;
     output->node = node;
     if (!read_file_name(reader, file, kind, &output->file) ||
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
                            output) ||
-        !read_snapshots(reader, node, output) || !read_contacts(reader, node, output) ||
+        !check_window(reader, node, output) || !read_snapshots(reader, node, output) ||
+        !read_contacts(reader, node, output) ||
         !se3di_read_field_grid(reader, node, &output->grid) ||
         !check_kind_of_rows(reader, node, output) ||
         (!output->particles && !output->contacts && !output->vtk &&

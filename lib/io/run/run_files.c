@@ -271,7 +271,10 @@ se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double 
         row += width;
     }
     if (file->summary) {
-        se3di_summary_add(file->summary, time, file->row + 1);
+        const double late = time * (1.0 + 1e-12), early = time * (1.0 - 1e-12);
+        if (late >= file->entry->start && early <= file->entry->stop) {
+            se3di_summary_add(file->summary, time, file->row + 1);
+        }
         return SE3D_OK;
     }
     if (r->watch) {
