@@ -17,6 +17,11 @@ refuses() {
 
 { cat "$column" && echo 'flows: [{name: f, point: [0, 0, 0.01], normal: [0, 0, 1]}]'; } >"$dir/refused.yaml"
 refuses flows
+sed 's/^contact: {/contact: {audit: true, /' "$column" >"$dir/refused.yaml"
+refuses audited
+cp "$source/examples/models/oedometer.yaml" "$dir/refused.yaml"
+sed -i 's/, audit: true//; s/dissipation.[a-z]*, //g' "$dir/refused.yaml"
+refuses 'servo walls'
 {
     sed 's/radius: \[[^]]*\], packing: lattice, jitter: [^,]*/clump: two, packing: lattice/' "$column"
     echo 'clumps: [{name: two, spheres: [{position: [0, 0, 0], radius: 0.002}, {position: [0.002, 0, 0], radius: 0.002}]}]'
