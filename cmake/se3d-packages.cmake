@@ -75,6 +75,11 @@ if(SE3D_DEBIAN)
          "${se3d_deb_runtime}: maintscript-calls-ldconfig *\n")
     install(FILES "${PROJECT_BINARY_DIR}/debian/overrides/${se3d_deb_runtime}"
             DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides" COMPONENT runtime)
+    # Units run on machines without libyaml.
+    file(WRITE "${PROJECT_BINARY_DIR}/debian/overrides/${se3d_deb_program}"
+         "${se3d_deb_program}: embedded-library libyaml *se3d_fmu.so*\n")
+    install(FILES "${PROJECT_BINARY_DIR}/debian/overrides/${se3d_deb_program}"
+            DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides" COMPONENT program)
 endif()
 
 include(CPack)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Debian packages of libse3d into build/deb, looked at by lintian where it is installed.
+# Debian packages of libse3d into build/deb, looked at by lintian where it is installed; tools/check_packages.sh tries
+# them in a bare Debian. se3d-mpi is none of them: clusters have an MPI of their own, for which it is built.
 #
 #     sh tools/packages.sh
 set -eu
@@ -9,7 +10,7 @@ cd "$(dirname "$0")/.."
 se3d_install $SE3D_BUILD_PACKAGES dpkg-dev
 umask 022
 cmake -S . -B build/deb -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DSE3D_DEBIAN=ON \
-    -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF \
+    -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF -DSE3D_MPI=OFF \
     "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-z,relro,-z,now" "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-z,relro,-z,now"
 cmake --build build/deb -j "$(se3d_jobs)"
 rm -f build/deb/*.deb
