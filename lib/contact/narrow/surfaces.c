@@ -29,6 +29,7 @@
 #define CANDIDATES 128
 #define DIRECTIONS 48 /* of edges from one vertex */
 #define STACK      64
+#define KNOWN      16384 /* vertices of which is remembered that they are outside */
 #define FACE_NONE  UINT32_MAX
 #define VERTEX     0x40000000u /* features: vertices, not edges; */
 #define SECOND     0x80000000u /* of the second of the two */
@@ -49,6 +50,7 @@ typedef struct search {
     int is_second;
     size_t count;
     place list[CANDIDATES];
+    uint64_t outside[KNOWN / 64]; /* bits: vertices of edges that no cut parts from there */
 } search;
 
 /* What is about a place of its own surface: the directions that lead on along this. */
@@ -410,6 +412,46 @@ static void touch_part(search *s, const edge *e, const part *within)
     }
 }
 
+/* An edge without cuts is outside of a closed surface as far as one of its ends is. */
+static int is_outside(const search *s, const edge *e)
+{
+    for (uint32_t k = 0; k < 2; ++k) {
+        const uint32_t at = s->own->shape->triangles[3 * e->triangle + (e->side + k) % 3];
+        if (at < KNOWN && (s->outside[at / 64] >> at % 64 & 1u)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void note_outside(search *s, const edge *e)
+{
+    for (uint32_t k = 0; k < 2 && s->other->shape->closed != 0; ++k) {
+        const uint32_t at = s->own->shape->triangles[3 * e->triangle + (e->side + k) % 3];
+        if (at < KNOWN) {
+            s->outside[at / 64] |= (uint64_t)1 << at % 64;
+        }
+    }
+}
+
+/* Whether an edge without cuts is off the other surface, or too deep. */
+static int is_off(search *s, const edge *e, const double middle[3])
+{
+    double at[3], n[3];
+    if (is_outside(s, e)) {
+        note_outside(s, e);
+        return 1;
+    }
+    if (se3di_mesh_is_clear(s->other->shape, middle, s->limit)) {
+        return 1;
+    }
+    const double depth = depth_of(s, middle, at, n);
+    if (depth < -SAME * s->size) {
+        note_outside(s, e);
+    }
+    return !(depth > 0.0);
+}
+
 /* Of the parts between its cuts those that are within. */
 static void cut_edge(search *s, edge *e)
 {
@@ -425,9 +467,8 @@ static void cut_edge(search *s, edge *e)
             continue;
         }
         point_at(e, 0.5 * (cuts[k].share + cuts[k + 1].share), middle);
-        if ((count == 1 && se3di_mesh_is_clear(s->other->shape, middle, s->limit)) ||
-            !(depth_of(s, middle, at, n) > 0.0)) {
-            continue; /* without a cut all of it is off, or too deep */
+        if (count == 1 ? is_off(s, e, middle) : !(depth_of(s, middle, at, n) > 0.0)) {
+            continue;
         }
         if (!known && !is_own(s, e)) {
             return;
@@ -614,6 +655,7 @@ static void search_in(search *s, const se3di_solid *own, const se3di_solid *othe
     s->own = own;
     s->other = other;
     s->is_second = is_second;
+    memset(s->outside, 0, sizeof s->outside);
     s->count = 0;
     se3di_sub(own->at->x, other->at->x, d);
     se3di_mul_transposed(other->at->R, d, s->x);

@@ -471,24 +471,57 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
     }
 }
 
+/* A segment, and what its boxes are looked at by. */
+typedef struct segment {
+    const double *from, *to;
+    double way[3], inverse[3]; /* 1/way, 0 where it does not go */
+    double slack;
+} segment;
+
+static segment segment_of(const double from[3], const double to[3])
+{
+    segment s = {.from = from, .to = to};
+    se3di_sub(to, from, s.way);
+    for (int a = 0; a < 3; ++a) {
+        s.inverse[a] = fabs(s.way[a]) > 0.0 ? 1.0 / s.way[a] : 0.0;
+    }
+    s.slack = ON_TRIANGLE * se3di_norm(s.way);
+    return s;
+}
+
 /* Whether a segment meets a box, larger by a little. */
-static int meets_box(const mesh_node *node, const double from[3], const double to[3], double slack)
+static int meets_box(const mesh_node *node, const segment *s)
 {
     double low = 0.0, high = 1.0;
     for (int a = 0; a < 3; ++a) {
-        double way = to[a] - from[a];
-        double near = node->low[a] - slack - from[a];
-        double far = node->high[a] + slack - from[a];
-        if (!(fabs(way) > 0.0)) {
+        const double near = node->low[a] - s->slack - s->from[a];
+        const double far = node->high[a] + s->slack - s->from[a];
+        if (!(fabs(s->way[a]) > 0.0)) {
             if (near > 0.0 || far < 0.0) {
                 return 0;
             }
             continue;
         }
-        low = fmax(low, fmin(near / way, far / way));
-        high = fmin(high, fmax(near / way, far / way));
+        const int turned = s->inverse[a] < 0.0;
+        const double in = (turned ? far : near) * s->inverse[a];
+        const double out = (turned ? near : far) * s->inverse[a];
+        low = in > low ? in : low; /* fmax() is a call */
+        high = out < high ? out : high;
     }
     return low <= high;
+}
+
+/* Both ends are on one side of its plane, by more than rounding; not of a heightfield. */
+static int is_passed_by(const se3di_shape *s, uint32_t triangle, const segment *way)
+{
+    const facet *f = facets_of(s) + triangle;
+    double from[3], to[3];
+    se3di_sub(way->from, f->a, from);
+    se3di_sub(way->to, f->a, to);
+    const double before = se3di_dot(from, f->normal), after = se3di_dot(to, f->normal);
+    const double rounding =
+        1e-12 * (fabs(from[0]) + fabs(from[1]) + fabs(from[2]) + fabs(before - after));
+    return (before > rounding && after > rounding) || (before < -rounding && after < -rounding);
 }
 
 /* Also on its sides, so that nothing slips through between two; after which share of the way. */
@@ -522,14 +555,12 @@ size_t se3di_mesh_find_cuts(const se3di_shape *shape, const double from[3], cons
     const mesh_node *nodes = shape->tree;
     uint32_t stack[STACK_SIZE] = {0};
     int depth = 1;
-    double way[3];
     size_t count = 0;
-    se3di_sub(to, from, way);
-    const double slack = ON_TRIANGLE * se3di_norm(way);
+    const segment way = segment_of(from, to);
     while (depth > 0) {
         uint32_t at = stack[--depth];
         const mesh_node *node = &nodes[at];
-        if (!meets_box(node, from, to, slack)) {
+        if (!meets_box(node, &way)) {
             continue;
         }
         if (node->count == 0) {
@@ -538,7 +569,8 @@ size_t se3di_mesh_find_cuts(const se3di_shape *shape, const double from[3], cons
         }
         for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
             double share;
-            if (!crosses_triangle(shape, k, from, to, slack, &share)) {
+            if ((shape->rows == 0 && is_passed_by(shape, k, &way)) ||
+                !crosses_triangle(shape, k, from, to, way.slack, &share)) {
                 continue;
             }
             if (count == capacity) {
