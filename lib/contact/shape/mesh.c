@@ -474,7 +474,7 @@ void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double ra
 /* A segment, and what its boxes are looked at by. */
 typedef struct segment {
     const double *from, *to;
-    double way[3], inverse[3]; /* 1/way, 0 where it does not go */
+    double way[3], inverse[3]; /* 1/way, 0 if it does not go */
     double slack;
 } segment;
 
