@@ -11,11 +11,11 @@
 typedef bool (*read_element)(se3di_reader *reader, const se3di_node *node,
                              se3di_element_entry *entry);
 
-#define NAME(name, needs) #name,
+#define NAME(name, needs, look) #name,
 static const char *const joint_types[] = {SE3DI_TURNING_LIST(NAME) SE3DI_DISTANCE_LIST(NAME) "gear",
                                           "rack_pinion", "coupler", NULL};
 #undef NAME
-#define WORD(name, needs) #name " "
+#define WORD(name, needs, look) #name " "
 #define TURNING           " " SE3DI_TURNING_LIST(WORD)
 #define PAIRS             TURNING SE3DI_DISTANCE_LIST(WORD)
 

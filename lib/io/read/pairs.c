@@ -22,7 +22,7 @@ typedef struct joint_type {
     unsigned needs;
 } joint_type;
 
-#define TYPE(name, needs) {#name, se3d_joint_create_##name, needs},
+#define TYPE(name, needs, look) {#name, se3d_joint_create_##name, needs},
 static const joint_type joint_types[] = {SE3DI_TURNING_LIST(TYPE) SE3DI_DISTANCE_LIST(TYPE)
                                              SE3DI_PERPENDICULAR_LIST(TYPE)};
 #undef TYPE

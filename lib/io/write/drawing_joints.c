@@ -8,6 +8,7 @@
 #include "io/base/rotation.h"
 #include "io/document/document.h"
 #include "io/document/keys.h"
+#include "io/read/pairs.h"
 #include "io/write/drawing_part.h"
 
 /* Of light: steel that is dark, and bright; a coil. */
@@ -21,25 +22,13 @@ static const char *get_type(const se3di_element_entry *entry)
     return type && type->text ? type->text : "";
 }
 
+#define LOOK(name, needs, look) {#name, SE3DI_JOINT_##look},
 se3di_joint_look se3di_joint_get_look(const se3di_element_entry *entry)
 {
     static const struct {
         const char *type;
         se3di_joint_look look;
-    } looks[] = {{"fixed", SE3DI_JOINT_BLOCK},
-                 {"revolute", SE3DI_JOINT_PIN},
-                 {"prismatic", SE3DI_JOINT_SLIDER},
-                 {"cylindrical", SE3DI_JOINT_SLEEVE},
-                 {"screw", SE3DI_JOINT_SCREW},
-                 {"spherical", SE3DI_JOINT_BALL},
-                 {"distance", SE3DI_JOINT_BALL},
-                 {"revolute_spherical", SE3DI_JOINT_BALL},
-                 {"revolute_cylindrical", SE3DI_JOINT_PIN},
-                 {"universal", SE3DI_JOINT_CROSS},
-                 {"planar", SE3DI_JOINT_PLATE},
-                 {"point_on_line", SE3DI_JOINT_ON_LINE},
-                 {"point_on_plane", SE3DI_JOINT_ON_PLANE},
-                 {"perpendicular2", SE3DI_JOINT_ON_PLANE}};
+    } looks[] = {SE3DI_TURNING_LIST(LOOK) SE3DI_DISTANCE_LIST(LOOK) SE3DI_PERPENDICULAR_LIST(LOOK)};
     const char *type = entry->drawn == 1 || entry->drawn == 2 ? get_type(entry) : "";
     for (size_t k = 0; k < sizeof looks / sizeof *looks; ++k) {
         if (strcmp(type, looks[k].type) == 0) {
