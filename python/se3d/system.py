@@ -14,11 +14,16 @@ State = namedtuple("State", "r p v w")
 Summary = namedtuple("Summary", "bodies equations rank redundant freedoms gruebler inconsistent")
 Contact = namedtuple("Contact", "shape_i shape_j point normal overlap force")
 
-JOINTS = ("fixed", "revolute", "prismatic", "cylindrical", "spherical", "universal", "planar",
-          "screw", "point_on_line", "point_on_plane", "distance", "revolute_spherical",
-          "revolute_cylindrical", "parallel", "perpendicular", "orientation", "perpendicular1",
-          "perpendicular2")
-SHAPES = ("sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh", "funnel")
+
+def _types_of(beginning, definition):
+    """What the library creates by functions of that beginning from a definition."""
+    pointer_type = ffi.typeof(f"{definition} *")
+    return tuple(name[len(beginning):] for name in dir(lib) if name.startswith(beginning) and
+                 ffi.typeof(getattr(lib, name)).args[1] is pointer_type)
+
+
+JOINTS = _types_of("se3d_joint_create_", "se3d_joint_def")
+SHAPES = _types_of("se3d_shape_create_", "se3d_shape_def")
 
 # The variables of functions of force elements; all others are functions of the time.
 _VARIABLES = {
@@ -273,10 +278,10 @@ class System:
         definition = Definition("se3d_contact_settings", values, self)
         self.check(lib.se3d_system_set_contact(self.pointer, definition.pointer))
 
-    def shape(self, type, *, vertices=None, triangles=None, **values):
-        """Create a shape: "sphere", "box", "capsule", "cylinder", "plane", "hull", "mesh", "funnel";
-        body, material, position, orientation, normal, size, radius, length, bottom_radius,
-        top_radius, vertices, triangles."""
+    def shape(self, type, *, vertices=None, triangles=None, heights=None, **values):
+        """Create a shape, one of SHAPES: body, material, position, orientation, normal, size,
+        radius, length, bottom_radius, top_radius, vertices, triangles; heights (rows along x) and
+        their spacing."""
         if type not in SHAPES:
             raise ValueError(f"type is {type!r}, must be one of {', '.join(SHAPES)}")
         definition = Definition("se3d_shape_def", values, self)
@@ -288,6 +293,10 @@ class System:
             array = definition.keep(numpy.ascontiguousarray(triangles, dtype=numpy.uint32))
             definition.pointer.triangles = definition.keep(ffi.from_buffer("uint32_t[]", array))
             definition.pointer.triangle_count = array.size // 3
+        if heights is not None:
+            array = definition.keep(numpy.ascontiguousarray(heights, dtype=float))
+            definition.pointer.heights = definition.keep(ffi.from_buffer("double[]", array))
+            definition.pointer.row_count, definition.pointer.column_count = array.shape
         handle = ffi.new("se3d_shape *")
         self.check(getattr(lib, f"se3d_shape_create_{type}")(self.pointer, definition.pointer,
                                                              handle))

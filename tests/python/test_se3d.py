@@ -171,6 +171,16 @@ class Motion(unittest.TestCase):
             self.assertEqual(len(system.contacts), 1)
             numpy.testing.assert_allclose(abs(system.contacts[0].normal), (0, 0, 1), atol=1e-12)
 
+    def test_every_type_of_the_library_is_there(self):
+        self.assertIn("revolute_cylindrical", se3d.system.JOINTS)
+        self.assertNotIn("gear", se3d.system.JOINTS)
+        self.assertIn("heightfield", se3d.system.SHAPES)
+        with se3d.System() as system:
+            ramp = system.shape("heightfield", heights=[[0, 1, 2], [0, 1, 2]], spacing=(1, 1))
+            _, normal, distance = ramp.nearest((0, 0, 1 + 2 ** 0.5))
+        numpy.testing.assert_allclose(normal, (-0.5 ** 0.5, 0, 0.5 ** 0.5), atol=1e-12)
+        self.assertAlmostEqual(distance, 1)
+
     def test_equilibrium(self):
         with se3d.System() as system:
             block = system.body(mass=1, inertia=(1, 1, 1), position=(0, 0, -1))
