@@ -16,8 +16,8 @@ static const char *const joint_types[] = {SE3DI_TURNING_LIST(NAME) SE3DI_DISTANC
                                           "rack_pinion", "coupler", NULL};
 #undef NAME
 #define WORD(name, needs, look) #name " "
-#define TURNING           " " SE3DI_TURNING_LIST(WORD)
-#define PAIRS             TURNING SE3DI_DISTANCE_LIST(WORD)
+#define TURNING                 " " SE3DI_TURNING_LIST(WORD)
+#define PAIRS                   TURNING SE3DI_DISTANCE_LIST(WORD)
 
 /* clang-format off */
 static const se3di_key joint_keys[] = {
