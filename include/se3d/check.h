@@ -47,11 +47,11 @@ SE3D_API size_t se3d_check_count_messages(const se3d_check *check);
  * @since 0.1 */
 SE3D_API se3d_status se3d_check_get_message(const se3d_check *check, size_t k, const char **text);
 
-/* Name the constraint equations that the present analysis does without, as they are redundant but
- * for the digits of their data (axes 4e-6 rad off in a planar loop, say), with what each is off by
- * at the present state: "J3.dp1_a (off by 2.1e-06), J3.cd_z (off by 1e-06 m)", "" if there is
- * none. They are decided on where an analysis starts, have multipliers zero, and are told by
- * INFO_REDUNDANT.
+/* Name the constraint equations that the present analysis leaves out because they are redundant to
+ * within the digits of their data (axes 4e-6 rad off in a planar loop, say), with the violation of
+ * each at the present state: "J3.dp1_a (off by 2.1e-06), J3.cd_z (off by 1e-06 m)", "" if there is
+ * none. They are chosen at the start of an analysis, which returns INFO_REDUNDANT; their
+ * multipliers are zero.
  * @param[out] text  [size] bytes, cut to fit
  * @param[in] size   > 0
  * @return OK, NULL, INVALID_ARGUMENT (size).

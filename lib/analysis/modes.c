@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define MODES_ARRAYS 10
-#define OPEN         1e-3 /* of the size of the mechanism: such poses fit no longer */
+#define OPEN         1e-3 /* violation, relative to the size of the mechanism, that is refused */
 
 static void list_arrays(se3di_modes *m, se3di_array list[MODES_ARRAYS])
 {
@@ -193,7 +193,7 @@ static se3d_status fill(const se3di_linear *linear, const se3di_modes_port *port
     return SE3D_OK;
 }
 
-/* Those of a mechanism that is open are nobody's. */
+/* A mechanism whose constraints are violated has no modes. */
 static se3d_status check_poses(se3di_equations *equations, double t)
 {
     char gap[400];

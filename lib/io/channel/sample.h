@@ -37,8 +37,8 @@ void se3di_sample_init(se3di_sample *sample, const se3d_system *system,
 void se3di_sample_destroy(se3di_sample *sample);
 /* The state of the system has changed. */
 void se3di_sample_renew(se3di_sample *sample, const se3d_solver_stats *stats);
-/* List the contacts of a set, in one pass over its forces if there are as many as at the end of the
- * last step, as there mostly are. They stay until the state changes. */
+/* List the contacts of a set: in one pass over its forces if their number is that of the end of the
+ * last step, which is usual. The list is valid until the state changes. */
 se3d_status se3di_sample_list_contacts(se3di_sample *sample, const se3d_particles *set,
                                        se3di_particle_contacts *contacts);
 /* A place for the answer to a question about element `index`. @return NULL: out of memory */

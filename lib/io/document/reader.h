@@ -61,7 +61,7 @@ bool se3di_reader_check(se3di_reader *reader, const se3di_node *map, se3d_status
 
 /* `node` must be a map whose keys are those of `object` (and, if it has types, of its type). */
 bool se3di_read_keys(se3di_reader *reader, const se3di_node *node, const se3di_object *object);
-/* Not a value that YAML has cut at its commas. */
+/* Refuse a value that YAML has cut at its commas. */
 bool se3di_check_whole(se3di_reader *reader, const se3di_node *node);
 /* The `type` of a map, one of `types`; `what` is "a joint type", ... */
 bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
@@ -84,7 +84,7 @@ bool se3di_reader_try_symbol(se3di_reader *reader, const char *name, bool *is_go
 bool se3di_read_reference(se3di_reader *reader, const se3di_node *node, const char **name);
 /* Whether the condition under `when` holds, or there is none. */
 bool se3di_read_when(se3di_reader *reader, const se3di_node *map, bool *wanted);
-/* The name under which a part's thing goes: with the part's prefix. */
+/* The name of an element of a part: with the prefix of the part. */
 bool se3di_read_part_name(se3di_reader *reader, const se3di_node *node, const char **name);
 const char *se3di_reader_prefix(se3di_reader *reader, const char *name);
 /* What is called `name` by those of a part: a thing of it, else of those that include it. */

@@ -14,9 +14,10 @@ typedef struct se3di_fmi_description {
     char identifier[SE3DI_FMI_IDENTIFIER_SIZE];
 } se3di_fmi_description;
 
-/* A name of C for the files of the unit, from that of the model. */
+/* An identifier of C for the files of the unit, made from the name of the model. */
 void se3di_fmi_make_identifier(const char *name, char identifier[SE3DI_FMI_IDENTIFIER_SIZE]);
-/* The text in memory of the pool, *size bytes and a zero. @return NULL: no memory. */
+/* The description as a text in memory of the pool: *size bytes and a zero at the end.
+ * @return NULL: no memory. */
 char *se3di_fmi_description_write(const se3di_fmi_description *description, se3di_iopool *pool,
                                   size_t *size);
 

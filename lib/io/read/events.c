@@ -46,7 +46,7 @@ static const se3di_key event_keys[] = {
     {.key = NULL}};
 const se3di_object se3di_object_event = {
     "event",
-    "Where a number of a channel crosses a level.",
+    "A crossing of a level by a number of a channel.",
     event_keys, NULL,
     NULL};
 /* clang-format on */
@@ -88,7 +88,7 @@ static bool read_event(se3di_reader *reader, const se3di_node *node, se3di_event
     return true;
 }
 
-/* The file of the events is not another one's. */
+/* No output has the same file as the events. */
 static bool check_file(se3di_reader *reader, const se3di_node *list)
 {
     const se3d_model *model = reader->model;
@@ -101,7 +101,7 @@ static bool check_file(se3di_reader *reader, const se3di_node *list)
     return true;
 }
 
-/* Events of a model in which nothing ever moves. What --analysis asks for may have none. */
+/* Events need an analysis with a motion. One that was chosen by --analysis may have none. */
 static bool check_motion(se3di_reader *reader, const se3di_node *list)
 {
     const se3d_model *model = reader->model;

@@ -14,8 +14,8 @@
 #include "io/write/drawing_part.h"
 #include "io/write/unit_mesh.h"
 
-/* Colours that also those tell apart who see no red or no green, and in print: M. Okabe and K. Ito,
- * Color Universal Design, 2008. As they are on a screen (sRGB). */
+/* Colours that people with colour blindness can tell apart, also in print: M. Okabe and K. Ito,
+ * Color Universal Design, 2008. Values in sRGB. */
 static const double palette[][3] = {{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
                                     {0.90, 0.62, 0.00}, {0.80, 0.47, 0.65}, {0.34, 0.71, 0.91},
                                     {0.94, 0.89, 0.26}};
@@ -108,7 +108,7 @@ static int compare_numbers(const void *a, const void *b)
 
 enum { PLACES_MOST = 200 };
 
-/* The radius of a pin: a share of what is usual from a joint to the next, at the first sample. */
+/* The radius of a pin: a fraction of the usual distance of joints at the first sample. */
 static double choose_radius(const se3d_model *model, const double *poses, double extent)
 {
     double places[PLACES_MOST][3];
@@ -181,12 +181,12 @@ void se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, se
     const double extent = get_extent(&b);
     sizes->floor = b.low[2] - 0.1 * extent;
     sizes->extent = extent > 1e-9 ? extent : 1.0;
-    /* A vehicle that goes far has no larger joints for it. */
+    /* The joints of a vehicle do not grow with the distance that it travels. */
     const double near = own > 1e-9 ? fmin(sizes->extent, 2.5 * own) : sizes->extent;
     sizes->radius = choose_radius(model, poses->values, near);
 }
 
-/* From a colour as it is on a screen (sRGB, IEC 61966-2-1) to the light that glTF asks for. */
+/* From sRGB (IEC 61966-2-1) to the linear colours of glTF. */
 static double to_light(double c)
 {
     return c <= 0.04045 ? c / 12.92 : io_pow((c + 0.055) / 1.055, 2.4);
