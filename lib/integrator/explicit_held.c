@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Signs that stability, not accuracy, limits the steps of an explicit method. */
+#include "integrator/explicit_point.h"
 #include "integrator/explicit_step.h"
 
 int se3di_explicit_is_held(const se3di_integration *integration)
