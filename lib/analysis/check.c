@@ -54,6 +54,7 @@ typedef struct inspection {
     size_t C_count;
     int32_t violated; /* the constraints cannot be met */
     int32_t lost;     /* no assembled poses were found: violations say nothing */
+    int32_t moves;    /* the velocities follow the rates, and gamma is in equations->c */
 } inspection;
 
 /* ---- messages ---- */
@@ -414,6 +415,14 @@ static se3d_status report_redundant(inspection *in, const se3di_rank *rank, int3
                            "demand different velocities",
                            name, empty ? "the fixed bodies" : list, rate, unit);
     }
+    double bend = in->moves ? contradiction(in, rank, k, in->equations->c, 1) : 0.0;
+    if (fabs(bend) > 1e-6 * (scale + fabs(in->equations->c[row]))) {
+        ++in->check->inconsistent;
+        return add_message(in->check,
+                           "%s contradicts %s in its second derivative: it is off by %.6g%s/s^2, "
+                           "the drivers demand different accelerations",
+                           name, empty ? "the fixed bodies" : list, bend, unit);
+    }
     if (empty) {
         return add_message(in->check,
                            "%s constrains nothing: its bodies are fixed, or it is degenerate at "
@@ -555,10 +564,22 @@ static se3d_status settle_poses(inspection *in)
     return add_message(in->check, "%s", gap);
 }
 
+/* Accelerations are compared where velocities follow what drives them. */
+static void take_motion(inspection *in)
+{
+    se3di_equations *equations = in->equations;
+    const int drives = equations->assembly.timed_count > 0 || equations->assembly.user_count > 0;
+    in->moves = drives && !in->violated && se3di_velocity_solve(equations, in->model->time) >= 0;
+    if (in->moves) {
+        se3di_assembly_eval_gamma(&equations->assembly, equations->c);
+    }
+}
+
 static se3d_status inspect_model(inspection *in)
 {
     SE3DI_TRY(se3di_ranks_decide(in->equations, in->model->time));
     SE3DI_TRY(settle_poses(in));
+    take_motion(in);
     se3di_assembly_eval_phi(&in->equations->assembly, in->equations->phi);
     se3di_assembly_eval_jacobian(&in->equations->assembly);
     SE3DI_TRY(se3di_user_report(in->equations->assembly.model, in->equations->error));

@@ -6,6 +6,7 @@
 #include "analysis/dead_point.h"
 
 #include "math/vec3.h"
+#include "nonlinear/against.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -141,15 +142,10 @@ static double find_dead_point(se3di_equations *equations, double t_end)
     return ends && (speed > 10.0 * before || before * way > 3.0) ? t : HUGE_VAL;
 }
 
-static void describe(const se3di_equations *equations, uint32_t row, char *text, size_t size)
+static void describe(const se3di_model *model, uint32_t row, char *text, size_t size)
 {
-    const se3di_model *model = equations->assembly.model;
-    for (uint32_t k = 0; k < equations->assembly.constraint_count; ++k) {
-        const se3di_constraint *c = &model->constraints[k];
-        if (row >= c->row_begin && row - c->row_begin < c->row_count) {
-            snprintf(text, size, "%s %.80s", c->type, c->name ? c->name : "without a name");
-        }
-    }
+    const se3di_constraint *c = &model->constraints[se3di_row_get_owner(model, row)];
+    snprintf(text, size, "%s %.80s", c->type, c->name ? c->name : "without a name");
 }
 
 se3d_status se3di_dead_point_explain(se3di_equations *equations, double t_end, se3d_status status)
@@ -166,10 +162,11 @@ se3d_status se3di_dead_point_explain(se3di_equations *equations, double t_end, s
     const double t = find_dead_point(equations, t_end);
     *equations->error = before;
     if (!(t < t_end) || row == equations->assembly.row_count ||
+        se3di_against_is_twice(model, row) ||
         se3di_function_eval(&model->functions[model->rows[row].function], &t, jet, NULL) < 0) {
         return status;
     }
-    describe(equations, row, name, sizeof name);
+    describe(model, row, name, sizeof name);
     return se3di_error_set(
         equations->error, status,
         "t = %.9g s: %s has reached a dead point of the mechanism at t = %.6g s, "

@@ -19,6 +19,7 @@
 #include "integrator/turns.h"
 #include "math/steps.h"
 #include "model/integral.h"
+#include "nonlinear/against.h"
 #include "nonlinear/jump.h"
 #include "nonlinear/kink.h"
 #include "nonlinear/ranks.h"
@@ -405,6 +406,8 @@ static se3d_status run_method(se3di_run *run, double t_end)
     const double remaining = t_end - run->model->time;
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
+    SE3DI_TRY(
+        se3di_against_refuse(&run->equations.assembly, fmax(t_end, run->horizon), run->error));
     run->refused = 0;
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
@@ -453,6 +456,7 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
         SE3DI_TRY(settle(run, run->model->time));
     }
     se3di_contacts_begin(run->model, 0.0, 1.0, 0);
+    SE3DI_TRY(se3di_against_refuse(&run->equations.assembly, t_end, run->error));
     if (run->equations.audits) {
         SE3DI_TRY(se3di_friction_follow(&run->equations, run->model->time));
         se3di_stops_accept(run->model);

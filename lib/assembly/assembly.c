@@ -204,7 +204,7 @@ void se3di_assembly_destroy(se3di_assembly *assembly)
     memset(assembly, 0, sizeof *assembly);
 }
 
-static uint32_t owner_of(const se3di_model *model, uint32_t row)
+uint32_t se3di_row_get_owner(const se3di_model *model, uint32_t row)
 {
     uint32_t k = 0;
     while (row >= model->constraints[k].row_begin + model->constraints[k].row_count) {
@@ -215,7 +215,7 @@ static uint32_t owner_of(const se3di_model *model, uint32_t row)
 
 void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size)
 {
-    uint32_t k = owner_of(model, row);
+    uint32_t k = se3di_row_get_owner(model, row);
     const se3di_constraint *constraint = &model->constraints[k];
     if (constraint->name) {
         snprintf(text, size, "%.80s.%s", constraint->name, model->rows[row].name);

@@ -16,7 +16,6 @@
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "contact/bodies/pace.h"
-#include "force/driver_rate.h"
 #include "force/force.h"
 #include "math/elementary.h"
 #include "math/larger.h"
@@ -329,9 +328,8 @@ static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
 {
     SE3DI_TRY(measure_error(m, order, 0, &e->here));
     /* rates that follow signals say nothing of positions: their errors stay */
-    const int is_tangent = e->here > 1.0 && m->assembly->row_count > 0 &&
-                           (m->assembly->user_count == 0 ||
-                            se3di_find_driver_rate(m->assembly->model) == SE3DI_NO_INDEX);
+    const int is_tangent =
+        e->here > 1.0 && m->assembly->row_count > 0 && !se3di_state_has_rates(m->equations);
     if (is_tangent) {
         SE3DI_TRY(se3di_equations_factor(m->equations));
         SE3DI_TRY(measure_error(m, order, 1, &e->here));

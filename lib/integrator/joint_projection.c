@@ -9,7 +9,6 @@
 #include "integrator/joint_projection.h"
 
 #include "assembly/user.h"
-#include "force/driver_rate.h"
 #include "math/larger.h"
 #include "math/vec3.h"
 #include "primitive/scale.h"
@@ -191,13 +190,12 @@ static se3d_status project_rates(se3di_equations *equations, double t,
             tree->qdot[v] += tree->qddot[v];
         }
         place(equations);
-        if (equations->assembly.user_count > 0 &&
-            se3di_find_driver_rate(tree->model) != SE3DI_NO_INDEX) {
+        if (se3di_state_has_rates(equations)) {
             se3di_tree_loops_eval_rows(loops); /* those of such drivers depend on velocities */
             is_factored = 0;
         }
     }
-    return SE3D_OK;
+    return se3di_state_check_rates(equations, t, scale);
 }
 
 se3d_status se3di_joint_project(se3di_equations *equations, double t,

@@ -12,6 +12,7 @@
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "model/state.h"
+#include "nonlinear/against.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
@@ -220,11 +221,16 @@ static double eval_gap(se3di_equations *equations, double length)
     return worst;
 }
 
+static double rate_of(const se3di_state_scale *scale)
+{
+    return fmax(scale->speed / scale->length, scale->spin);
+}
+
 /* c = nu - Phi_q qdot; returns its largest part relative to the scales. */
 static double eval_rate_gap(se3di_equations *equations, const se3di_state_scale *scale)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    double rate = fmax(scale->speed / scale->length, scale->spin);
+    double rate = rate_of(scale);
     double worst = 0.0;
     se3di_assembly_get_velocity(assembly, equations->x);
     se3di_assembly_mul(assembly, equations->x, equations->c);
@@ -306,6 +312,23 @@ se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
     return project_positions(equations, t, scale, accuracy, &is_factored);
 }
 
+int se3di_state_has_rates(const se3di_equations *equations)
+{
+    return equations->assembly.user_count > 0 &&
+           se3di_find_driver_rate(equations->assembly.model) != SE3DI_NO_INDEX;
+}
+
+se3d_status se3di_state_check_rates(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale)
+{
+    if (!se3di_state_has_rates(equations)) {
+        return SE3D_OK;
+    }
+    se3di_assembly_eval_jacobian(&equations->assembly);
+    const double gap = eval_rate_gap(equations, scale);
+    return se3di_against_check_rates(equations, t, gap, rate_of(scale), scale->length);
+}
+
 se3d_status se3di_state_project(se3di_equations *equations, double t,
                                 const se3di_state_scale *scale, double accuracy, int is_factored)
 {
@@ -328,12 +351,12 @@ se3d_status se3di_state_project(se3di_equations *equations, double t,
             equations->b[c] += equations->x[c];
         }
         se3di_assembly_set_velocity(assembly, equations->b);
-        if (assembly->user_count > 0 && se3di_find_driver_rate(assembly->model) != SE3DI_NO_INDEX) {
+        if (se3di_state_has_rates(equations)) {
             se3di_assembly_eval_jacobian(assembly); /* rows of such drivers depend on velocities */
             is_factored = 0;
         }
     }
-    return SE3D_OK;
+    return se3di_state_check_rates(equations, t, scale);
 }
 
 se3d_status se3di_state_measure_gap(se3di_equations *equations, double t,

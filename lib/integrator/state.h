@@ -66,6 +66,11 @@ se3di_kkt_settings se3di_state_regularise(const se3di_assembly *assembly, se3di_
 /* Accelerations at the present frames into equations->x, multipliers into equations->l; without the
  * checks and records of se3di_acceleration_solve. */
 se3d_status se3di_state_evaluate(se3di_equations *equations, double t);
+/* Whether drivers prescribe rates that follow signals: rows of velocities alone. */
+int se3di_state_has_rates(const se3di_equations *equations);
+/* Fails with INCONSISTENT if they do not hold at the velocities of the model, projected, at t. */
+se3d_status se3di_state_check_rates(se3di_equations *equations, double t,
+                                    const se3di_state_scale *scale);
 /* Positions and velocities onto their constraints at t, mass-weighted. `accuracy` is the relative
  * violation that does not matter. `is_factored`: the last evaluation was here, and its
  * factorisation serves. */

@@ -6,6 +6,7 @@
 #include "force/driver_rate.h"
 #include "math/larger.h"
 #include "model/integral.h"
+#include "nonlinear/against.h"
 
 #include <math.h>
 #include <string.h>
@@ -500,13 +501,17 @@ static se3d_status check_level(se3di_equations *equations, double t, const char 
     if (worst <= 1e-6 * scale + 1e-12) {
         return SE3D_OK;
     }
-    char name[128];
+    char name[128], with[400];
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->l[k] -= equations->c[k];
+    }
     se3di_row_name(assembly->model, where, name, sizeof name);
+    se3di_against_describe(assembly->model, equations->l, where, with, sizeof with);
     return se3di_error_set(
         equations->error, SE3D_ERR_INCONSISTENT,
         "t = %g s: the constraints contradict each other: the %s equation of %s "
-        "cannot be met (off by %.3g); the mechanism is locked or over-constrained",
-        t, level, name, worst);
+        "cannot be met (off by %.3g)%s; the mechanism is locked or over-constrained",
+        t, level, name, worst, with);
 }
 
 /* phi = Phi_q qdot of the held bodies, which their neighbours have to follow. */
