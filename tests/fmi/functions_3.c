@@ -49,11 +49,6 @@ static void *instantiate(const char *name, const char *token, const char *folder
                          0, NULL, hear, NULL);
 }
 
-static void free_instance(void *c)
-{
-    p_FreeInstance(c);
-}
-
 static int enter(void *c)
 {
     return (int)p_EnterInitializationMode(c, experiment.has_tolerance != 0, experiment.tolerance,
@@ -78,21 +73,6 @@ static int setup(void *c, int has_tolerance, double tolerance, double start, int
         memset(&experiment, 0, sizeof experiment);
     }
     return status;
-}
-
-static int leave(void *c)
-{
-    return (int)p_ExitInitializationMode(c);
-}
-
-static int terminate(void *c)
-{
-    return (int)p_Terminate(c);
-}
-
-static int reset(void *c)
-{
-    return (int)p_Reset(c);
 }
 
 static int get(void *c, const uint32_t *vr, size_t count, double *values)
@@ -159,11 +139,6 @@ static int directional(void *c, const uint32_t *unknowns, size_t unknown_count,
                                            known_count, out, unknown_count);
 }
 
-static int enter_event(void *c)
-{
-    return (int)p_EnterEventMode(c);
-}
-
 static int update(void *c, int *ends, int *moved, int *more)
 {
     bool answers[5] = {false, false, false, false, false};
@@ -176,11 +151,6 @@ static int update(void *c, int *ends, int *moved, int *more)
     return (int)status;
 }
 
-static int go_on(void *c)
-{
-    return (int)p_EnterContinuousTimeMode(c);
-}
-
 static int complete(void *c, int *event, int *ends)
 {
     bool asks = false;
@@ -191,34 +161,9 @@ static int complete(void *c, int *event, int *ends)
     return (int)status;
 }
 
-static int set_time(void *c, double time)
-{
-    return (int)p_SetTime(c, time);
-}
-
-static int set_states(void *c, const double *x, size_t count)
-{
-    return (int)p_SetContinuousStates(c, x, count);
-}
-
-static int get_states(void *c, double *x, size_t count)
-{
-    return (int)p_GetContinuousStates(c, x, count);
-}
-
-static int get_nominals(void *c, double *x, size_t count)
-{
-    return (int)p_GetNominalsOfContinuousStates(c, x, count);
-}
-
 static int get_derivatives(void *c, double *dx, size_t count)
 {
     return (int)p_GetContinuousStateDerivatives(c, dx, count);
-}
-
-static int get_indicators(void *c, double *values, size_t count)
-{
-    return (int)p_GetEventIndicators(c, values, count);
 }
 
 static int logging(void *c, const char *category)
@@ -226,50 +171,13 @@ static int logging(void *c, const char *category)
     return (int)p_SetDebugLogging(c, true, 1, &category);
 }
 
-/* A function as what it is. */
-#define LOAD(pointer, name)                                                                        \
-    do {                                                                                           \
-        void *found = dlsym(f->object, name);                                                      \
-        missing += found == NULL;                                                                  \
-        memcpy(&pointer, &found, sizeof found);                                                    \
-    } while (0)
+#include "functions_both.inc"
 
 int functions_load_3(functions *f, const char *object)
 {
     int missing = 0;
     const char *(*version)(void) = NULL;
-    *f = (functions){dlopen(object, RTLD_NOW | RTLD_LOCAL),
-                     instantiate,
-                     free_instance,
-                     setup,
-                     enter,
-                     leave,
-                     terminate,
-                     reset,
-                     get,
-                     set,
-                     step,
-                     get_state,
-                     set_state,
-                     free_state,
-                     state_size,
-                     write_state,
-                     read_state,
-                     other_type,
-                     logging,
-                     directional,
-                     enter_event,
-                     update,
-                     go_on,
-                     complete,
-                     set_time,
-                     set_states,
-                     get_states,
-                     get_nominals,
-                     get_derivatives,
-                     get_indicators};
-    if (!f->object) {
-        fprintf(stderr, "%s\n", dlerror());
+    if (fill(f, object) < 0) {
         return -1;
     }
 #define LOAD_NAMED(name, parameters) LOAD(p_##name, "fmi3" #name);
