@@ -374,7 +374,7 @@ uint64_t se3d_system_hash(const se3d_system *system)
     }
     hash = se3di_hash_numbers(hash, model->lambda, model->row_count);
     for (size_t k = 0; model->broken_count > 0 && k < model->row_count; ++k) {
-        hash = se3di_hash_word(hash, (uint64_t)((model->rows[k].left_out & SE3DI_ROW_BROKEN) != 0));
+        hash = se3di_hash_word(hash, (uint64_t)(model->rows[k].left_out & SE3DI_ROW_BREAKS) >> 1);
     }
     for (const se3di_particles *set = model->sets; set; set = set->next) {
         hash = se3di_hash_word(hash, se3di_particles_hash(set));
