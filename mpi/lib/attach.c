@@ -104,9 +104,7 @@ static se3d_status attach_set(se3d_system *system, se3di_particles *set, MPI_Com
 se3d_status se3d_mpi_attach(se3d_system *system, MPI_Comm comm)
 {
     char own[48];
-    if (!system) {
-        return SE3D_ERR_NULL;
-    }
+    SE3DI_EDIT(system);
     (void)snprintf(own, sizeof own, "%d.%d.%d", SE3D_VERSION_MAJOR, SE3D_VERSION_MINOR,
                    SE3D_VERSION_PATCH);
     if (strcmp(se3d_version_get_text(), own) != 0) {
@@ -130,6 +128,9 @@ se3d_status se3d_mpi_attach(se3d_system *system, MPI_Comm comm)
 
 void se3d_mpi_detach(se3d_system *system)
 {
+    if (system && se3di_enter(system, SE3DI_BUSY_FREE, __func__) < 0) {
+        return; /* who steps would go on with what is gone */
+    }
     for (se3di_particles *set = system ? system->model.sets : NULL; set; set = set->next) {
         if (set->share) {
             forget(set);

@@ -23,12 +23,13 @@ extern "C" {
  * are created later are not shared; snapshots, clones and copies are whole. What is not carried
  * (clumps, bonds, flows, cells that strain, laws by callback) is refused when a run begins
  * (UNSUPPORTED, the message says what). Exclusive; collective.
- * @return OK, NULL, STATE (attached already, or the library is of another version), NO_MEMORY, IO
- *         (MPI failed).
+ * @return OK, NULL, STATE (attached already, called from a callback, or the library is of another
+ *         version), NO_MEMORY, IO (MPI failed).
  * @since 0.1 */
 SE3D_API se3d_status se3d_mpi_attach(se3d_system *system, MPI_Comm comm);
 
-/* Undo it: the system goes on in each process alone. NULL is fine. Collective. @since 0.1 */
+/* Undo it: the system goes on in each process alone. NULL is fine; from within a callback of the
+ * system it does nothing. Collective. @since 0.1 */
 SE3D_API void se3d_mpi_detach(se3d_system *system);
 
 /* What one process has done since it was attached, of one set of particles. @since 0.1 */
