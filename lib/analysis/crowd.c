@@ -9,11 +9,19 @@ static int is_known(const se3di_pair *pair)
            !(pair->pull_off > 0.0);
 }
 
+/* A step takes gravity as it is at its start. */
+static int is_gravity_constant(const se3di_model *model)
+{
+    const int32_t *function = model->gravity_function;
+    return function[0] < 0 && function[1] < 0 && function[2] < 0;
+}
+
 int se3di_crowd_suits(const se3di_model *model)
 {
     const size_t materials = model->material_slots.count;
-    if (model->sets || model->constraint_slots.count > 0 || model->force_slots.count > 0 ||
-        model->state_count > 0 || model->contact.law == SE3DI_LAW_CALLBACK) {
+    if (!is_gravity_constant(model) || model->sets || model->constraint_slots.count > 0 ||
+        model->force_slots.count > 0 || model->state_count > 0 ||
+        model->contact.law == SE3DI_LAW_CALLBACK) {
         return 0;
     }
     for (size_t k = 0; k < materials * materials; ++k) {
@@ -24,15 +32,22 @@ int se3di_crowd_suits(const se3di_model *model)
     return 1;
 }
 
-/* Shapes follow each other body by body, or a body counts once more. */
+/* Shapes follow each other body by body, or a body counts once more; what no group and mask lets
+ * touch anything does not count. */
 int se3di_crowd_is_large(const se3di_model *model)
 {
-    uint32_t last = UINT32_MAX;
+    uint32_t last = UINT32_MAX, groups = 0, masks = 0;
     size_t count = 0;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *shape = &model->shapes[k];
+        groups |= shape->material >= 0 ? shape->group : 0;
+        masks |= shape->material >= 0 ? shape->mask : 0;
+    }
     for (size_t k = 0; k < model->shape_slots.count && count < MANY; ++k) {
         const se3di_shape *shape = &model->shapes[k];
         const se3di_body *body = &model->bodies[shape->body];
-        if (shape->material >= 0 && !body->fixed && body->state == 0 && shape->body != last) {
+        const int meets = shape->material >= 0 && (shape->mask & groups) && (shape->group & masks);
+        if (meets && !body->fixed && body->state == 0 && shape->body != last) {
             last = shape->body;
             ++count;
         }

@@ -106,11 +106,14 @@ void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
     run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
 }
 
+#define STEP_CROWD 5e-3 /* s: a longest step for other methods would be too long for convex */
+
 /* No tolerance is asked for, and many bodies touch. */
 static int is_crowded(const se3di_run *run)
 {
     const se3di_model *model = run->model;
     return run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
+           run->integration.settings.step <= STEP_CROWD &&
            !is_history_of(model, SE3D_METHOD_DOP853) && !is_history_of(model, SE3D_METHOD_RADAU) &&
            (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_crowd_is_large(model)) &&
            se3di_crowd_suits(model);

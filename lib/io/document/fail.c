@@ -50,8 +50,12 @@ bool se3di_reader_propose(se3di_reader *reader, const char *meant)
 }
 
 /* About a key of a map, which may have it or not; NULL: about the node itself. */
-static bool fail_about(se3di_reader *reader, const se3di_node *node, const char *key,
-                       const char *format, va_list arguments)
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 0)))
+#endif
+static bool
+fail_about(se3di_reader *reader, const se3di_node *node, const char *key, const char *format,
+           va_list arguments)
 {
     char path[256];
     char text[640];

@@ -495,6 +495,9 @@ void se3di_save_contact(se3di_save *s)
     }
     se3di_save_put(s, "\ncontact:\n  law: ");
     se3di_save_line(s, laws[settings.law]);
+    if (s->model && s->model->particles && s->model->particles->audit) {
+        se3di_save_put(s, "  audit: true\n");
+    }
     s->is_first = true;
     if (settings.step > 0.0) {
         se3di_save_put(s, "  ");
