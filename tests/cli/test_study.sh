@@ -7,6 +7,7 @@ unset SLURM_ARRAY_TASK_ID SLURM_ARRAY_TASK_MIN SLURM_ARRAY_TASK_COUNT PBS_ARRAY_
 model=$dir/damper.yaml
 cp "$source/examples/study/damper.yaml" "$model"
 study() { "$program" study "$model" "$@"; }
+study_of() { "$program" study "$@" -q; }
 
 expect 'one process' 0 study -o "$dir/one"
 has "$dir/out" "wrote $dir/one/study.csv: 70 samples, 0 failed"
@@ -156,4 +157,21 @@ mkdir "$dir/piped"
 mkfifo "$dir/piped/study.csv"
 expect 'a pipe' 1 study -o "$dir/piped"
 says 'cannot be written'
+
+# Names of parameters that hold what numbers hold.
+for name in e ee E1 gap; do
+    cat >"$dir/named.yaml" <<END_OF_YAML
+se3d: 1
+parameters: {$name: 0.1}
+gravity: [0, 0, 0]
+bodies: [{name: b, mass: 2, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
+joints: [{name: slide, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [1, 0, 0]}]
+forces: [{name: s, type: stop, joint: slide, upper: $name, k: 1000}]
+analysis: {type: dynamics, duration: 0.3}
+study: {parameters: {$name: [0.1, 0.11]}, every: 0.01, measures: {last: {final: b.position.x}}}
+END_OF_YAML
+    expect "a parameter $name" 0 study_of "$dir/named.yaml" -o "$dir/named.$name"
+    is "$(sed '1,2d' "$dir/named.$name/study.csv" | cut -d, -f3 | sort -u | wc -l)" 2
+    is "$(sed '1,2d' "$dir/named.$name/study.csv")" "$(sed '1,2d' "$dir/named.e/study.csv")"
+done
 finish

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "io/base/elementary.h"
+#include "io/base/number.h"
 #include "io/base/rotation.h"
 #include "io/document/amount.h"
 #include "io/document/document.h"
@@ -139,9 +140,11 @@ bool se3di_read_constant(se3di_reader *reader, const se3di_node *node,
     return true;
 }
 
+/* Of a number, not of names such as `e` or `E1`, whose values may change. */
 static bool is_literal(const char *text)
 {
-    return text[strspn(text, "+-0123456789.eE")] == '\0';
+    double value;
+    return se3di_number_parse(text, &value);
 }
 
 /* A number that is written out is compiled once, however often the tree is read. */
