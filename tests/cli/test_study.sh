@@ -159,19 +159,19 @@ expect 'a pipe' 1 study -o "$dir/piped"
 says 'cannot be written'
 
 # Names of parameters that hold what numbers hold.
-for name in e ee E1 gap; do
+for word in e ee E1 gap; do
     cat >"$dir/named.yaml" <<END_OF_YAML
 se3d: 1
-parameters: {$name: 0.1}
+parameters: {$word: 0.1}
 gravity: [0, 0, 0]
 bodies: [{name: b, mass: 2, inertia: [1, 1, 1], velocity: [1, 0, 0]}]
 joints: [{name: slide, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [1, 0, 0]}]
-forces: [{name: s, type: stop, joint: slide, upper: $name, k: 1000}]
+forces: [{name: s, type: stop, joint: slide, upper: $word, k: 1000}]
 analysis: {type: dynamics, duration: 0.3}
-study: {parameters: {$name: [0.1, 0.11]}, every: 0.01, measures: {last: {final: b.position.x}}}
+study: {parameters: {$word: [0.1, 0.11]}, every: 0.01, measures: {last: {final: b.position.x}}}
 END_OF_YAML
-    expect "a parameter $name" 0 study_of "$dir/named.yaml" -o "$dir/named.$name"
-    is "$(sed '1,2d' "$dir/named.$name/study.csv" | cut -d, -f3 | sort -u | wc -l)" 2
-    is "$(sed '1,2d' "$dir/named.$name/study.csv")" "$(sed '1,2d' "$dir/named.e/study.csv")"
+    expect "a parameter $word" 0 study_of "$dir/named.yaml" -o "$dir/named.$word"
+    is "$(sed '1,2d' "$dir/named.$word/study.csv" | cut -d, -f3 | sort -u | wc -l)" 2
+    is "$(sed '1,2d' "$dir/named.$word/study.csv")" "$(sed '1,2d' "$dir/named.e/study.csv")"
 done
 finish
