@@ -477,6 +477,13 @@ static void save_domain(se3di_save *s, const se3di_node *given)
     }
 }
 
+static void put_audit(se3di_save *s)
+{
+    if (s->model && s->model->particles && s->model->particles->audit) {
+        se3di_save_put(s, "  audit: true\n");
+    }
+}
+
 void se3di_save_contact(se3di_save *s)
 {
     static const char *const laws[] = {"hooke", "hertz_mindlin"};
@@ -495,9 +502,7 @@ void se3di_save_contact(se3di_save *s)
     }
     se3di_save_put(s, "\ncontact:\n  law: ");
     se3di_save_line(s, laws[settings.law]);
-    if (s->model && s->model->particles && s->model->particles->audit) {
-        se3di_save_put(s, "  audit: true\n");
-    }
+    put_audit(s);
     s->is_first = true;
     if (settings.step > 0.0) {
         se3di_save_put(s, "  ");
