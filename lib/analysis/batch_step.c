@@ -162,6 +162,7 @@ static void combine(const task *t, const double *y, double h, const double *coef
 #define PASSES         2     /* of a step's end: the same for all lanes, whatever they need */
 #define PASSES_SETTLED 8     /* of states that are set, each by factors of its own */
 #define CLOSED         1e-10 /* m, m/s: else states that are set fail */
+#define CLOSED_STEP    1e-8  /* m, m/s: else a step was too long */
 
 /* Positions, or velocities, move by the least change that closes the loops, by the last factors; by
  * new ones if it renews. */
@@ -189,14 +190,24 @@ static void project(const task *t, double *y, int rates, int passes, int renews)
     }
 }
 
-/* Of the state at the end of a step. */
-static void close_loops(const task *t, double *y)
+/* Of the state that is placed. */
+static void find_all_gaps(const task *t, double gaps[2][SE3DI_LANES_MAX])
+{
+    for (int rates = 0; rates < 2; ++rates) {
+        t->batch->core->find_gaps(&t->worker->lanes, rates, t->worker->verdict);
+        memcpy(gaps[rates], t->worker->verdict, t->width * sizeof *gaps[rates]);
+    }
+}
+
+/* Of the state at the end of a step; what remains open of each lane's positions and velocities. */
+static void close_loops(const task *t, double *y, double gaps[2][SE3DI_LANES_MAX])
 {
     t->batch->core->place(&t->worker->lanes, y, y + t->batch->tree.q_count * t->width);
     t->batch->core->factor(&t->worker->lanes, NULL);
     t->batch->core->factor_rows(&t->worker->lanes);
     project(t, y, 0, PASSES, 0);
     project(t, y, 1, PASSES, 0);
+    find_all_gaps(t, gaps);
 }
 
 static void settle_group(const task *t, const errand *e)
@@ -214,10 +225,7 @@ static void settle_group(const task *t, const errand *e)
     b->core->place(&t->worker->lanes, end, end + b->tree.q_count * t->width);
     project(t, end, 0, PASSES_SETTLED, 1);
     project(t, end, 1, PASSES, 1);
-    for (int rates = 0; rates < 2; ++rates) {
-        b->core->find_gaps(&t->worker->lanes, rates, t->worker->verdict);
-        memcpy(gaps[rates], t->worker->verdict, t->width * sizeof *gaps[rates]);
-    }
+    find_all_gaps(t, gaps);
     for (size_t lane = 0; lane < t->width; ++lane) {
         if (begin + lane < e->first || begin + lane >= e->first + e->count) {
             continue;
@@ -233,7 +241,8 @@ static void settle_group(const task *t, const errand *e)
 /* ---- steps of all ---- */
 
 /* worker->end: y after a step. */
-static void make_step(const task *t, const double *y, const errand *e)
+static void make_step(const task *t, const double *y, const errand *e,
+                      double gaps[2][SE3DI_LANES_MAX])
 {
     const se3di_rk_tableau *tableau = e->tableau;
     se3di_batch_worker *w = t->worker;
@@ -245,13 +254,14 @@ static void make_step(const task *t, const double *y, const errand *e)
     }
     combine(t, y, e->h, tableau->a[tableau->stages], tableau->stages, w->end);
     if (t->batch->has_loops) {
-        close_loops(t, w->end);
+        close_loops(t, w->end, gaps);
     }
     t->batch->core->check(count, w->end, w->verdict);
 }
 
-/* Lanes whose step is finite take it. */
-static void accept(const task *t, double *y, const double *begin, double elapsed)
+/* Lanes whose step is finite, with loops that are closed, take it. */
+static void accept(const task *t, double *y, double gaps[2][SE3DI_LANES_MAX], const double *begin,
+                   double elapsed)
 {
     const se3di_batch_worker *w = t->worker;
     const size_t count = (size_t)t->batch->tree.q_count + t->batch->tree.v_count;
@@ -260,6 +270,9 @@ static void accept(const task *t, double *y, const double *begin, double elapsed
         int32_t *status = status_of(t, lane);
         if (*status >= 0 && w->verdict[lane] != 1.0) {
             *status = SE3D_ERR_NOT_FINITE;
+        } else if (*status >= 0 &&
+                   !(gaps[0][lane] <= CLOSED_STEP && gaps[1][lane] <= CLOSED_STEP)) {
+            *status = SE3D_ERR_NO_CONVERGENCE;
         }
         fine &= *status >= 0;
         if (*status >= 0) {
@@ -280,11 +293,11 @@ static void step_group(const task *t, const errand *e)
     const se3di_batch *b = t->batch;
     const size_t count = (size_t)b->tree.q_count + b->tree.v_count;
     double *y = b->states + t->group * count * t->width;
-    double begin[SE3DI_LANES_MAX];
+    double begin[SE3DI_LANES_MAX], gaps[2][SE3DI_LANES_MAX] = {{0.0}};
     memcpy(begin, b->time + t->group * t->width, t->width * sizeof *begin);
     for (uint64_t k = 0; k < e->steps; ++k) {
-        make_step(t, y, e);
-        accept(t, y, begin, (double)(k + 1) * e->h);
+        make_step(t, y, e, gaps);
+        accept(t, y, gaps, begin, (double)(k + 1) * e->h);
     }
 }
 

@@ -323,6 +323,27 @@ static void a_state_at_a_singular_position_fails_alone(void)
     se3d_system_destroy(m.system);
 }
 
+/* Whatever the length of the steps: a state is on its loops, or says that it is not moved. */
+static void steps_that_are_too_long_leave_no_loop_open(void)
+{
+    static const double steps[] = {0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8};
+    int refused = 0;
+    for (int trial = 0; trial < 14 * KINDS; ++trial) {
+        mechanism m = make(trial % KINDS, 0);
+        se3d_batch *b;
+        double positions[18];
+        CHECK(!se3d_batch_create(m.system, 1, 1, &b));
+        const int32_t method = trial / KINDS < 7 ? SE3D_METHOD_RK4 : SE3D_METHOD_DOP853;
+        for (int k = 0; k < 4; ++k) {
+            refused += se3d_batch_step(b, method, steps[trial / KINDS % 7], 1) < 0;
+            CHECK(show(&m, b, 0, positions) < 1e-7);
+        }
+        se3d_batch_destroy(b);
+        se3d_system_destroy(m.system);
+    }
+    CHECK(refused > 0);
+}
+
 /* Four pins about axes that are not parallel have equations besides those of points. */
 static void loops_that_need_more_are_named(void)
 {
@@ -352,6 +373,7 @@ int main(void)
     RUN(bits_do_not_depend_on_count_lane_and_threads);
     RUN(bits_do_not_depend_on_the_width);
     RUN(a_state_at_a_singular_position_fails_alone);
+    RUN(steps_that_are_too_long_leave_no_loop_open);
     RUN(loops_that_need_more_are_named);
     return check_finish();
 }
