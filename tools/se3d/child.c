@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -17,6 +16,7 @@
 #include <unistd.h>
 
 #include "interrupt.h"
+#include "io/base/file.h"
 
 void child_pause(int milliseconds)
 {
@@ -156,28 +156,13 @@ int child_finish(child *c, int seconds)
 int folder_make_temporary(char *path, size_t size)
 {
     const char *where = getenv("TMPDIR");
-    const int length =
-        snprintf(path, size, "%s/se3d-XXXXXX", where && where[0] == '/' ? where : "/tmp");
-    if (length < 0 || (size_t)length >= size) {
-        errno = ENAMETOOLONG;
-        return 0;
-    }
-    return mkdtemp(path) != NULL;
-}
-
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)
-{
-    (void)about;
-    (void)kind;
-    (void)where;
-    remove(path);
-    return 0;
+    return se3di_temporary_make(where && where[0] == '/' ? where : NULL, path, size);
 }
 
 void folder_remove(const char *path)
 {
     for (int k = 0; k < 100; ++k) {
-        nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS);
+        se3di_temporary_remove(path);
         if (access(path, F_OK) != 0) {
             return;
         }
