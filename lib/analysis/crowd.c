@@ -9,17 +9,11 @@ static int is_known(const se3di_pair *pair)
            !(pair->pull_off > 0.0);
 }
 
-/* A step takes gravity as it is at its start. */
-static int is_gravity_constant(const se3di_model *model)
-{
-    const int32_t *function = model->gravity_function;
-    return function[0] < 0 && function[1] < 0 && function[2] < 0;
-}
-
+/* A step of convex takes gravity as it is at its start. */
 int se3di_crowd_suits(const se3di_model *model)
 {
     const size_t materials = model->material_slots.count;
-    if (!is_gravity_constant(model) || model->sets || model->constraint_slots.count > 0 ||
+    if (se3di_model_gravity_varies(model) || model->sets || model->constraint_slots.count > 0 ||
         model->force_slots.count > 0 || model->state_count > 0 ||
         model->contact.law == SE3DI_LAW_CALLBACK) {
         return 0;

@@ -36,8 +36,7 @@ static void bar(const se3di_convex *c, const se3di_assembly *assembly, uint32_t 
 static void bar_all(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    const int changes = model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
-                        model->gravity_function[2] >= 0 || model->state_count > 0;
+    const int changes = se3di_model_gravity_varies(model) || model->state_count > 0;
     memset(c->bars, changes, assembly->body_count);
     for (uint32_t k = 0; k < assembly->joint_body_count; ++k) {
         c->bars[assembly->joint_body[k]] = 1;

@@ -647,10 +647,8 @@ static int can_wait(const se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
     int can = is_open(equations) && !equations->tree->has_others && !equations->assembly.push &&
-              model->shape_slots.count <= 1 && model->wheel_slots.count == 0;
-    for (int k = 0; can && k < 3; ++k) {
-        can = model->gravity_function[k] < 0;
-    }
+              model->shape_slots.count <= 1 && model->wheel_slots.count == 0 &&
+              !se3di_model_gravity_varies(model);
     for (size_t k = 0; can && k < model->force_slots.count; ++k) {
         can = is_plain(&model->forces[k]);
     }

@@ -73,8 +73,7 @@ static int has_power(const se3di_assembly *assembly)
     const se3di_model *model = assembly->model;
     return model->force_slots.count > model->state_count || model->shape_slots.count > 1 ||
            assembly->timed_count > 0 || assembly->user_count > 0 ||
-           model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
-           model->gravity_function[2] >= 0;
+           se3di_model_gravity_varies(model);
 }
 
 se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l, double power[3])

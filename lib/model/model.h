@@ -397,6 +397,13 @@ void se3di_model_set_contact(se3di_model *model, const se3di_contact_settings *s
 se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape);
 void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape);
 
+/* Whether any part of gravity follows a function of time. */
+static inline int se3di_model_gravity_varies(const se3di_model *model)
+{
+    const int32_t *function = model->gravity_function;
+    return function[0] >= 0 || function[1] >= 0 || function[2] >= 0;
+}
+
 /* Whose name a marker's is: names of markers are unique on their body. */
 static inline uint32_t se3di_model_owner(const se3di_model *model, uint32_t body)
 {

@@ -205,9 +205,8 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
 static se3d_status run_steps(se3di_particles *set, const se3di_model *model, double length,
                              size_t steps, se3di_error *error)
 {
-    const int varies = set->source_count > 0 || set->servo_count > 0 ||
-                       model->gravity_function[0] >= 0 || model->gravity_function[1] >= 0 ||
-                       model->gravity_function[2] >= 0;
+    const int varies =
+        set->source_count > 0 || set->servo_count > 0 || se3di_model_gravity_varies(model);
     size_t done = 0;
     do {
         const size_t now = varies ? 1 : steps;

@@ -588,10 +588,8 @@ se3di_force_sums se3di_tree_sums_again(se3di_tree *tree)
 int se3di_tree_falls(const se3di_tree *tree)
 {
     const se3di_model *model = tree->model;
-    int falls = !tree->has_states && model->shape_slots.count <= 1 && model->wheel_slots.count == 0;
-    for (int c = 0; c < 3; ++c) {
-        falls &= model->gravity_function[c] < 0;
-    }
+    int falls = !tree->has_states && model->shape_slots.count <= 1 &&
+                model->wheel_slots.count == 0 && !se3di_model_gravity_varies(model);
     for (uint32_t k = 0; falls && k < tree->force_count; ++k) {
         const se3di_force *force = &model->forces[k];
         falls = force->type == SE3DI_FORCE_ARMATURE ||
