@@ -395,6 +395,13 @@ static se3d_status choose_steps(se3di_run *run, double t_end)
     return SE3D_OK;
 }
 
+static se3d_status refuse_against(const se3di_run *run, double t_end)
+{
+    return run->driven_twice && t_end > run->model->time
+               ? se3di_against_refuse(&run->equations.assembly, t_end, run->error)
+               : SE3D_OK;
+}
+
 /* The method in use, to t_end or to where an event ends it or it has to be left. */
 static se3d_status run_method(se3di_run *run, double t_end)
 {
@@ -406,8 +413,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     const double remaining = t_end - run->model->time;
     run->refused = 1;
     SE3DI_TRY(se3di_jump_refuse(&run->equations.assembly, t_end, step, run->error));
-    SE3DI_TRY(
-        se3di_against_refuse(&run->equations.assembly, fmax(t_end, run->horizon), run->error));
+    SE3DI_TRY(refuse_against(run, t_end));
     run->refused = 0;
     step = remaining / se3di_steps_count(remaining, step, t_end);
     SE3DI_TRY(begin_dynamics(run, step));
@@ -456,7 +462,7 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
         SE3DI_TRY(settle(run, run->model->time));
     }
     se3di_contacts_begin(run->model, 0.0, 1.0, 0);
-    SE3DI_TRY(se3di_against_refuse(&run->equations.assembly, t_end, run->error));
+    SE3DI_TRY(refuse_against(run, t_end));
     if (run->equations.audits) {
         SE3DI_TRY(se3di_friction_follow(&run->equations, run->model->time));
         se3di_stops_accept(run->model);

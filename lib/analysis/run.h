@@ -33,6 +33,7 @@ typedef struct se3di_run {
     uint64_t before_version;
     int32_t has_before;       /* it was kept */
     int32_t steps_once;       /* the call is one step */
+    int32_t driven_twice;     /* some coordinate is */
     int32_t shows_motion;     /* runs may end without accelerations and multipliers */
     int32_t before_waits;     /* what it shows remains to be computed, see base/pending.h */
     se3di_start_change start; /* of the last start that the user gave */

@@ -11,6 +11,7 @@
 #include "force/driver_rate.h"
 #include "integrator/convex.h"
 #include "integrator/explicit_step.h"
+#include "nonlinear/against.h"
 
 #include <string.h>
 
@@ -243,6 +244,7 @@ se3d_status se3di_run_build(se3di_run *run)
     SE3DI_TRY(check_rates(run));
     run->told_redundant = run->told_left_out = 0;
     run->determined = 0;
+    run->driven_twice = se3di_against_can_be(run->model);
     run->values_version = run->model->values_version;
     if (se3di_run_is_driven(run)) {
         se3di_assembly_level(&run->equations.assembly);

@@ -10,7 +10,8 @@
 #define TWO_PI   6.283185307179586
 #define PART     0.05 /* of the largest gap, of rows that are named */
 #define NAMES    3
-#define SAMPLES  256
+#define SAMPLES  256  /* at most, */
+#define APART    1e-3 /* and no closer than this [s] */
 #define PARTED   1e-8 /* of values, relative to the scale of their row */
 #define RATE_OFF 1e-6
 
@@ -22,7 +23,7 @@ static int is_driver(const se3di_constraint *constraint)
 static int drive_alike(const se3di_model *model, const se3di_constraint *a,
                        const se3di_constraint *b)
 {
-    return is_driver(a) && is_driver(b) && a != b && a->joints[0] == b->joints[0] &&
+    return a != b && a->joints[0] == b->joints[0] && is_driver(a) && is_driver(b) &&
            strcmp(model->rows[a->row_begin].name, model->rows[b->row_begin].name) == 0;
 }
 
@@ -82,6 +83,16 @@ void se3di_against_describe(const se3di_model *model, const double *gap, uint32_
 
 /* ---- functions of time ---- */
 
+int se3di_against_can_be(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        if (find_other(model, &model->constraints[k])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 static int is_of_time(const se3di_model *model, const se3di_constraint *constraint)
 {
     return is_driver(constraint) && !constraint->law_class &&
@@ -103,8 +114,10 @@ static se3d_status compare(const se3di_model *model, const se3di_constraint *a,
 {
     const se3di_row *rows[2] = {&model->rows[a->row_begin], &model->rows[b->row_begin]};
     const double scale = se3di_row_get_scale(model, a->row_begin, se3di_model_get_size(model));
-    for (int k = 0; k <= SAMPLES; ++k) {
-        const double t = model->time + (t_end - model->time) * k / SAMPLES;
+    const double span = t_end - model->time;
+    const double samples = fmin(SAMPLES, ceil(span / APART));
+    for (double k = 0.0; k <= samples; k += 1.0) {
+        const double t = model->time + span * k / samples;
         double f[2];
         if (!value_at(model, rows[0], t, &f[0]) || !value_at(model, rows[1], t, &f[1])) {
             return SE3D_OK;

@@ -14,6 +14,9 @@ void se3di_against_describe(const se3di_model *model, const double *gap, uint32_
 /* Whether a row is that of a driver whose coordinate another one drives, too. */
 int se3di_against_is_twice(const se3di_model *model, uint32_t row);
 
+/* Whether two drivers of one coordinate are there, as long as the structure does not change. */
+int se3di_against_can_be(const se3di_model *model);
+
 /* Fails with INCONSISTENT if two drivers of one coordinate, of the time alone, part on the way from
  * the present time to t_end. */
 se3d_status se3di_against_refuse(const se3di_assembly *assembly, double t_end, se3di_error *error);

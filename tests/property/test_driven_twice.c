@@ -108,9 +108,35 @@ static void the_check_compares_accelerations(void)
     }
 }
 
+enum { PARTING = 6 }; /* at 0.3 s */
+
+/* Runs are refused for what would happen in them, be there a horizon or not. */
+static void what_parts_after_a_run_does_not_end_it(void)
+{
+    static const int32_t analyses[] = {SE3D_ANALYSIS_DYNAMICS, SE3D_ANALYSIS_KINEMATICS};
+    char text[3000];
+    write(PARTING, text, sizeof text);
+    for (int k = 0; k < 4; ++k) {
+        text_model m = text_model_open(text, -1, -1, 0.0);
+        se3d_solver *solver;
+        se3d_solver_def def = se3d_solver_def_default();
+        def.analysis = analyses[k % 2];
+        def.horizon = k < 2 ? 0.5 : 0.0;
+        CHECK(!se3d_solver_create(m.system, &def, &solver));
+        for (int step = 1; step <= 15; ++step) {
+            CHECK(se3d_solver_run(solver, 0.02 * step) == SE3D_INFO_REDUNDANT);
+        }
+        CHECK(se3d_solver_run(solver, 0.5) == SE3D_ERR_INCONSISTENT);
+        CHECK_CONTAINS(se3d_system_get_error(m.system), BOTH);
+        se3d_solver_destroy(solver);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(contradictions_are_told_when_they_begin);
     RUN(the_check_compares_accelerations);
+    RUN(what_parts_after_a_run_does_not_end_it);
     return check_finish();
 }
