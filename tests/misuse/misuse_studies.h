@@ -182,6 +182,12 @@ static const char study_motion[] =
     "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
     "analysis: {type: dynamics, duration: 0.01, step: 0.01}\n"
     "study: {parameters: {h: [1, 2, 3]}, measures: {z: {initial: block.position.z}}}\n";
+/* One analysis before the one that is measured. */
+static const char study_motions[] =
+    "se3d: 1\nparameters: {h: 1}\n"
+    "bodies: [{name: block, mass: 1, inertia: [1, 1, 1], position: [0, 0, h]}]\n"
+    "analysis: [{type: dynamics, duration: 0.01}, {type: dynamics, duration: 0.01}]\n"
+    "study: {parameters: {h: [1, 2, 3]}, measures: {z: {final: block.position.z}}}\n";
 static int study_meddled;
 
 /* From the interrupt of a sample neither the study nor its model can be run again or taken away. */
@@ -217,6 +223,21 @@ static void study_keeps_its_sample(const world *w)
     IS(se3d_study_answer(s.study, "{\"id\": 1, \"sample\": 1}", 22, &line), SE3D_OK);
     CHECK_CONTAINS(line, "\"z\": 2");
     CHECK(study_meddled >= 3);
+    close_study(&s);
+}
+
+/* The same while models beside the point are brought to where they follow its run. */
+static void study_keeps_its_neighbours(const world *w)
+{
+    study_world s = open_study_of(w, study_motions);
+    double h = 4.0, z = 0.0, slope = 0.0;
+    IS(se3d_study_set_interrupt(s.study, meddle_with_study, &s), SE3D_OK);
+    study_meddled = 0;
+    IS(se3d_study_eval_nominal(s.study, &z, NULL), SE3D_OK);
+    const int once = study_meddled;
+    IS(se3d_study_eval_sensitivity(s.study, 0, &h, &slope, NULL, NULL), SE3D_OK);
+    CHECK_NEAR(slope, 1.0, 1e-9);
+    CHECK(once > 0 && study_meddled >= 10 * once);
     close_study(&s);
 }
 

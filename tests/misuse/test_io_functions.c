@@ -615,6 +615,7 @@ static void a_sample_keeps_its_study(void)
 {
     world w = open_world();
     study_keeps_its_sample(&w);
+    study_keeps_its_neighbours(&w);
     close_world(&w);
 }
 

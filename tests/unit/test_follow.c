@@ -6,6 +6,7 @@
 
 #include "se3d/study.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -289,8 +290,47 @@ static void steps_of_dynamics_are_repeated(void)
     }
 }
 
+typedef struct patience {
+    int asked, most;
+} patience;
+
+static int lose_patience(void *ctx)
+{
+    patience *p = ctx;
+    return ++p->asked >= p->most;
+}
+
+/* What follows a run, and what leads there, ends where the user wants it to. */
+static void followers_are_interrupted(void)
+{
+    char text[6000];
+    se3d_model *model = NULL;
+    se3d_study *study = NULL;
+    se3d_model_error error = {.message = ""};
+    write(text, sizeof text, at, 5, 0, event_tail);
+    CHECK(!se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, &error));
+    CHECK(!se3d_study_create(model, &study, &error));
+    patience whole = {0, INT_MAX}, once = whole;
+    double value, slopes[10];
+    CHECK(!se3d_study_set_interrupt(study, lose_patience, &once));
+    CHECK(!se3d_study_eval_nominal(study, slopes, NULL));
+    CHECK(!se3d_study_set_interrupt(study, lose_patience, &whole));
+    CHECK(!se3d_study_eval_sensitivity(study, 0, &value, slopes, NULL, NULL));
+    CHECK(once.asked > 10 && whole.asked >= 8 * once.asked);
+    for (int most = 1; most <= whole.asked; most += 1 + whole.asked / 40) {
+        patience p = {0, most};
+        CHECK(!se3d_study_set_interrupt(study, lose_patience, &p));
+        CHECK(se3d_study_eval_sensitivity(study, 0, &value, slopes, NULL, &error) ==
+              SE3D_ERR_INTERRUPTED);
+        CHECK(p.asked == most && error.message[0] != '\0');
+    }
+    se3d_study_destroy(study);
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
+    RUN(followers_are_interrupted);
     RUN(derivatives_are_those_of_runs);
     RUN(steps_of_dynamics_are_repeated);
     RUN(what_cannot_be_followed_is_refused);

@@ -86,7 +86,7 @@ static se3d_status begin(se3di_trial *t)
 {
     const size_t index = t->study->analysis;
     const double start = t->model->analyses[index].analysis.start;
-    const se3d_run_options how = se3d_run_options_default();
+    const se3d_run_options how = se3di_study_get_options(t->study);
     const se3di_output_entry nothing = {.set = -1};
     if (index > 0) {
         const se3di_watch watch = {.output = &nothing, .analysis = index - 1, .take = pass_row};
@@ -108,6 +108,8 @@ static se3d_status create_solver(follower *one)
     se3d_system_get_time(t->model->system, &start);
     const double end = start + entry->analysis.duration;
     def.horizon = fabs(end) > 0.0 ? end : DBL_MIN;
+    def.interrupt = t->study->interrupt;
+    def.interrupt_ctx = t->study->interrupt_ctx;
     const se3d_status status = se3d_solver_create(t->model->system, &def, &one->solver);
     return status >= 0 && se3di_analysis_has_motion(entry)
                ? se3di_events_create(t->model, one->solver, se3di_trial_take_event, t)
@@ -203,12 +205,18 @@ static se3d_status take_row(follower *one, se3d_solver *solver, double time)
     return se3di_trial_take_row(&one->trial, one->row);
 }
 
+/* Differences of runs would fare no better. */
+static bool is_final(se3d_status status)
+{
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED;
+}
+
 static se3d_status take_rows(void *ctx, se3d_solver *solver, double time)
 {
     followers *all = ctx;
     for (size_t k = 0; k < all->count && !all->has_failed; ++k) {
         const se3d_status status = take_row(&all->of[k], solver, time);
-        if (status == SE3D_ERR_NO_MEMORY) {
+        if (is_final(status)) {
             return status;
         }
         all->has_failed = status < 0;
@@ -262,6 +270,7 @@ se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point
     }
     near.step *= SHARE;
     near.levels = LEVELS;
+    const se3di_study_work work = se3di_study_begin(study);
     se3d_status status = create(&all, study, &near);
     if (status >= 0) {
         status =
@@ -279,6 +288,6 @@ se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point
         *done = told < 0 || is_good(study, near.step, measures, derivatives, estimates);
     }
     destroy(&all);
-    return *done || status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ? status
-                                                                                   : SE3D_OK;
+    se3di_study_end(study, work);
+    return *done || is_final(status) ? status : SE3D_OK;
 }

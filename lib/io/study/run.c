@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/floats.h"
 #include "io/channel/event.h"
 #include "io/channel/sample.h"
 #include "io/document/document.h"
@@ -219,13 +218,34 @@ void se3di_trial_sharpen(const trial *t)
     }
 }
 
+se3di_study_work se3di_study_begin(se3d_study *study)
+{
+    const se3di_study_work work = {se3di_floats_set(), study->is_running};
+    study->is_running = true;
+    ++study->model->running;
+    return work;
+}
+
+void se3di_study_end(se3d_study *study, se3di_study_work work)
+{
+    --study->model->running;
+    study->is_running = work.was_running;
+    se3di_floats_restore(work.host);
+}
+
+se3d_run_options se3di_study_get_options(const se3d_study *study)
+{
+    se3d_run_options how = se3d_run_options_default();
+    how.interrupt = study->interrupt;
+    how.interrupt_ctx = study->interrupt_ctx;
+    return how;
+}
+
 static se3d_status run(trial *t, const se3di_named *values, size_t count, double *measures)
 {
     se3d_study *study = t->study;
     se3di_output_entry output;
-    se3d_run_options how = se3d_run_options_default();
-    how.interrupt = study->interrupt;
-    how.interrupt_ctx = study->interrupt_ctx;
+    const se3d_run_options how = se3di_study_get_options(study);
     se3d_status status = make_model(t, values, count);
     if (status >= 0) {
         status = se3di_trial_find_channels(t, &output);
@@ -255,9 +275,7 @@ se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, s
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;
     }
-    const se3di_floats host = se3di_floats_set();
-    study->is_running = true;
-    ++study->model->running;
+    const se3di_study_work work = se3di_study_begin(study);
     se3di_iopool_init(&t.pool, &study->pool.allocator);
     const se3d_status status = run(&t, values, count, measures);
     if (t.is_set) {
@@ -266,9 +284,7 @@ se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, s
         se3d_model_destroy(t.model);
     }
     se3di_iopool_destroy(&t.pool);
-    --study->model->running;
-    study->is_running = false;
-    se3di_floats_restore(host);
+    se3di_study_end(study, work);
     return status > 0 ? SE3D_OK : status;
 }
 

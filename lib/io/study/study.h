@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "base/floats.h"
 #include "io/base/pool.h"
 #include "io/channel/channel.h"
 #include "io/channel/study.h"
@@ -55,6 +56,17 @@ typedef struct se3di_study_point {
     size_t levels;         /* how many steps, 1 to SE3DI_STUDY_LEVELS: two runs each, and more steps
                        * if there are values on one side only */
 } se3di_study_point;
+
+/* Work on samples: what it calls back may neither begin other work nor destroy the study, and the
+ * processor rounds as the library wants it. May be nested. */
+typedef struct se3di_study_work {
+    se3di_floats host;
+    bool was_running;
+} se3di_study_work;
+se3di_study_work se3di_study_begin(se3d_study *study);
+void se3di_study_end(se3d_study *study, se3di_study_work work);
+/* How its models are run. */
+se3d_run_options se3di_study_get_options(const se3d_study *study);
 
 /* Run the model with some parameters of it. @return as se3d_study_eval. */
 se3d_status se3di_study_run(se3d_study *study, const se3di_named *values, size_t count,
