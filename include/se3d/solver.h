@@ -27,10 +27,10 @@ typedef enum se3d_analysis {
  * @since 0.1 */
 SE3D_API const char *se3d_analysis_get_name(int32_t analysis);
 
-/* How a solver of dynamics steps in time. AUTO takes verlet with particles; convex, of order 1, if
- * ten free bodies or more may touch, nothing acts on them but constant gravity, no tolerance is
- * given and no step above 5 ms; radau with strong dampers; else dop853, which it leaves for radau
- * if stability limits its steps. @since 0.1 */
+/* How a solver of dynamics steps in time. AUTO takes verlet with particles; convex, of order 1,
+ * from where ten free bodies or more are at others, if nothing acts on them but constant gravity,
+ * no tolerance is given and no step above 5 ms; radau with strong dampers; else dop853, which it
+ * leaves for radau if stability limits its steps. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,
     SE3D_METHOD_GENERALIZED_ALPHA = 1,
@@ -248,7 +248,7 @@ SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const cha
 SE3D_API se3d_status se3d_solver_get_formulation(const se3d_solver *solver, const char **name);
 
 /* Get when AUTO changed the method during a run because stability kept the steps of the first
- * method short.
+ * method short, or many bodies came together.
  * @param[out] time  [s]; NaN: it did not
  * @param[out] left  the method that it left, "": none; static
  * @return OK, NULL.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/crowd.h"
 
-#define MANY 10 /* bodies */
+#include "contact/bodies/crowd.h"
 
 static int is_known(const se3di_pair *pair)
 {
@@ -37,7 +37,7 @@ int se3di_crowd_is_large(const se3di_model *model)
         groups |= shape->material >= 0 ? shape->group : 0;
         masks |= shape->material >= 0 ? shape->mask : 0;
     }
-    for (size_t k = 0; k < model->shape_slots.count && count < MANY; ++k) {
+    for (size_t k = 0; k < model->shape_slots.count && count < SE3DI_CROWD; ++k) {
         const se3di_shape *shape = &model->shapes[k];
         const se3di_body *body = &model->bodies[shape->body];
         const int meets = shape->material >= 0 && (shape->mask & groups) && (shape->group & masks);
@@ -46,5 +46,5 @@ int se3di_crowd_is_large(const se3di_model *model)
             ++count;
         }
     }
-    return count >= MANY;
+    return count >= SE3DI_CROWD;
 }

@@ -337,9 +337,12 @@ static int must_switch(const se3di_run *run)
            integration->method->is_held(integration);
 }
 
-/* From the present state by a method for stiff motions. */
+/* From the present state by a method for stiff motions, or for many bodies at each other. */
 static se3d_status switch_method(se3di_run *run)
 {
+    if (se3di_run_is_crowded(run)) {
+        return se3di_run_prepare(run);
+    }
     run->left = run->integration.method;
     run->left_at = run->model->time;
     se3di_run_use_method(run, se3di_integrator_find(SE3D_METHOD_RADAU));

@@ -4,6 +4,7 @@
 
 #include "analysis/crowd.h"
 #include "base/log.h"
+#include "contact/bodies/crowd.h"
 #include "nonlinear/ranks.h"
 
 #define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
@@ -51,7 +52,17 @@ void se3di_run_tell_step(se3di_run *run)
 void se3di_run_tell_crowd(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
-    if (method != &se3di_integrator_convex && run->told_crowd != method &&
+    if (run->told_crowd == method) {
+        return;
+    }
+    if (method == &se3di_integrator_convex && run->automatic) {
+        run->told_crowd = method;
+        se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
+                        "t = %g s: %d free bodies or more are at each other: %s takes them, of "
+                        "order 1; with a tolerance, each contact is followed",
+                        run->model->time, SE3DI_CROWD, method->name);
+    }
+    if (method != &se3di_integrator_convex && !run->integration.settings.leaves_crowd &&
         se3di_crowd_is_large(run->model) && se3di_crowd_suits(run->model)) {
         run->told_crowd = method;
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,

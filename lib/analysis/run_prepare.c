@@ -8,6 +8,7 @@
 #include "analysis/crowd.h"
 #include "analysis/kinds.h"
 #include "analysis/stiffness.h"
+#include "contact/bodies/crowd.h"
 #include "force/driver_rate.h"
 #include "integrator/convex.h"
 #include "integrator/explicit_step.h"
@@ -109,15 +110,19 @@ void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
 
 #define STEP_CROWD 5e-3 /* s: a longest step for other methods would be too long for convex */
 
-/* No tolerance is asked for, and many bodies touch. */
-static int is_crowded(const se3di_run *run)
+/* No tolerance is asked for, and many bodies may touch. */
+static int may_crowd(const se3di_run *run)
+{
+    return run->automatic && run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
+           run->integration.settings.step <= STEP_CROWD && se3di_crowd_is_large(run->model) &&
+           se3di_crowd_suits(run->model);
+}
+
+int se3di_run_is_crowded(const se3di_run *run)
 {
     const se3di_model *model = run->model;
-    return run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
-           run->integration.settings.step <= STEP_CROWD &&
-           !is_history_of(model, SE3D_METHOD_DOP853) && !is_history_of(model, SE3D_METHOD_RADAU) &&
-           (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_crowd_is_large(model)) &&
-           se3di_crowd_suits(model);
+    return may_crowd(run) && !is_history_of(model, SE3D_METHOD_RADAU) &&
+           (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_bodies_crowd(model));
 }
 
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
@@ -136,7 +141,7 @@ static void choose_method(se3di_run *run)
     int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
-    } else if (is_crowded(run)) {
+    } else if (se3di_run_is_crowded(run)) {
         method = SE3D_METHOD_CONVEX;
     }
     se3di_run_use_method(run, se3di_integrator_find(method));
@@ -258,13 +263,28 @@ se3d_status se3di_run_build(se3di_run *run)
     return SE3D_OK;
 }
 
+/* From the present state. */
+static se3d_status enter_crowd(se3di_run *run)
+{
+    if (is_history_of(run->model, SE3D_METHOD_DOP853)) {
+        run->left = run->integration.method;
+        run->left_at = run->model->time;
+    }
+    se3di_run_use_method(run, &se3di_integrator_convex);
+    return se3di_run_build(run);
+}
+
 se3d_status se3di_run_prepare(se3di_run *run)
 {
     SE3DI_TRY(se3di_breaks_check(run));
     if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly)) {
         choose_method(run);
         SE3DI_TRY(se3di_run_build(run));
+    } else if (run->integration.settings.leaves_crowd && se3di_run_is_crowded(run)) {
+        SE3DI_TRY(enter_crowd(run));
     }
+    run->integration.settings.leaves_crowd =
+        run->integration.method->tag == SE3D_METHOD_DOP853 && may_crowd(run);
     se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
     if (run->values_version != run->model->values_version) {
         se3di_assembly_take_values(&run->equations.assembly);

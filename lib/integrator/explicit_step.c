@@ -232,7 +232,8 @@ static double largest_growth(const se3di_explicit *m)
 /* The run is to end at the forward state. */
 static int must_leave(const se3di_explicit *m)
 {
-    return m->step.integration->settings.leaves_stiff && m->past->held >= SE3DI_HELD_MIN;
+    const se3di_integration *integration = m->step.integration;
+    return integration->settings.leaves_stiff && se3di_explicit_is_held(integration);
 }
 
 /* ---- in the loop of all methods ---- */
@@ -264,6 +265,7 @@ static se3d_status take(se3di_adaptive *step, double h, double error)
     if (step->integration->settings.leaves_stiff || m->methods->is_watched) {
         m->methods->watch_stability(m, h);
     }
+    se3di_explicit_watch_crowd(m);
     error = fmax(error, m->remembered);
     step->at->next = m->methods->next_step(m, h, error);
     step->at->error = error;

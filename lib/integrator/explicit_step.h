@@ -117,6 +117,8 @@ se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y
 double *se3di_explicit_end(const se3di_explicit *m);
 /* One more sign that stability limits the steps, or one against it. */
 void se3di_explicit_count_sign(se3di_explicit *m, int is_held);
+/* Whether the accepted state is one to leave. */
+void se3di_explicit_watch_crowd(se3di_explicit *m);
 
 /* For the table of a method, see integrator.h. */
 size_t se3di_explicit_history_count(const se3di_assembly *assembly);

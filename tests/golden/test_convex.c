@@ -289,6 +289,105 @@ static void many_bodies_are_stepped_by_convex(void)
     CHECK(hash[3] != hash[4]);
 }
 
+static const char *method_of(const scene *s)
+{
+    const char *name = "";
+    CHECK(se3d_solver_get_method(s->solver, &name) == SE3D_OK);
+    return name;
+}
+
+/* Balls in a row, one diameter apart, at a height above a floor, if there is one. */
+static scene line_up_balls(int count, double height, int has_floor, uint32_t mask)
+{
+    const double v[3] = {0.1, 0.0, 0.0};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.4, 0.5, 1e4);
+    if (has_floor) {
+        scene_floor(&s, 0.0);
+    }
+    for (int k = 0; k < count; ++k) {
+        const double r[3] = {0.2 * k, 0.0, 0.05 + height}, j = 0.4 * 0.5 * 0.0025;
+        const double J[3] = {j, j, j};
+        se3d_shape_def def = scene_shape(&s, scene_body(&s, 0.5, J, r, v));
+        se3d_shape shape;
+        def.radius = 0.05;
+        def.mask = mask;
+        CHECK(se3d_shape_create_sphere(s.system, &def, &shape) == SE3D_OK);
+    }
+    return s;
+}
+
+/* auto follows what has not come together with error control, and leaves it for convex then. */
+static void bodies_far_apart_are_no_crowd(void)
+{
+    for (int k = 0; k < 3; ++k) {
+        const int falls = k > 0, steps = k == 2;
+        double time = 0.0;
+        const char *left = "";
+        scene s = line_up_balls(12, 0.05, falls, UINT32_MAX);
+        scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+        for (int i = 1; steps && i <= 200; ++i) {
+            CHECK(se3d_solver_step(s.solver, 1e-3) >= 0);
+        }
+        scene_run(&s, steps ? 0.2 : 0.05);
+        CHECK(steps || strcmp(method_of(&s), "dop853") == 0);
+        scene_run(&s, 0.2);
+        CHECK(strcmp(method_of(&s), falls ? "convex" : "dop853") == 0);
+        CHECK(se3d_solver_get_switch(s.solver, &time, &left) == SE3D_OK);
+        CHECK(strcmp(left, falls ? "dop853" : "") == 0);
+        CHECK(!falls || fabs(time - sqrt(2.0 * 0.05 / G)) < 0.02);
+        scene_end(&s);
+    }
+}
+
+/* Clones choose as the one that they are of does. */
+static void clones_meet_a_crowd_at_the_same_step(void)
+{
+    uint64_t hash[3];
+    for (int k = 0; k < 3; ++k) {
+        scene s = line_up_balls(12, 0.05, 1, UINT32_MAX);
+        se3d_system *copy = NULL;
+        scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+        for (int i = 1; i <= 4; ++i) {
+            scene_run(&s, 0.05 * i);
+            if (k == i) {
+                CHECK(se3d_system_clone(s.system, &copy) == SE3D_OK);
+                scene_end(&s);
+                s.system = copy;
+                scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+            }
+        }
+        CHECK(strcmp(method_of(&s), "convex") == 0);
+        hash[k] = se3d_system_hash(s.system);
+        scene_end(&s);
+    }
+    CHECK(hash[0] == hash[1] && hash[0] == hash[2]);
+}
+
+/* What convex is not made for stays with error control: a longer step, gravity that changes, fewer
+ * than ten that masks let touch, or that an explicit run by convex has been through. */
+static void auto_knows_the_limits_of_convex(void)
+{
+    for (int k = 0; k < 6; ++k) {
+        const double step[6] = {5e-3, 6e-3, 0.0, 0.0, 0.0, 0.0};
+        const int count = k < 4 ? 12 : 9 + (k - 4);
+        scene s = line_up_balls(count, 0.0, 1, k == 3 ? 0 : UINT32_MAX);
+        if (k == 2) {
+            se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+            CHECK(se3d_function_create_expression(s.system, "-9 - t", &gravity[2]) == SE3D_OK);
+            CHECK(se3d_system_set_gravity_function(s.system, gravity) == SE3D_OK);
+        }
+        if (k >= 4) {
+            scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+            scene_run(&s, 0.01);
+            se3d_solver_destroy(s.solver);
+        }
+        scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, step[k], 0.0);
+        scene_run(&s, 0.02);
+        CHECK(strcmp(method_of(&s), k == 0 || k == 5 ? "convex" : "dop853") == 0);
+        scene_end(&s);
+    }
+}
+
 /* A step that radau cannot make is told with what would do. */
 static void what_fails_names_convex(void)
 {
@@ -445,6 +544,9 @@ int main(void)
     RUN(a_stack_of_ten_stands_without_creep);
     RUN(twenty_dominoes_fall);
     RUN(many_bodies_are_stepped_by_convex);
+    RUN(bodies_far_apart_are_no_crowd);
+    RUN(clones_meet_a_crowd_at_the_same_step);
+    RUN(auto_knows_the_limits_of_convex);
     RUN(what_fails_names_convex);
     RUN(a_heap_of_27_boxes_settles);
     RUN(what_joints_hold_touches_as_with_verlet);

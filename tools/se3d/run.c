@@ -83,8 +83,9 @@ static void print_analysis(const se3d_run_analysis *a)
     put_count(a->stats.iterations, "iteration", "iterations", "");
     printf(", CPU time %.3g s\n", a->cpu_time);
     if (a->left[0]) {
-        printf("  auto left %s for %s at t = %.9g s: the motion became stiff\n", a->left, a->method,
-               a->left_at);
+        printf("  auto left %s for %s at t = %.9g s: %s\n", a->left, a->method, a->left_at,
+               strcmp(a->method, "convex") == 0 ? "many bodies came together"
+                                                : "the motion became stiff");
     }
     if (a->step > 0.0) {
         printf("  equal steps of %.6g s\n", a->step);

@@ -12,6 +12,9 @@ se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visit
 /* How far apart two shapes are at least, by their bounds; negative if these overlap. */
 double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j);
 
+/* How far apart they are, 0 if they touch, and the direction from i to j of that. */
+double se3di_shapes_gap(const se3di_model *model, uint32_t i, uint32_t j, double normal[3]);
+
 /* Renew the list of pairs if the shapes have moved too far since it was made. On failure it is
  * void, and visits look at all pairs. @return OK, NO_MEMORY */
 se3d_status se3di_broad_update(se3di_model *model);

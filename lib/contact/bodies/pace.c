@@ -179,10 +179,7 @@ static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, do
     if (!(bound < h * (speed + p->gravity * h)) || !se3di_shapes_may_touch(model, i, j)) {
         return 0;
     }
-    se3di_shape_pose at[2];
-    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
-    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
-    *gap = se3di_narrow_gap(s[0], &at[0], s[1], &at[1], n);
+    *gap = se3di_shapes_gap(model, i, j, n);
     if (se3di_dot(n, n) > 0.0) {
         speed = fmax(0.0, -se3di_dot(v[1], n)) + turning;
     }
@@ -317,15 +314,11 @@ se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind 
 static void nearest_pair(pace *p, uint32_t i, uint32_t j)
 {
     const se3di_model *model = p->model;
-    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
-    se3di_shape_pose at[2];
     double n[3];
     if (!(se3di_shapes_gap_bound(model, i, j) < p->step) || !se3di_shapes_may_touch(model, i, j)) {
         return;
     }
-    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
-    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
-    limit(p, se3di_narrow_gap(s[0], &at[0], s[1], &at[1], n), i, j);
+    limit(p, se3di_shapes_gap(model, i, j, n), i, j);
 }
 
 /* The pair with the largest force, or, if none touch, the nearest. */

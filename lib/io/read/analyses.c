@@ -42,10 +42,10 @@ static const se3di_key analysis_keys[] = {
     {"method", SE3DI_KIND_WORD, .name_of = se3d_method_get_name, .standard = "auto",
      .text = "of dynamics; convex: for many bodies that touch, at steps of 0.001 to 0.005; "
          "gauss: smooth motions, to tight tolerances; "
-         "auto: verlet with particles, convex if ten free bodies or more may touch, nothing else "
-         "acts on them but constant gravity, no tolerance is given and no step above 0.005, radau "
-         "if a damper's decay is 20000 times faster than the motion, else dop853, which it leaves "
-         "for radau if stability limits its steps"},
+         "auto: verlet with particles, convex from where ten free bodies or more are at others, if "
+         "nothing else acts on them but constant gravity, no tolerance is given and no step above "
+         "0.005, radau if a damper's decay is 20000 times faster than the motion, else dop853, "
+         "which it leaves for radau if stability limits its steps"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/bodies/crowd.h"
+
+#include "contact/bodies/broad.h"
+#include "contact/shape/shape.h"
+
+#include <math.h>
+
+#define NEAR 0.1 /* of the smaller shape's size */
+
+typedef struct crowd {
+    const se3di_model *model;
+    uint32_t bodies[SE3DI_CROWD];
+    size_t count;
+} crowd;
+
+static void add(crowd *c, uint32_t body)
+{
+    size_t k = 0;
+    while (k < c->count && c->bodies[k] != body) {
+        ++k;
+    }
+    if (k == c->count && c->count < SE3DI_CROWD && !c->model->bodies[body].fixed) {
+        c->bodies[c->count++] = body;
+    }
+}
+
+static se3d_status add_if_near(void *ctx, uint32_t i, uint32_t j)
+{
+    crowd *c = ctx;
+    const se3di_shape *a = &c->model->shapes[i], *b = &c->model->shapes[j];
+    const double size = fmin(se3di_shape_contact_size(a), se3di_shape_contact_size(b));
+    double normal[3];
+    if (c->count < SE3DI_CROWD && se3di_shapes_gap(c->model, i, j, normal) <= NEAR * size) {
+        add(c, a->body);
+        add(c, b->body);
+    }
+    return SE3D_OK;
+}
+
+int se3di_bodies_crowd(const se3di_model *model)
+{
+    crowd c = {.model = model};
+    (void)se3di_broad_visit(model, add_if_near, &c);
+    return c.count >= SE3DI_CROWD;
+}
