@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make the documentation as a site: make.py FOLDER [PLAYGROUND]. Needs mkdocs and doxygen, no
 network. Pages are those of docs/; links to files that are no pages become their names. The C reference
-is made from the public headers, whose comments doxygen gets in its own form."""
+is made from the public headers, whose comments doxygen gets in its own form. Formulas of the theory
+are typeset (formulas.py)."""
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+
+import formulas
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUTSIDE = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "RELEASING.md", "bench/README.md",
@@ -77,6 +80,11 @@ def stage_headers(folder):
         (folder / path.name).write_text(convert_header(path.name, path.read_text()))
 
 
+def typeset_formulas(folder):
+    for path in sorted((folder / "theory").glob("*.html")):
+        path.write_text(formulas.typeset(path.read_text()))
+
+
 def run(words, folder):
     if shutil.which(words[0]) is None:
         sys.exit(f"make.py: {words[0]} is missing: apt-get install --no-install-recommends {words[0]}")
@@ -94,12 +102,14 @@ def main(words):
     shutil.rmtree(work, ignore_errors=True)
     stage_headers(work / "include/se3d")
     stage_pages(work / "pages")
+    shutil.copy(ROOT / "docs/site/site.css", work / "pages")
     for name in ("mkdocs.yml", "Doxyfile"):
         shutil.copy(ROOT / "docs/site" / name, work)
     (work / "c").mkdir()
     run(["doxygen", "Doxyfile"], work)
     shutil.move(work / "c", work / "pages/c")
     run(["mkdocs", "build", "--strict", "--clean", "-q", "-d", str(folder)], work)
+    typeset_formulas(folder)
     shutil.rmtree(work)
     if len(words) == 3:
         shutil.copy(words[2], folder / "playground.html")
