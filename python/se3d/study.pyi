@@ -16,6 +16,7 @@ class Samples(NamedTuple):
 
 class Study:
     model: Model
+    pointer: Any
     parameters: tuple[str, ...]
     measures: tuple[str, ...]
     def __init__(self, model: Model) -> None: ...
