@@ -174,6 +174,9 @@ def write(folder, name, sources, title):
 
 
 def main():
+    if sys.argv[1:2] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     folder = Path(sys.argv[1])
@@ -182,7 +185,8 @@ def main():
     core = [p for layer in layers.split() for p in sorted((LIB / layer).rglob("*.c"))]
     write(folder, "se3d", core, "libse3d: constrained rigid multibody dynamics.")
     write(folder, "se3d-io", sorted((LIB / "io").rglob("*.c")), "libse3d-io: model files and results.")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

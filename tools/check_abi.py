@@ -253,6 +253,9 @@ def main():
     checks = {"symbols": lambda p: symbols(p[0]), "globals": global_data, "calls": calls,
               "duplicates": duplicates,
               "padding": lambda p: padding(), "soname": soname, "update": lambda p: update()}
+    if sys.argv[1:2] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     if len(sys.argv) < 2 or sys.argv[1] not in checks:
         sys.exit(__doc__)
     problems = checks[sys.argv[1]](sys.argv[2:])

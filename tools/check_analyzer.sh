@@ -4,6 +4,8 @@
 # Files: those given, or all of the libraries, the program and the recorder but the kernels at their
 # instruction levels.
 cd "$(dirname "$0")/.." || exit 1
+. tools/setup.sh
+se3d_help "$@"
 if [ $# -eq 0 ]; then
     # shellcheck disable=SC2046
     set -- $(find lib tools/se3d record -name '*.c' | grep -Ev '_(avx2|avx512|fma|portable)\.c$' | sort)

@@ -62,6 +62,9 @@ def has_debug_information(library):
 
 def main(words):
     checks = {"compare": compare, "write": write}
+    if words[1:2] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     if len(words) < 3 or words[1] not in checks:
         sys.exit(__doc__)
     if shutil.which("abidiff") is None:

@@ -17,6 +17,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
+se3d_help "$@"
 names="gcc-O0 gcc-O3 clang-O0 clang-O3 arm64 armhf ppc64el riscv64 s390x i386 windows wasm"
 name=${1:-}
 

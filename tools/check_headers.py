@@ -17,6 +17,7 @@ In the comment right before it, every
 STATE is left out where it only means "called from a callback": se3d.h says so once. With a folder
 as argument, that tree is checked instead of this one.
 """
+import argparse
 import re
 import sys
 from pathlib import Path
@@ -249,7 +250,9 @@ def check_header(path, docs, code, known):
 
 
 def main():
-    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(__file__).resolve().parent.parent)
+    root = parser.parse_args().folder
     headers = sorted((root / "include" / "se3d").glob("*.h"))
     docs = {m.group(2): comment_before(text, m.start())
             for text in [h.read_text() for h in headers] for m in FUNCTION.finditer(text)}

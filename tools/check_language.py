@@ -158,6 +158,9 @@ def rewrap(names):
 
 
 def main():
+    if sys.argv[1:2] in (["-h"], ["--help"]):
+        print(__doc__)
+        return 0
     if sys.argv[1:2] == ["wrap"]:
         return rewrap(sys.argv[2:])
     root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent

@@ -9,6 +9,7 @@ why. A function is defined in the folder of the header that declares it. libse3d
 tools/ and the examples see public headers only. With a folder as argument, that tree is checked
 instead of this one.
 """
+import argparse
 import re
 import sys
 from pathlib import Path
@@ -194,7 +195,9 @@ def list_folders(root):
 
 
 def main():
-    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(__file__).resolve().parent.parent)
+    root = parser.parse_args().folder
     count, problems, headers = 0, check_documents(root), {}
     for folder, place, known in list_folders(root):
         if not known:

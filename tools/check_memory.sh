@@ -4,6 +4,8 @@
 # follow, and reads and writes past the ends. Prints what it finds and fails.
 #     check_memory.sh [FOLDER]   the folder of the test programs, build/dev/tests
 cd "$(dirname "$0")/.." || exit 1
+. tools/setup.sh
+se3d_help "$@"
 folder=${1:-build/dev/tests}
 tests="property_leftovers misuse_outliving misuse_functions misuse_io_functions misuse_solver_settings
 finite-difference_force_jacobians finite-difference_tangent finite-difference_user_constraints

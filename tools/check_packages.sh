@@ -7,6 +7,8 @@
 set -eu
 root=${1:?a folder for a bare Debian}
 cd "$(dirname "$0")/.."
+. tools/setup.sh
+se3d_help "$@"
 set -- build/deb/*.deb
 [ -e "$1" ] || { echo 'no packages: sh tools/packages.sh' >&2; exit 2; }
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root"

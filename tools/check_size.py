@@ -9,6 +9,7 @@
     line          100 columns
 Every C file also begins with its SPDX line.
 """
+import argparse
 import re
 import sys
 from pathlib import Path
@@ -155,7 +156,9 @@ def self_test():
 
 def main():
     self_test()
-    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path(__file__).resolve().parent.parent)
+    root = parser.parse_args().folder
     found, problems, files = [], [], []
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*.[ch]")):

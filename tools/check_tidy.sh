@@ -4,6 +4,8 @@
 # before a release. Files: those given, or all of the libraries and the program but the kernels at
 # their instruction levels.
 cd "$(dirname "$0")/.." || exit 1
+. tools/setup.sh
+se3d_help "$@"
 [ -f build/dev/compile_commands.json ] || cmake --preset dev >/dev/null || exit 1
 if [ $# -eq 0 ]; then
     # shellcheck disable=SC2046

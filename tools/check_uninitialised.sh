@@ -4,6 +4,8 @@
 # a file, so functions are inlined without limit. Prints what it finds and fails. Files: those given,
 # or all of the libraries and the program but the kernels at their instruction levels.
 cd "$(dirname "$0")/.." || exit 1
+. tools/setup.sh
+se3d_help "$@"
 limit=4000 # beyond it a parser that calls itself takes hours
 if [ $# -eq 0 ]; then
     # shellcheck disable=SC2046

@@ -6,6 +6,8 @@
 #
 # Does nothing if FOLDER/done is there.
 set -eu
+. "$(dirname "$0")/setup.sh"
+se3d_help "$@"
 package=$1
 mkdir -p "$2"
 root=$(cd "$2" && pwd)

@@ -5,7 +5,7 @@
     python3 tools/math_tables.py lib/math/elementary_tables.h lib/math/big_tables.h
 
 Each is the constant of its definition, rounded to nearest, or cut where the comment says so."""
-import sys
+import argparse
 
 from mpmath import atan, floor, frexp, ldexp, ln, mp, mpf, nint, pi, sin
 
@@ -101,8 +101,16 @@ def big_tables():
     ])
 
 
-if __name__ == "__main__":
-    with open(sys.argv[1], "w", encoding="ascii") as out:
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("fast", help="lib/math/elementary_tables.h")
+    parser.add_argument("big", help="lib/math/big_tables.h")
+    o = parser.parse_args()
+    with open(o.fast, "w", encoding="ascii") as out:
         out.write(fast_tables())
-    with open(sys.argv[2], "w", encoding="ascii") as out:
+    with open(o.big, "w", encoding="ascii") as out:
         out.write(big_tables())
+
+
+if __name__ == "__main__":
+    main()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Prints the words of model files, keys and choices, as a dictionary for libFuzzer: those of
 docs/se3d.schema.json, which follows the tables of the reader."""
+import argparse
 import json
 from pathlib import Path
 
@@ -25,6 +26,7 @@ def words(node):
 
 
 def main():
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter).parse_args()
     schema = json.loads((ROOT / "docs" / "se3d.schema.json").read_text())
     for word in sorted(set(words(schema))) + SIGNS:
         if '"' not in word:

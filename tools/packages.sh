@@ -7,6 +7,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 . tools/setup.sh
+se3d_help "$@"
 se3d_install $SE3D_BUILD_PACKAGES dpkg-dev
 umask 022
 cmake -S . -B build/deb -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DSE3D_DEBIAN=ON \

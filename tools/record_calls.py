@@ -8,6 +8,7 @@
 How long an array is stands in its description in the header, as [count * 3]: numbers, parameters or
 members, and the words of WORDS. What has no layout that follows from the header is an error.
 """
+import argparse
 import re
 import sys
 from pathlib import Path
@@ -467,14 +468,16 @@ def played(h):
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER")
+    folder = parser.parse_args().folder
     layouts = Layouts()
     try:
         tables = layouts.tables()
     except Problem as problem:
         sys.exit(f"record_calls.py: {problem}")
     h = layouts.headers
-    if len(sys.argv) > 1:
-        folder = Path(sys.argv[1])
+    if folder:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in (("layouts.c", tables), ("recorded.c", recorded(h)), ("played.c", played(h))):
             (folder / name).write_text(text + "\n")

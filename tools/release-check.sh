@@ -11,6 +11,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
+se3d_help "$@"
 smoke=
 stages="tests long memory gcc asan tsan fuzz unset analyzer tidy coverage mutation kills bits"
 if [ "${1:-}" = --smoke ]; then

@@ -6,6 +6,7 @@
 #                                  if one could not be had, after installing the others
 #     se3d_make_locales            locales that tests try, once the package `locales` is there
 #     se3d_jobs                    prints the number of processors
+#     se3d_help "$@"               with --help first: prints the head of the script and ends
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev \
 libmicrohttpd-dev libnlopt-dev"
@@ -15,6 +16,17 @@ SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9"
 SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES abigail-tools clang clang-format-14 valgrind libmpfr-dev libopenmpi-dev \
 openmpi-bin mkdocs doxygen gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static locales $SE3D_PYTHON_PACKAGES \
 $SE3D_PICTURE_PACKAGES"
+
+se3d_help() {
+    case ${1:-} in
+    -h | --help)
+        script=tools/$(basename "$0")
+        [ -f "$script" ] || script=$0
+        sed -n '1,2d; /^#/!q; s/^# \{0,1\}//p' "$script"
+        exit 0
+        ;;
+    esac
+}
 
 se3d_jobs() {
     nproc 2>/dev/null || getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2

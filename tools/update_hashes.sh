@@ -4,6 +4,8 @@
 # is named). For commits that change results on purpose: they say which and why.
 set -eu
 cd "$(dirname "$0")/.."
+. tools/setup.sh
+se3d_help "$@"
 build=${1:-build/dev}
 cmake --build "$build" --target test_determinism_hashes
 "$build/tests/test_determinism_hashes" tests/determinism/hashes.txt

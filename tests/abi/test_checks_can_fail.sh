@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The checks of the binary interface must find what they are there for: each is given a fault.
+# The checks of the binary interface must find what they are there for: each is given a fault. All tools tell what
+# they do.
 set -u
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -29,6 +30,24 @@ baseline_suppressions=$PWD/tests/abi/growth.suppr
 cd "$work" || exit 1
 abi="python3 tools/check_abi.py"
 cc=${CC:-cc}
+
+# Every tool says what it does and does nothing.
+touch out before
+find . | sort >before
+for tool in tools/*.py tools/*.sh; do
+    run=sh
+    [ "${tool%.py}" = "$tool" ] || run='python3 -B'
+    [ "$tool" != tools/setup.sh ] || continue
+    [ "$tool" != tools/math_tables.py ] || python3 -c 'import mpmath' 2>/dev/null || continue
+    count=$((count + 1))
+    if ! $run "$tool" --help >out 2>&1 || ! grep -q ' ' out; then
+        echo "$tool --help fails:"
+        cat out
+        failed=$((failed + 1))
+    fi
+done
+find . | sort | diff before - || failed=$((failed + 1))
+rm before
 
 printf '%s\n' 'static int counter;' 'int *se3di_count(void);' \
     'int *se3di_count(void) { counter++; return &counter; }' >lib/math/bad.c
