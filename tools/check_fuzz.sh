@@ -13,7 +13,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 se3d_help "$@"
-all="model expression mesh table import plot bytes calls record"
+all="model expression mesh table import unzip plot bytes calls record"
 seconds=${1:-}
 case $seconds in
 '' | *[!0-9]*)
