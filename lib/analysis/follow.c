@@ -23,6 +23,7 @@
 #include "analysis/follow.h"
 
 #include "analysis/static_newton.h"
+#include "integrator/step_list.h"
 #include "math/quaternion.h"
 #include "model/integral.h"
 #include "primitive/turn_counter.h"
@@ -39,11 +40,20 @@ static se3d_status refuse(const se3di_run *run, se3d_status status, const char *
     return se3di_error_set(run->error, status, "%s", why);
 }
 
-static int have_same_bodies(const se3di_constraint *a, const se3di_constraint *b)
+static int are_constraints_alike(const se3di_constraint *a, const se3di_constraint *b)
 {
-    return a->row_count == b->row_count && a->term_count == b->term_count &&
-           a->body_count == b->body_count && a->angle == b->angle &&
+    return strcmp(a->type, b->type) == 0 && a->row_count == b->row_count &&
+           a->term_count == b->term_count && a->body_count == b->body_count &&
+           a->angle == b->angle && a->callback == b->callback && a->coordinate == b->coordinate &&
+           memcmp(a->joints, b->joints, sizeof a->joints) == 0 &&
            memcmp(a->bodies, b->bodies, a->body_count * sizeof *a->bodies) == 0;
+}
+
+static int are_forces_alike(const se3di_force *a, const se3di_force *b)
+{
+    return a->type == b->type && a->body_i == b->body_i && a->body_j == b->body_j &&
+           a->joint == b->joint && a->angle == b->angle && a->coordinate == b->coordinate &&
+           a->in_body_frame == b->in_body_frame && a->callback == b->callback;
 }
 
 /* Whether the models have the same unknowns and rows. */
@@ -57,7 +67,10 @@ static int are_alike(const se3di_model *a, const se3di_model *b)
             a->bodies[k].fixed == b->bodies[k].fixed && a->bodies[k].state == b->bodies[k].state;
     }
     for (size_t k = 0; alike && k < a->constraint_slots.count; ++k) {
-        alike = have_same_bodies(&a->constraints[k], &b->constraints[k]);
+        alike = are_constraints_alike(&a->constraints[k], &b->constraints[k]);
+    }
+    for (size_t k = 0; alike && k < a->force_slots.count; ++k) {
+        alike = are_forces_alike(&a->forces[k], &b->forces[k]);
     }
     return alike;
 }
@@ -317,7 +330,10 @@ static se3d_status follow_dynamics(se3di_run *run, se3di_run *from)
     if (!from->integration.record && from->equations.counters.steps > 0) {
         return refuse(run, SE3D_ERR_STATE, "the other run is to be followed from its beginning on");
     }
-    from->integration.record = &from->steps;
+    if (!from->integration.record) {
+        from->integration.record = &from->steps;
+        se3di_step_list_begin(&from->integration, from->model->time);
+    }
     run->integration.repeat = &from->steps;
     run->shows_motion = from->shows_motion;
     const se3d_status status = se3di_run_to(run, from->model->time);

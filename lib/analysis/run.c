@@ -16,6 +16,7 @@
 #include "contact/bodies/pace.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
+#include "integrator/step_list.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
 #include "model/integral.h"
@@ -178,6 +179,7 @@ static se3d_status start_history(se3di_run *run, double h)
 {
     SE3DI_TRY(settle(run, run->model->time));
     SE3DI_TRY(se3di_friction_start(&run->equations));
+    se3di_step_list_begin(&run->integration, run->model->time);
     return start_method(run, h);
 }
 

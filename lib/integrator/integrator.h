@@ -101,10 +101,12 @@ typedef struct se3di_integrator {
     int32_t reserved;
 } se3di_integrator;
 
-/* The ends of accepted steps [s]. */
+/* The ends of accepted steps [s] since a motion began. */
 typedef struct se3di_step_list {
     double *ends;
     size_t count, capacity;
+    double begin;    /* of the first one [s] */
+    uint64_t number; /* of the motion: lists that other motions left are over */
 } se3di_step_list;
 
 struct se3di_integration {
@@ -126,7 +128,8 @@ struct se3di_integration {
     int32_t owes;     /* the evaluation that the last step has left is not counted yet */
     se3di_step_list *record; /* of explicit methods: every step is noted here; NULL: none is */
     const se3di_step_list *repeat; /* and these are made, whatever their errors; NULL: own ones */
-    size_t repeated;               /* how many of them are over */
+    size_t repeated;               /* how many of them are over, */
+    uint64_t repeated_number;      /* of this motion */
     int32_t reserved;
 };
 

@@ -4,6 +4,16 @@
 #include "integrator/kink_step.h"
 #include "math/steps.h"
 
+void se3di_step_list_begin(const se3di_integration *integration, double t)
+{
+    se3di_step_list *steps = integration->record;
+    if (steps) {
+        steps->count = 0;
+        steps->begin = t;
+        ++steps->number;
+    }
+}
+
 se3d_status se3di_step_list_note(const se3di_integration *integration, double end)
 {
     se3di_step_list *steps = integration->record;
@@ -28,10 +38,14 @@ se3d_status se3di_step_list_next(se3di_integration *integration, double begin, d
 {
     const se3di_step_list *steps = integration->repeat;
     size_t *k = &integration->repeated;
+    if (integration->repeated_number != steps->number) {
+        integration->repeated_number = steps->number;
+        *k = 0;
+    }
     while (*k < steps->count && !(steps->ends[*k] > begin)) {
         ++*k;
     }
-    if (*k == steps->count) {
+    if (*k == steps->count || begin < steps->begin) {
         return se3di_step_list_fail(integration);
     }
     const double whole = steps->ends[*k] - begin;

@@ -5,10 +5,12 @@
 
 #include "integrator/integrator.h"
 
+/* A motion begins at t: what integration->record has is over, if there is one. */
+void se3di_step_list_begin(const se3di_integration *integration, double t);
 /* Note the end of a step in integration->record, if there is one. @return OK, NO_MEMORY */
 se3d_status se3di_step_list_note(const se3di_integration *integration, double end);
 /* The next step of integration->repeat from `begin`, of *h to *end; 0 at a kink, which is
- * integration->at_kink. @return OK, STEP_SIZE (there is none), INTERRUPTED, STEP_COUNT */
+ * integration->at_kink. @return OK, STEP_SIZE (there is none from here), INTERRUPTED, STEP_COUNT */
 se3d_status se3di_step_list_next(se3di_integration *integration, double begin, double *h,
                                  double *end);
 /* The failure of a step that cannot be made. */

@@ -328,8 +328,75 @@ static void followers_are_interrupted(void)
     se3d_model_destroy(model);
 }
 
+static text_model open_parts(const char *joint, const char *force)
+{
+    char text[1000];
+    snprintf(text, sizeof text,
+             "se3d: 1\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1], position: [1, 0, 0]}]\n"
+             "joints: [{name: j, type: %s, body_i: ground, body_j: b, at: [0, 0, 0]%s}]\n"
+             "forces: [{name: f, type: %s}]\nanalysis: {type: dynamics, duration: 1}\n",
+             joint,
+             strcmp(joint, "distance") == 0 ? ", at_2: [1, 0, 0], distance: 1"
+                                            : ", axis: [0, 0, 1]",
+             force);
+    return text_model_open(text, -1, -1, 0.0);
+}
+
+/* As many elements of other types. */
+static void other_types_are_refused(void)
+{
+    static const char pull[] = "force, body: b, value: [1, 0, 0]";
+    static const char turn[] = "torque, body: b, value: [1, 0, 0]";
+    static const char *const other[][2] = {{"point_on_plane", pull}, {"distance", turn}};
+    text_model of = open_parts("distance", pull);
+    CHECK(text_model_run(&of, 0.0));
+    for (int k = 0; k < 2; ++k) {
+        text_model to = open_parts(other[k][0], other[k][1]);
+        CHECK(se3d_solver_follow(to.solver, of.solver) == SE3D_ERR_STATE);
+        CHECK_CONTAINS(se3d_system_get_error(to.system), "not the same structure");
+        text_model_close(&to);
+    }
+    text_model_close(&of);
+}
+
+/* A run that was taken back begins anew, with other steps, for those that follow it from there. */
+static void a_run_that_begins_anew_is_followed_anew(void)
+{
+    text_model of = open_machine(at, 3, 0), to = open_machine(at, 3, 0);
+    text_model late = open_machine(at, 3, 0), behind = open_machine(at, 3, 0);
+    se3d_snapshot *start = NULL;
+    CHECK(text_model_run(&of, 0.0) && text_model_run(&to, 0.0));
+    CHECK(se3d_solver_follow(to.solver, of.solver) == SE3D_OK);
+    CHECK(se3d_solver_follow(behind.solver, of.solver) == SE3D_OK);
+    CHECK(!se3d_snapshot_create(of.system, &start));
+    CHECK(text_model_run(&of, 0.1) && se3d_solver_follow(to.solver, of.solver) == SE3D_OK);
+    CHECK(!se3d_snapshot_restore(start, of.system) && !se3d_system_set_time(of.system, 0.05));
+    CHECK(!se3d_snapshot_restore(start, to.system) && !se3d_system_set_time(to.system, 0.05));
+    CHECK(!se3d_system_set_time(late.system, 0.05));
+    CHECK(text_model_run(&of, 0.2));
+    CHECK(se3d_solver_follow(to.solver, of.solver) == SE3D_OK);
+    CHECK(se3d_solver_follow(late.solver, of.solver) == SE3D_OK);
+    CHECK(se3d_solver_follow(behind.solver, of.solver) == SE3D_ERR_STEP_SIZE);
+    se3d_solver_stats stats[2];
+    CHECK(!se3d_solver_get_stats(to.solver, &stats[0]));
+    CHECK(!se3d_solver_get_stats(of.solver, &stats[1]));
+    CHECK(stats[0].steps == stats[1].steps);
+    for (size_t k = 0; k < CHANNELS; ++k) { /* but for rounding of the steps */
+        const double x = text_model_get(&of, k, 0);
+        CHECK_NEAR(text_model_get(&to, k, 0), x, 1e-12 * (1.0 + fabs(x)));
+        CHECK_NEAR(text_model_get(&late, k, 0), x, 1e-12 * (1.0 + fabs(x)));
+    }
+    se3d_snapshot_destroy(start);
+    text_model_close(&of);
+    text_model_close(&to);
+    text_model_close(&late);
+    text_model_close(&behind);
+}
+
 int main(void)
 {
+    RUN(other_types_are_refused);
+    RUN(a_run_that_begins_anew_is_followed_anew);
     RUN(followers_are_interrupted);
     RUN(derivatives_are_those_of_runs);
     RUN(steps_of_dynamics_are_repeated);
