@@ -211,6 +211,11 @@ static void code_wall(se3di_coder *c, se3di_wall *wall)
     se3di_code_numbers(c, &wall->pace, 1);
     se3di_code_numbers(c, wall->force, 3);
     se3di_code_numbers(c, wall->torque, 3);
+    if (wall->servo > 0) {
+        se3di_code_numbers(c, wall->home, 3);
+        se3di_code_numbers(c, wall->home_v, 3);
+        se3di_code_numbers(c, wall->slide, 3);
+    }
 }
 
 static void code_particles(se3di_coder *c, se3di_particles *set)

@@ -138,7 +138,8 @@ static int are_walls(const se3di_particles *set)
         const double sizes[] = {w->reach, w->near_reach, w->pace, w->inverse_mass};
         if (!are_finite(w->pose.x, 3) || !are_finite(w->pose.R, 9) || !are_finite(w->old_x, 3) ||
             !are_finite(w->old_R, 9) || !are_finite(w->near_x, 3) || !are_finite(w->near_R, 9) ||
-            !are_finite(w->turn, 9) || !are_finite(sizes, 4)) {
+            !are_finite(w->turn, 9) || !are_finite(sizes, 4) || !are_finite(w->home, 3) ||
+            !are_finite(w->home_v, 3) || !are_finite(w->slide, 3)) {
             return 0;
         }
     }

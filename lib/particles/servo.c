@@ -5,7 +5,7 @@
  *     s' = gain (F0 - F), abs(s') <= speed_max,      s += h s',      gain = 1 / (20 K h + 2 C)
  *
  * K, C: stiffness and damping of all contacts that there can be before the lists are made anew,
- * under F0; forces answer a step late. A wall like that takes up what comes to it as waves, and
+ * under F0, and of bonds; forces answer a step late. A wall like that takes up what comes to it as waves, and
  * never gives more than F0 s'.                                          docs/theory/servos.md */
 #include "particles/servo.h"
 
@@ -13,6 +13,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
 #define STEPS 20.0 /* in which springs would bring what is missing */
 #define DAMPS 2.0  /* over the damping, with which a step answers the one before */
@@ -84,11 +85,27 @@ double se3di_servo_wanted(const se3di_servo *servo)
     return servo->area > 0.0 ? servo->load * servo->area : servo->load;
 }
 
+/* Of what is bonded to the wall, in whatever direction. */
+static double bond_resistance(const se3di_particles *set, const se3di_servo *servo, double h)
+{
+    double K = 0.0, C = 0.0;
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        const se3di_bond *bond = &set->bonds[k];
+        const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
+        if (end->id == SE3DI_NO_INDEX && is_same(end->shape, servo->shape)) {
+            K += fmax(bond->stiffness[0], bond->stiffness[1]);
+            C += fmax(bond->damping[0], bond->damping[1]);
+        }
+    }
+    return STEPS * h * K + DAMPS * C;
+}
+
 /* How much the force grows with the speed in a step, if all particles that are near carry it. */
 static double resistance(const se3di_particles *set, const se3di_servo *servo, double force,
                          double h)
 {
     const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
+    const double bonds = bond_resistance(set, servo, h);
     double K = 0.0, C = 0.0;
     for (size_t k = 0; set->list_valid && k < set->near_count; ++k) {
         const uint32_t i = set->near_walls[k].i & ~SE3DI_LIST_ACTIVE;
@@ -104,9 +121,9 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
     }
     if (hertz && K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
         const double root = se3di_pow(force / K, 1.0 / 3.0);
-        return STEPS * h * 1.5 * K * root + DAMPS * C * sqrt(root);
+        return bonds + STEPS * h * 1.5 * K * root + DAMPS * C * sqrt(root);
     }
-    return STEPS * h * K + DAMPS * C;
+    return bonds + STEPS * h * K + DAMPS * C;
 }
 
 static double choose_speed(const se3di_particles *set, const se3di_servo *servo, double h)
@@ -131,6 +148,19 @@ static int has_wall(const se3di_particles *set, const se3di_servo *servo)
         has = has || is_same(set->walls[k].handle, servo->shape);
     }
     return has;
+}
+
+void se3di_servos_rest(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        se3di_servo *servo = &set->servos[k];
+        servo->work += servo->half * se3di_servo_force(set, servo);
+        servo->speed = servo->half = 0.0;
+    }
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        memset(set->walls[k].force, 0, sizeof set->walls[k].force);
+        memset(set->walls[k].torque, 0, sizeof set->walls[k].torque);
+    }
 }
 
 void se3di_servos_drift(se3di_particles *set, double h)

@@ -14,6 +14,8 @@ se3d_status se3di_servos_aim(se3di_particles *set, const se3di_model *model, dou
 /* Particles have drifted for a time h, and the walls have the forces of its beginning: choose the
  * speeds by these, and drift. */
 void se3di_servos_drift(se3di_particles *set, double h);
+/* The last particle has gone: nothing presses, and the walls stay where they are. */
+void se3di_servos_rest(se3di_particles *set);
 /* The force on the particles along the axis, in the last step. */
 double se3di_servo_force(const se3di_particles *set, const se3di_servo *servo);
 /* What is wanted of it. */

@@ -5,6 +5,7 @@
 #include "particles/kept.h"
 #include "particles/list.h"
 #include "particles/memory.h"
+#include "particles/servo.h"
 #include "particles/share.h"
 
 #include <math.h>
@@ -267,6 +268,9 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
     se3di_clumps_filter(set);
     se3di_bonds_filter(set);
     se3di_particles_remap(set, set->order);
+    if (set->count == 0 && set->servo_count > 0) {
+        se3di_servos_rest(set);
+    }
 }
 
 /* Copies of all arrays, so that the copy continues with the same bits. */

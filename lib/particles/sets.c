@@ -145,6 +145,21 @@ static se3d_status check_audit(const se3di_particles *set, se3di_error *error)
     return SE3D_OK;
 }
 
+static se3d_status check_servos(const se3di_particles *set, se3di_error *error)
+{
+    for (size_t k = 0; k < set->servo_count; ++k) {
+        if (set->law == SE3DI_LAW_CALLBACK && !(set->servos[k].gain > 0.0)) {
+            const char *of;
+            const char *name = set_name(set, &of);
+            return se3di_error_set(error, SE3D_ERR_UNSUPPORTED,
+                                   "servo wall %zu%s%.80s has no gain, and a law of the user's own "
+                                   "does not tell the stiffness that would give one",
+                                   k, of, name);
+        }
+    }
+    return SE3D_OK;
+}
+
 /* What a set touches, where the model has it now. */
 static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3di_error *error)
 {
@@ -154,6 +169,7 @@ static se3d_status place_set(se3di_particles *set, const se3di_model *model, se3
     }
     SE3DI_TRY(check_cell(set, error));
     SE3DI_TRY(check_audit(set, error));
+    SE3DI_TRY(check_servos(set, error));
     se3di_particles_move_walls(set, model->frames);
     se3di_particles_free_walls(set, NULL);
     return SE3D_OK;

@@ -53,6 +53,14 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
             const uint32_t more[] = {(uint32_t)set->servo_count, 1 + (uint32_t)set->audits};
             hash = add_words(hash, more, 2);
         }
+        for (size_t k = 0; k < set->servo_count; ++k) {
+            const se3di_servo *servo = &set->servos[k];
+            const se3di_handle shape = servo->shape;
+            const uint32_t moved =
+                se3di_slots_find(&model->shape_slots, shape.index1, shape.generation);
+            hash = add_words(hash, &moved, 1);
+            hash = se3di_hash_numbers(hash, servo->axis, 3);
+        }
         if (set->bond_group_count > 0) {
             const uint32_t groups = (uint32_t)set->bond_group_count;
             hash = add_words(hash, &groups, 1);

@@ -199,10 +199,176 @@ static void walls_of_a_body_that_moves_keep_their_force(void)
     }
 }
 
+/* A lid on a body that a driver tilts about x. */
+static se3d_solver *open_tilting(press *p)
+{
+    se3d_body_def body = se3d_body_def_default();
+    se3d_joint_def hinge = se3d_joint_def_default();
+    se3d_driver_def driver = se3d_driver_def_default();
+    se3d_shape_def shape = se3d_shape_def_default();
+    se3d_solver_def method = se3d_solver_def_default();
+    se3d_solver *solver;
+    se3d_constraint motion;
+    open_press(p, 1, SE3D_CONTACT_LAW_HOOKE);
+    body.position[2] = 2.0 * R;
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    CHECK(!se3d_body_create(p->b.system, &body, &shape.body));
+    shape.material = p->b.material;
+    shape.normal[2] = -1.0;
+    CHECK(!se3d_shape_create_plane(p->b.system, &shape, &p->def.shape));
+    CHECK(!se3d_system_get_ground(p->b.system, &hinge.body_i));
+    hinge.body_j = shape.body;
+    hinge.point_i[2] = 2.0 * R;
+    hinge.axis_i[0] = hinge.axis_j[0] = 1.0;
+    hinge.axis_i[2] = hinge.axis_j[2] = 0.0;
+    CHECK(!se3d_joint_create_revolute(p->b.system, &hinge, &driver.joint));
+    driver.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
+    driver.function = function_of(p, "20*t");
+    CHECK(!se3d_driver_create(p->b.system, &driver, &motion));
+    p->def.load = 1.5;
+    CHECK(!se3d_particles_add_servo(p->b.particles, &p->def, &p->servo));
+    method.method = SE3D_METHOD_VERLET;
+    CHECK(!se3d_solver_create(p->b.system, &method, &solver));
+    return solver;
+}
+
+/* Read into another system, whose bodies are elsewhere, a servo has the force along its axis. */
+static void snapshots_hold_the_axis_of_a_servo(void)
+{
+    press p, q;
+    unsigned char bytes[20000];
+    size_t size = 0;
+    se3d_snapshot *snapshot = NULL;
+    se3d_solver *solver = open_tilting(&p), *other = open_tilting(&q);
+    CHECK(se3d_solver_run(solver, 0.01) >= 0);
+    CHECK(!se3d_snapshot_create(p.b.system, &snapshot));
+    CHECK(!se3d_snapshot_write(snapshot, bytes, sizeof bytes, &size) && size <= sizeof bytes);
+    se3d_snapshot_destroy(snapshot);
+    CHECK(!se3d_snapshot_read(q.b.system, bytes, size, &snapshot));
+    CHECK(!se3d_snapshot_restore(snapshot, q.b.system));
+    CHECK(get(&p).force > 0.1);
+    CHECK_NEAR(get(&q).force, get(&p).force, 0.0);
+    CHECK_NEAR(get(&q).work, get(&p).work, 0.0);
+    se3d_snapshot_destroy(snapshot);
+    se3d_solver_destroy(solver);
+    se3d_solver_destroy(other);
+    bed_close(&p.b);
+    bed_close(&q.b);
+}
+
+/* The same shapes and as many servos, but on other ones, or along another axis. */
+static void snapshots_of_other_servos_are_refused(void)
+{
+    size_t size = 0;
+    unsigned char bytes[20000];
+    for (int k = 0; k < 4; ++k) {
+        static const double high[3] = {0.0, 0.0, 2.0 * R}, down[3] = {0.0, 0.0, -1.0};
+        press p;
+        se3d_snapshot *snapshot = NULL;
+        open_press(&p, 1, SE3D_CONTACT_LAW_HOOKE);
+        const se3d_shape low = bed_add_plane(&p.b, high, down);
+        p.def.shape = bed_add_plane(&p.b, high, down);
+        p.def.shape = k == 1 ? low : p.def.shape;
+        p.def.axis[1] = k == 2 ? 0.1 : 0.0;
+        p.def.load = k == 3 ? 2.0 : 1.0; /* that is no more than a number */
+        CHECK(!se3d_particles_add_servo(p.b.particles, &p.def, &p.servo));
+        if (k == 0) {
+            CHECK(!se3d_snapshot_create(p.b.system, &snapshot));
+            CHECK(!se3d_snapshot_write(snapshot, bytes, sizeof bytes, &size));
+        } else {
+            CHECK(se3d_snapshot_read(p.b.system, bytes, size, &snapshot) ==
+                  (k == 3 ? SE3D_OK : SE3D_ERR_STATE));
+        }
+        se3d_snapshot_destroy(snapshot);
+        bed_close(&p.b);
+    }
+}
+
+/* The lid stops where it is when the last particle goes. */
+static void lid_of_an_emptied_set_rests(void)
+{
+    static const uint32_t ids[2] = {0, 1};
+    press p;
+    open_press(&p, 2, SE3D_CONTACT_LAW_HOOKE);
+    p.def.load = 3.0;
+    add_lid(&p, 4.0 * R);
+    run(&p, 0.002);
+    const se3d_servo_state before = get(&p);
+    CHECK(before.speed > 1e-3 && before.force > 0.1);
+    CHECK(!se3d_particles_remove(p.b.particles, 2, ids));
+    for (int k = 0; k < 2; ++k) {
+        CHECK_NEAR(get(&p).speed, 0.0, 0.0);
+        CHECK_NEAR(get(&p).force, 0.0, 0.0);
+        CHECK_NEAR(get(&p).position, before.position, 0.0);
+        CHECK_NEAR(get(&p).work, before.work, 1e-15);
+        run(&p, 0.01);
+    }
+    bed_close(&p.b);
+}
+
+static se3d_status push_back(void *ctx, const se3d_contact_input *input, se3d_contact_output *out)
+{
+    (void)ctx;
+    out->force = 1e4 * input->overlap;
+    return SE3D_OK;
+}
+
+/* Nothing tells how stiff a law of the user's own is. */
+static void own_laws_need_a_gain(void)
+{
+    for (int k = 0; k < 2; ++k) {
+        press p;
+        se3d_contact_settings law = se3d_contact_settings_default();
+        open_press(&p, 1, SE3D_CONTACT_LAW_HOOKE);
+        law.law = SE3D_CONTACT_LAW_CALLBACK;
+        law.callback = push_back;
+        law.step = 1e-5;
+        CHECK(!se3d_system_set_contact(p.b.system, &law));
+        p.def.gain = k == 0 ? 0.0 : 1e-2;
+        p.def.load = 1.0;
+        add_lid(&p, 2.0 * R);
+        CHECK(se3d_particles_run(p.b.particles, 1e-3) == (k == 0 ? SE3D_ERR_UNSUPPORTED : SE3D_OK));
+        if (k == 0) {
+            CHECK_CONTAINS(se3d_system_get_error(p.b.system), "servo wall 0 has no gain");
+        }
+        bed_close(&p.b);
+    }
+}
+
+/* Bonds are stiffer than contacts by far: the lid must not jump over what it is to press with. */
+static void bonds_count_for_the_gain(void)
+{
+    static const double none[3] = {0.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+    press p;
+    se3d_bond_def bond = se3d_bond_def_default();
+    size_t added = 0;
+    open_press(&p, 1, SE3D_CONTACT_LAW_HOOKE);
+    bond.law = SE3D_BOND_LAW_PARALLEL;
+    bond.normal_stiffness = bond.shear_stiffness = 3e10;
+    bond.damping = 0.3;
+    bond.gap = 1e-6;
+    p.def.load = -2.0;
+    add_lid(&p, 2.0 * R);
+    const se3d_shape floor = bed_add_plane(&p.b, none, up);
+    CHECK(!se3d_particles_bond_shape(p.b.particles, &bond, p.def.shape, -1, &added, NULL));
+    CHECK(!se3d_particles_bond_shape(p.b.particles, &bond, floor, -1, &added, NULL) && added == 1);
+    for (int k = 1; k <= 40; ++k) {
+        run(&p, 0.0002 * k);
+        CHECK(get(&p).force > -2.2 && get(&p).force < 0.2);
+    }
+    CHECK_NEAR(get(&p).force, -2.0, 1e-3);
+    bed_close(&p.b);
+}
+
 int main(void)
 {
     RUN(row_is_pressed_as_wanted_and_stores_the_work);
     RUN(lid_comes_at_its_speed_and_follows_its_load);
     RUN(walls_of_a_body_that_moves_keep_their_force);
+    RUN(snapshots_hold_the_axis_of_a_servo);
+    RUN(snapshots_of_other_servos_are_refused);
+    RUN(lid_of_an_emptied_set_rests);
+    RUN(own_laws_need_a_gain);
+    RUN(bonds_count_for_the_gain);
     return check_finish();
 }
