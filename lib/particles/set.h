@@ -566,8 +566,8 @@ typedef struct se3di_force_task {
     se3di_audit_load *audit;             /* of an audited set, added to; NULL: no */
     double power[SE3DI_AUDIT_KINDS + 1]; /* the same, out: added to */
     int32_t in_turn;                     /* loads are added to i and j pair by pair */
-    int32_t reserved;
-    const se3di_stuff *stuffs; /* of a user-defined law, as the next three */
+    uint32_t unused;                     /* the index in lanes that nobody uses */
+    const se3di_stuff *stuffs;           /* of a user-defined law, as the next three */
     se3d_contact_callback callback;
     void *ctx;
     se3di_law_failure failure; /* out: the first one */

@@ -216,6 +216,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .cohesive = set->cohesive,
         .h = h,
         .limit = set->overlap_limit,
+        .unused = (uint32_t)set->capacity,
         .stuffs = set->stuffs,
         .callback = set->callback,
         .ctx = set->ctx,
@@ -418,6 +419,10 @@ uint64_t se3di_particles_hash(const se3di_particles *set)
     }
     for (size_t k = 0; k < set->bond_count; ++k) {
         hash = se3di_hash_numbers(hash, &set->bonds[k].dissipated, 1);
+    }
+    if (set->audits) {
+        hash = se3di_hash_numbers(hash, set->audit_work, SE3DI_AUDIT_KINDS);
+        hash = se3di_hash_numbers(hash, &set->wall_work, 1);
     }
     for (size_t k = 0; k < set->servo_count; ++k) {
         hash = se3di_hash_numbers(hash, &set->servos[k].place, 1);
