@@ -40,18 +40,24 @@ static se3di_piece piece_of(const se3d_fill_def *def, uint32_t material, double 
 }
 
 typedef struct lattice {
-    double spacing, margin; /* margin: from the walls of the box */
+    double spacing, margin[3]; /* margin: from the walls of the box */
     size_t n[3];
 } lattice;
 
+/* Along an axis with less room than the spacing, but enough for one, these stand in the middle. */
 static double lattice_init(lattice *l, const se3d_fill_def *def)
 {
     double total = 1.0;
+    const double least = def->radius_max + def->jitter;
     l->spacing = def->spacing > 0.0 ? def->spacing : 2.2 * def->radius_max;
-    l->margin = fmax(0.5 * l->spacing, def->radius_max + def->jitter);
     for (int a = 0; a < 3; ++a) {
-        double room = def->upper[a] - def->lower[a] - 2.0 * l->margin;
-        double n = room < -1e-9 * l->spacing ? 0.0 : floor(room / l->spacing + 1e-9) + 1.0;
+        const double width = def->upper[a] - def->lower[a], slack = 1e-9 * l->spacing;
+        l->margin[a] = fmax(0.5 * l->spacing, least);
+        if (width < 2.0 * l->margin[a] - slack && width >= 2.0 * least - slack) {
+            l->margin[a] = 0.5 * width;
+        }
+        const double room = width - 2.0 * l->margin[a];
+        double n = room < -slack ? 0.0 : floor(room / l->spacing + 1e-9) + 1.0;
         l->n[a] = n < 2e9 ? (size_t)n : (size_t)2e9;
         total *= n;
     }
@@ -63,7 +69,7 @@ static int lattice_point(const lattice *l, const se3d_fill_def *def, size_t k, d
 {
     const size_t at[3] = {k % l->n[0], k / l->n[0] % l->n[1], k / (l->n[0] * l->n[1])};
     for (int a = 0; a < 3; ++a) {
-        x[a] = def->lower[a] + l->margin + l->spacing * (double)at[a];
+        x[a] = def->lower[a] + l->margin[a] + l->spacing * (double)at[a];
     }
     const se3di_region region = se3di_fill_region(def);
     return se3di_region_holds(&region, x, def->radius_max + sqrt(3.0) * def->jitter);

@@ -55,6 +55,23 @@ is "$(lines 'no step is given: convex takes 0.001 s and estimates no error')" 1
 expect 'a step that was given' 0 "$program" run "$dir/steps.yaml" -o "$dir/r" --step 1e-3
 is "$(lines 'no step is given')" 0
 
+# Particles beside bodies that cannot move; a lattice and a window with nothing in them.
+model grains "drivers:
+  - {name: d, joint: s, coordinate: angle, value: 0}
+materials: [{name: sand, density: 2500, stiffness: 1e4}]
+particles:
+  - {material: sand, radius: 0.1, lower: [2, 2, 2], upper: [2.5, 2.5, 2.5]}
+  - {material: sand, radius: 0.1, jitter: 0.01, lower: [4, 2, 2], upper: [4.21, 2.5, 2.5]}
+analysis: {type: dynamics, duration: 0.01}" ''
+sed 's/^output: \[/&{summary: s.csv, start: 3, stop: 4, channels: [a.position]}, /' "$dir/grains.yaml" >"$dir/empty.yaml"
+expect 'particles beside what is locked' 0 "$program" run "$dir/empty.yaml" -o "$dir/r"
+is "$(lines 'nothing can move')" 0
+has "$dir/err" 'particles[1]: holds no particle: none of radius 0.1 m, displaced by up to 0.01 m, fits'
+has "$dir/err" 's.csv is empty: no row is from `start`, 3 s, to `stop`, 4 s'
+sed '/^particles/,/4.21/d' "$dir/grains.yaml" >"$dir/locked.yaml"
+expect 'locked' 0 "$program" run "$dir/locked.yaml" -o "$dir/r"
+is "$(lines 'nothing can move')" 1
+
 # What the report shows anyway is not warned of beside it.
 model start "$dynamics" ', velocity: [0, 0, 1]'
 expect 'velocities that do not fit' 0 "$program" run "$dir/start.yaml" -o "$dir/r"

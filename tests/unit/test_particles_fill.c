@@ -214,6 +214,28 @@ static void a_lattice_of_too_many_particles_is_refused(void)
     bed_close(&b.bed);
 }
 
+/* A region of less than the spacing, but of more than a particle, holds a layer in its middle. */
+static void narrow_regions_hold_one_layer(void)
+{
+    static const double widths[3] = {0.02, 0.0211, 0.022};
+    for (int k = 0; k < 3; ++k) {
+        size_t added = 0;
+        open_bed(&b);
+        b.fill.radius_min = b.fill.radius_max = 0.01;
+        b.fill.jitter = 0.02 < widths[k] ? 5e-4 : 0.0;
+        b.fill.lower[1] = 0.3;
+        b.fill.upper[0] = b.fill.upper[2] = 0.1;
+        b.fill.upper[1] = 0.3 + widths[k];
+        CHECK(!se3d_particles_fill_lattice(b.bed.particles, &b.fill, &added) && added == 16);
+        read_bed(&b);
+        for (size_t n = 0; n < b.count; ++n) {
+            const double y = b.r[3 * n + 1];
+            CHECK(y > 0.31 - 1e-9 && y < 0.3 + widths[k] - 0.01 + 1e-9);
+        }
+        bed_close(&b.bed);
+    }
+}
+
 int main(void)
 {
     RUN(places_across_a_periodic_border_are_taken_once);
@@ -221,6 +243,7 @@ int main(void)
     RUN(regions_hold_every_part_of_their_particles);
     RUN(radii_of_a_table_come_as_often_as_asked_for);
     RUN(tables_and_regions_are_checked);
+    RUN(narrow_regions_hold_one_layer);
     RUN(a_lattice_that_takes_for_ever_to_look_at_is_refused);
     return check_finish();
 }

@@ -40,14 +40,16 @@ static void note_particles(notes *n, const se3d_run *run)
     }
 }
 
-/* Dynamics of bodies that stand still, and that no force could move. */
+/* Dynamics of bodies that stand still, and that no force could move, without particles beside
+ * them. */
 static int is_locked(const se3d_system *system, const se3d_run *run, const se3d_check *check)
 {
     se3d_check_summary summary = {.struct_size = sizeof summary};
     se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-    return is_analysed(run, "dynamics") && !SE3D_FAILED(se3d_check_get_summary(check, &summary)) &&
-           summary.bodies > 0 && summary.freedoms == 0 &&
-           !SE3D_FAILED(se3d_system_get_energy(system, &energy)) && !(energy.kinetic > 1e-20);
+    return se3d_run_count_particles(run) == 0 && is_analysed(run, "dynamics") &&
+           !SE3D_FAILED(se3d_check_get_summary(check, &summary)) && summary.bodies > 0 &&
+           summary.freedoms == 0 && !SE3D_FAILED(se3d_system_get_energy(system, &energy)) &&
+           !(energy.kinetic > 1e-20);
 }
 
 static void note_constraints(notes *n, const se3d_system *system, const se3d_run *run,

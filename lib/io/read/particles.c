@@ -23,6 +23,7 @@
 #include "io/read/particle_table.h"
 #include "io/read/sections.h"
 #include "io/read/servos.h"
+#include "io/read/warn.h"
 
 enum { LATTICE = 0, RANDOM = 1 };
 static const char *const packings[] = {[LATTICE] = "lattice", [RANDOM] = "random", NULL};
@@ -383,9 +384,18 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_de
     if (se3di_node_get(node, "source")) {
         return read_source(reader, node, def);
     }
-    return se3di_reader_check(reader, node,
-                              packing == LATTICE ? se3d_particles_fill_lattice(set, def, NULL)
-                                                 : se3d_particles_fill_random(set, def));
+    size_t added = 1;
+    if (!se3di_reader_check(reader, node,
+                            packing == LATTICE ? se3d_particles_fill_lattice(set, def, &added)
+                                               : se3d_particles_fill_random(set, def))) {
+        return false;
+    }
+    if (added == 0) {
+        se3di_reader_warn(reader, node,
+                          "holds no particle: none of radius %g m, displaced by up to %g m, fits",
+                          def->radius_max, def->jitter);
+    }
+    return true;
 }
 
 static bool read_entry(se3di_reader *reader, const se3di_node *node)

@@ -14,9 +14,7 @@
 
 #define MASS_RATIO 1e9
 
-/* As an error would be told: "file:line:column: path: text". */
-SE3DI_IO_FORMAT(3, 4)
-static void tell(const se3di_reader *reader, const se3di_node *node, const char *format, ...)
+void se3di_reader_warn(const se3di_reader *reader, const se3di_node *node, const char *format, ...)
 {
     se3d_model_error error;
     const se3d_model_options *options = reader->options;
@@ -24,6 +22,9 @@ static void tell(const se3di_reader *reader, const se3di_node *node, const char 
     char path[256];
     char text[400];
     va_list arguments;
+    if (!options->log) {
+        return;
+    }
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
@@ -116,7 +117,7 @@ static void tell_unused(const se3di_reader *reader, const se3di_node *root, cons
     const se3di_node *map = se3di_node_get(root, section);
     for (const se3di_node *node = map ? map->first : NULL; node; node = node->next) {
         if (node->key && !se3di_ionames_find(words, node->key, NULL)) {
-            tell(reader, node, "the %s is used nowhere", what);
+            se3di_reader_warn(reader, node, "the %s is used nowhere", what);
         }
     }
 }
@@ -208,8 +209,9 @@ static void warn_of_shapes(const se3di_reader *reader, const groups *g)
         const se3di_node *node = model->shapes[k].node;
         const size_t body = entry_of(g, model->shapes[k].shape.body);
         if (!g->touches[body]) {
-            tell(reader, node,
-                 "has no material: nothing touches it; give it one, or `contact: false`");
+            se3di_reader_warn(
+                reader, node,
+                "has no material: nothing touches it; give it one, or `contact: false`");
             g->touches[body] = true; /* is told once */
         }
     }
@@ -277,10 +279,11 @@ static void warn_of_free_bodies(const se3di_reader *reader, const groups *g)
     const se3d_model *model = reader->model;
     for (size_t k = 1; k < model->body_count && has_weight(reader); ++k) {
         if (find(g, k) == k && model->bodies[k].node) {
-            tell(reader, model->bodies[k].node,
-                 "nothing holds %.60s: no joint, constraint, force or contact leads to the ground, "
-                 "it falls",
-                 model->bodies[k].name);
+            se3di_reader_warn(
+                reader, model->bodies[k].node,
+                "nothing holds %.60s: no joint, constraint, force or contact leads to the ground, "
+                "it falls",
+                model->bodies[k].name);
         }
     }
 }
@@ -299,8 +302,8 @@ static bool warn_of_drivers(const se3di_reader *reader)
         }
         snprintf(key, sizeof key, "%u.%d", (unsigned)e->driven.index1, (int)e->coordinate);
         if (se3di_ionames_find(&driven, key, &first)) {
-            tell(reader, e->node, "%.60s drives what %.60s drives already", e->name,
-                 model->elements[first].name);
+            se3di_reader_warn(reader, e->node, "%.60s drives what %.60s drives already", e->name,
+                              model->elements[first].name);
             continue;
         }
         const char *kept = se3di_iopool_copy(reader->pool, key, strlen(key));
@@ -342,9 +345,10 @@ static void warn_of_masses(const se3di_reader *reader, const groups *g)
     }
     if (light && heavy && most >= MASS_RATIO * least) {
         const se3di_node *mass = se3di_node_get(light->node, "mass");
-        tell(reader, mass ? mass : light->node,
-             "%.60s has %.3g kg and %.60s has %.3g kg: masses %.1g times as large leave few digits",
-             light->name, least, heavy->name, most, most / least);
+        se3di_reader_warn(
+            reader, mass ? mass : light->node,
+            "%.60s has %.3g kg and %.60s has %.3g kg: masses %.1g times as large leave few digits",
+            light->name, least, heavy->name, most, most / least);
     }
 }
 

@@ -321,10 +321,26 @@ static se3d_status close_csv(se3di_runner *r, se3di_csv *csv, se3d_run_file *abo
     return status < 0 ? fail_csv(r, csv) : SE3D_OK;
 }
 
+/* A window that no row is in. */
+static void warn_of_no_rows(const se3di_runner *r, const se3di_output_file *file)
+{
+    const se3di_output_entry *entry = file->entry;
+    char text[500];
+    if (r->model->log) {
+        snprintf(text, sizeof text,
+                 "%.200s is empty: no row is from `start`, %g s, to `stop`, %g s", entry->file,
+                 entry->start, entry->stop);
+        r->model->log(r->model->log_ctx, SE3D_LOG_WARNING, SE3D_LOG_FILE, text);
+    }
+}
+
 /* Its rows, and the columns for those who ask the run. */
 static se3d_status close_summary(se3di_runner *r, se3di_output_file *file)
 {
     se3d_run *run = r->run;
+    if (!file->summary->begun) {
+        warn_of_no_rows(r, file);
+    }
     se3di_summary_finish(file->summary);
     se3di_summary_write(file->summary, &file->csv);
     for (size_t k = 0; k < file->summary->count && file->summary->begun; ++k) {
