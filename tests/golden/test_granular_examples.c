@@ -165,11 +165,42 @@ static void plate_of_the_oedometer_holds_its_load(void)
     close_world(&w);
 }
 
+/* The lid has its load, and what the beads hold the upper half back with is what they are held
+ * with in shear boxes: about as much as the lid presses with. */
+static void shear_box_presses_and_is_held_back(void)
+{
+    static const double times[3] = {0.32, 0.38, 0.42};
+    se3d_servo_state lid;
+    se3d_body upper;
+    double force[3], torque[3], sunk = 0.0, lid_load = 0.0, held = 0.0;
+    se3d_solver_def def = se3d_solver_def_default();
+    open_world(&w, "shear_box");
+    se3d_solver_destroy(w.solver);
+    def.method = SE3D_METHOD_VERLET;
+    def.step = 2e-5; /* the automatic one takes three times as long */
+    CHECK(!se3d_solver_create(w.system, &def, &w.solver));
+    CHECK(!se3d_body_find(w.system, "upper", &upper));
+    for (int k = 0; k < 3; ++k) {
+        go(&w, times[k]);
+        CHECK(!se3d_particles_get_servo(w.particles, 0, &lid));
+        CHECK(!se3d_body_get_contact_wrench(w.system, upper, force, torque));
+        CHECK_NEAR(lid.wanted, 5000.0 * 0.06 * 0.06, 1e-9);
+        CHECK_NEAR(lid.force, lid.wanted, 0.15 * lid.wanted);
+        sunk = k == 0 ? lid.position : sunk;
+        lid_load = lid.force;
+        held = -force[0];
+    }
+    CHECK(held > 0.7 * lid_load && held < 1.6 * lid_load);
+    CHECK(sunk > 0.03 && lid.position < sunk); /* it was lifted */
+    close_world(&w);
+}
+
 int main(void)
 {
     RUN(hopper_discharges_through_its_gate_and_loses_nothing);
     RUN(motor_of_the_drum_carries_the_slope);
     RUN(plate_of_the_oedometer_holds_its_load);
+    RUN(shear_box_presses_and_is_held_back);
     RUN(pin_carries_the_bucket_and_what_it_has_dug);
     return check_finish();
 }
