@@ -524,7 +524,6 @@ bool se3di_fmi_unit_reset(se3di_fmi_unit *unit)
 
 static bool get_output(se3di_fmi_unit *u, size_t reference, double *value)
 {
-    const se3di_fmi_variable *v = &u->variables.list[reference];
     const unsigned modes = ~(1U << SE3DI_FMI_INSTANTIATED);
     double numbers[4];
     if (!se3di_fmi_is_in(u, modes, "getting an output")) {
@@ -535,6 +534,7 @@ static bool get_output(se3di_fmi_unit *u, size_t reference, double *value)
     if ((runs >> u->mode & 1U) && !se3di_fmi_refresh(u)) {
         return false;
     }
+    const se3di_fmi_variable *v = &u->variables.list[reference]; /* of the model as it is now */
     if (!u->solver) {
         return se3di_fmi_fail(u, "%s: there is no state that it could be of", v->name);
     }
@@ -568,10 +568,11 @@ bool se3di_fmi_unit_get(se3di_fmi_unit *unit, size_t reference, double *value)
     if (v->role >= SE3DI_FMI_OUTPUT) {
         return get_output(unit, reference, value);
     }
+    const bool is_time = v->role == SE3DI_FMI_TIME;
     if (v->role == SE3DI_FMI_CALCULATED && unit->model_stale && !renew_model(unit)) {
         return false;
     }
-    *value = v->role == SE3DI_FMI_TIME ? unit->time : se3di_fmi_value_of(unit, reference);
+    *value = is_time ? unit->time : se3di_fmi_value_of(unit, reference);
     return true;
 }
 
