@@ -655,6 +655,77 @@ static void derivatives_of_outputs_are_those_of_steps(void)
     }
 }
 
+/* The unknowns of the initialization with one value changed. */
+static int begin_with(const uint32_t *unknowns, size_t count, uint32_t known, double value,
+                      double *values)
+{
+    void *c = make();
+    const int good = f.enter(c) == GOOD && f.set(c, &known, 1, &value) == GOOD &&
+                     f.get(c, unknowns, count, values) == GOOD;
+    f.free(c);
+    return good;
+}
+
+/* How what the initialization calculates depends on one input or parameter. */
+static void check_beginning(const uint32_t *unknowns, size_t count, const variable *v)
+{
+    static double values[2][VARIABLES_MAX];
+    static double slopes[VARIABLES_MAX];
+    const double one = 1.0;
+    const double size = is(v->causality, "parameter") && v->start != 0.0 ? fabs(v->start) : 1.0;
+    const double h = 2e-4 * size;
+    if (!begin_with(unknowns, count, v->reference, v->start - h, values[0]) ||
+        !begin_with(unknowns, count, v->reference, v->start + h, values[1])) {
+        return; /* the model cannot be so */
+    }
+    void *c = make();
+    CHECK(f.enter(c) == GOOD);
+    CHECK(f.directional(c, unknowns, count, &v->reference, 1, &one, slopes) == GOOD);
+    for (size_t i = 0; i < count; ++i) {
+        const double slope = (values[1][i] - values[0][i]) / (2.0 * h);
+        const double most = fmax(fabs(values[0][i]), fabs(values[1][i]));
+        CHECK_NEAR(slopes[i], slope, 2e-6 * (fabs(slope) + (1.0 + most) / size));
+    }
+    CHECK(f.leave(c) == GOOD);
+    get_row(c, values[0]);
+    f.free(c);
+    c = make();
+    CHECK(f.enter(c) == GOOD && f.leave(c) == GOOD);
+    get_row(c, values[1]);
+    CHECK(same_bits(values[0], values[1]));
+    f.free(c);
+}
+
+/* In the initialization outputs, calculated parameters, and in model exchange states and their
+ * derivatives, depend on inputs and parameters; asking has no effect. */
+static void derivatives_are_there_in_the_initialization(void)
+{
+    static uint32_t unknowns[VARIABLES_MAX];
+    const double one = 1.0;
+    double out = 0.0;
+    for (unit_exchanges = 0; unit_exchanges <= d.exchanges; ++unit_exchanges) {
+        size_t count = 0;
+        size_t asked = 0;
+        for (size_t k = 0; k < d.unknown_count; ++k) {
+            if (unit_exchanges || !is_integrated(d.unknowns[k])) {
+                unknowns[count++] = d.variables[d.unknowns[k]].reference;
+            }
+        }
+        for (size_t k = 0; k < d.count && asked < 3; ++k) {
+            if (is(d.variables[k].causality, "input") ||
+                is(d.variables[k].causality, "parameter")) {
+                check_beginning(unknowns, count, &d.variables[k]);
+                ++asked;
+            }
+        }
+        void *c = make();
+        CHECK(f.enter(c) == GOOD);
+        REFUSED(f.directional(c, unknowns, 1, unknowns, 1, &one, &out)); /* not known */
+        f.free(c);
+    }
+    unit_exchanges = 0;
+}
+
 int main(int argc, char **argv)
 {
     char path[3000];
@@ -695,6 +766,7 @@ int main(int argc, char **argv)
     RUN(inputs_act_on_the_beginning);
     RUN(the_end_of_the_experiment_holds);
     RUN(derivatives_of_outputs_are_those_of_steps);
+    RUN(derivatives_are_there_in_the_initialization);
     const run results = {&d,          &f,        resources,  &rows[0][0],
                          COLUMNS_MAX, row_count, references, column_count};
     const int exchanges_badly = exchange_check(&results);

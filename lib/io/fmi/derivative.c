@@ -3,7 +3,8 @@
  *
  *     D(h) = (f(h) - f(-h)) / (2 h)        D = (4 D(h) - D(2 h)) / 3 + O(h^4)
  *
- * along the seed, whose largest part is h of what is nominal. */
+ * along the seed, whose largest part is h of what is nominal. In the initialization the model is
+ * read and its analyses before are run anew for each, since they see inputs and parameters. */
 #include "io/fmi/exchange.h"
 
 #include <math.h>
@@ -26,25 +27,41 @@ static const se3di_fmi_variable *variable_of(const se3di_fmi_unit *u, uint32_t r
     return &u->variables.list[reference];
 }
 
+static bool is_initializing(const se3di_fmi_unit *u)
+{
+    return u->mode == SE3DI_FMI_INITIALIZING;
+}
+
+/* In the initialization states are unknown, and parameters known. */
+static bool is_known(const se3di_fmi_unit *u, se3di_fmi_role role)
+{
+    return role == SE3DI_FMI_INPUT || (is_initializing(u) ? role == SE3DI_FMI_PARAMETER
+                                                          : u->exchange && role == SE3DI_FMI_STATE);
+}
+
+static bool is_unknown(const se3di_fmi_unit *u, se3di_fmi_role role)
+{
+    return role == SE3DI_FMI_OUTPUT ||
+           (u->exchange && (role == SE3DI_FMI_DERIVATIVE || role == SE3DI_FMI_INDICATOR)) ||
+           (is_initializing(u) &&
+            (role == SE3DI_FMI_CALCULATED || (u->exchange && role == SE3DI_FMI_STATE)));
+}
+
 static bool check(const question *q)
 {
     se3di_fmi_unit *u = q->u;
     for (size_t k = 0; k < q->unknown_count + q->known_count; ++k) {
-        const bool is_known = k >= q->unknown_count;
-        const uint32_t reference = is_known ? q->knowns[k - q->unknown_count] : q->unknowns[k];
+        const bool is_cause = k >= q->unknown_count;
+        const uint32_t reference = is_cause ? q->knowns[k - q->unknown_count] : q->unknowns[k];
         if (reference >= u->variables.count) {
             return se3di_fmi_fail(u, "the value reference %u is unknown: there are 0 to %zu",
                                   (unsigned)reference, u->variables.count - 1);
         }
         const se3di_fmi_variable *v = variable_of(u, reference);
-        const bool fits =
-            is_known ? v->role == SE3DI_FMI_INPUT || (u->exchange && v->role == SE3DI_FMI_STATE)
-                     : v->role == SE3DI_FMI_OUTPUT ||
-                           (u->exchange &&
-                            (v->role == SE3DI_FMI_DERIVATIVE || v->role == SE3DI_FMI_INDICATOR));
+        const bool fits = is_cause ? is_known(u, v->role) : is_unknown(u, v->role);
         if (!fits) {
             return se3di_fmi_fail(u, "%s is no %s of a derivative", v->name,
-                                  is_known ? "known" : "unknown");
+                                  is_cause ? "known" : "unknown");
         }
     }
     for (size_t k = 0; k < q->known_count; ++k) {
@@ -69,7 +86,7 @@ static bool get_all(const question *q, double *values)
 static bool go(const question *q, double part)
 {
     se3di_fmi_unit *u = q->u;
-    double *x = u->exchange ? u->exchange->given : NULL;
+    double *x = u->exchange && !is_initializing(u) ? u->exchange->given : NULL;
     if (x) {
         memcpy(x, q->values + q->known_count, u->variables.states * sizeof *x);
     }
@@ -94,8 +111,10 @@ static double measure(const question *q)
     double size = 0.0;
     for (size_t k = 0; k < q->known_count; ++k) {
         const se3di_fmi_variable *v = variable_of(q->u, q->knowns[k]);
-        const double nominal =
-            v->role == SE3DI_FMI_STATE ? v->nominal : fmax(1.0, fabs(q->values[k]));
+        const double value = fabs(q->values[k]);
+        const double nominal = v->role == SE3DI_FMI_STATE                      ? v->nominal
+                               : v->role == SE3DI_FMI_PARAMETER && value > 0.0 ? value
+                                                                               : fmax(1.0, value);
         size = fmax(size, fabs(q->seed[k]) / nominal);
     }
     return size;
@@ -128,7 +147,7 @@ static bool difference(const question *q, double *out)
 static void correct(const question *q, double *out)
 {
     const se3di_fmi_variables *all = &q->u->variables;
-    for (size_t k = 0; k < q->unknown_count && !all->projects; ++k) {
+    for (size_t k = 0; k < q->unknown_count && !all->projects && !is_initializing(q->u); ++k) {
         const se3di_fmi_variable *v = variable_of(q->u, q->unknowns[k]);
         if (v->role != SE3DI_FMI_DERIVATIVE || v->component == 0) {
             continue;
@@ -149,10 +168,13 @@ static bool ask(question *q, double *out)
             return false;
         }
     }
-    if (u->exchange) {
+    if (u->exchange && !is_initializing(u)) {
         memcpy(q->values + q->known_count, u->exchange->x, u->variables.states * sizeof *q->values);
     }
     bool good = difference(q, out);
+    if (is_initializing(u) || u->mode == SE3DI_FMI_FAILED) {
+        return good; /* bytes put back what was */
+    }
     const bool is_discarded = u->is_discarded;
     good = go(q, 0.0) && good;
     u->is_discarded = is_discarded;
@@ -169,7 +191,7 @@ static bool allocate(question *q, se3di_iopool *pool)
     return (q->values && q->at && q->f) || se3di_fmi_fail(q->u, "out of memory");
 }
 
-/* Beside the steps of a solver of its own, the unit goes back to its bytes. */
+/* Beside the steps of a solver of its own, and at the start, the unit goes back to its bytes. */
 static bool ask_aside(question *q, se3di_iopool *pool, double *out)
 {
     size_t size = 0;
@@ -191,8 +213,9 @@ bool se3di_fmi_unit_derive(se3di_fmi_unit *unit, const uint32_t *unknowns, size_
                            const uint32_t *knowns, size_t known_count, const double *seed,
                            double *out)
 {
-    const unsigned modes = unit->exchange ? 1U << SE3DI_FMI_EVENT | 1U << SE3DI_FMI_CONTINUOUS
-                                          : 1U << SE3DI_FMI_STEPPING;
+    const unsigned modes = 1U << SE3DI_FMI_INITIALIZING |
+                           (unit->exchange ? 1U << SE3DI_FMI_EVENT | 1U << SE3DI_FMI_CONTINUOUS
+                                           : 1U << SE3DI_FMI_STEPPING);
     question q = {.u = unit,
                   .unknowns = unknowns,
                   .knowns = knowns,
@@ -206,7 +229,8 @@ bool se3di_fmi_unit_derive(se3di_fmi_unit *unit, const uint32_t *unknowns, size_
     }
     se3di_iopool_init(&pool, NULL);
     const bool good =
-        allocate(&q, &pool) && (unit->exchange ? ask(&q, out) : ask_aside(&q, &pool, out));
+        allocate(&q, &pool) &&
+        (unit->exchange && !is_initializing(unit) ? ask(&q, out) : ask_aside(&q, &pool, out));
     se3di_iopool_destroy(&pool);
     return good;
 }

@@ -76,8 +76,10 @@ bool se3di_fmi_unit_update_event(se3di_fmi_unit *unit, bool *ends, bool *moved);
 bool se3di_fmi_unit_enter_continuous(se3di_fmi_unit *unit);
 
 /* How unknowns (outputs, derivatives, indicators) change along `seed` of knowns (inputs, and states
- * in model exchange). Derivatives of positions are exact if there are no constraints, all others
- * differences whose error is of the fourth order in a thousandth of what is nominal.
+ * in model exchange). In the initialization knowns are inputs and parameters, and calculated
+ * parameters and states are unknowns, too. Derivatives of positions are exact if there are no
+ * constraints, all others differences whose error is of the fourth order in a thousandth of what
+ * is nominal.
  * @param[in] seed  [known_count]
  * @param[out] out  [unknown_count] */
 bool se3di_fmi_unit_derive(se3di_fmi_unit *unit, const uint32_t *unknowns, size_t unknown_count,
