@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Snapshots of particles: read twice, so that a file of any length needs the memory of one. */
+/* Snapshots of particles: read two or three times, so that a file of any length needs the memory of
+ * one. */
 #include "snapshots.h"
 
 #include <errno.h>
@@ -9,26 +10,42 @@
 #include <string.h>
 
 #include "file.h"
+#include "text.h"
 
 static const char header[] = "time,id,radius,x,y,z,";
 
-enum { LINE = 1024, PARTICLES_MAX = 1 << 22, BYTES_MAX = 16 << 20, ABSENT = 65535 };
+enum { LINE = 1024, PARTICLES_MAX = 1 << 22, BYTES_MAX = 16 << 20, ABSENT = 65535, SETS = 64 };
 
-/* The beginning of a row. */
+/* What is taken from a row. */
 typedef struct particle {
     double time;
     double id;
     double radius;
     double r[3];
+    double force;     /* 0: no such column */
+    const char *name; /* of its set, in the line */
+    size_t length;
 } particle;
+
+/* A file, and which of its columns are set and force (0: none). */
+typedef struct rows {
+    FILE *file;
+    int set, force;
+    char line[LINE];
+} rows;
 
 typedef struct pack {
     double low[3], high[3];
     double first, last; /* ids */
     size_t snapshots;
     size_t stride; /* every so many snapshots are written */
+    double most;   /* of the forces */
+    char names[SETS][64];
+    size_t sets;
     float *radii;
     uint16_t *places;
+    uint16_t *forces; /* parts of the largest */
+    uint8_t *set;
 } pack;
 
 void base64_put(FILE *file, const void *data, size_t size)
@@ -57,12 +74,33 @@ int snapshots_is(const char *path)
     return is;
 }
 
-static int read_particle(FILE *file, particle *g)
+/* Set and force of a row, whose first six columns end at `at`. */
+static void read_more(const rows *in, const char *at, particle *g)
 {
-    char line[LINE];
+    g->force = 0.0;
+    g->name = "";
+    g->length = 0;
+    for (int column = 6; *at; ++column) {
+        const size_t length = strcspn(at, ",\r\n");
+        if (column == in->set) {
+            g->name = at;
+            g->length = length;
+        } else if (column == in->force) {
+            g->force = strtod(at, NULL);
+        }
+        at += length + (at[length] == ',');
+        if (*at == '\r' || *at == '\n') {
+            break;
+        }
+    }
+    g->force = isfinite(g->force) ? fabs(g->force) : 0.0;
+}
+
+static int read_particle(rows *in, particle *g)
+{
     double *const into[6] = {&g->time, &g->id, &g->radius, &g->r[0], &g->r[1], &g->r[2]};
-    while (fgets(line, LINE, file)) {
-        char *at = line;
+    while (fgets(in->line, LINE, in->file)) {
+        char *at = in->line;
         int count = 0;
         for (; count < 6; ++count) {
             char *end = at;
@@ -73,21 +111,51 @@ static int read_particle(FILE *file, particle *g)
             at = end + 1;
         }
         if (count == 6) {
+            read_more(in, at, g);
             return 1;
         }
     }
     return 0;
 }
 
-static FILE *open_rows(const char *path)
+static int open_rows(rows *in, const char *path)
 {
-    char line[LINE];
-    FILE *file = se3di_file_open(path);
-    if (file && !fgets(line, LINE, file)) {
-        fclose(file);
-        file = NULL;
+    in->file = se3di_file_open(path);
+    in->set = in->force = 0;
+    if (!in->file || !fgets(in->line, LINE, in->file)) {
+        if (in->file) {
+            fclose(in->file);
+        }
+        return 0;
     }
-    return file;
+    int column = 0;
+    for (const char *name = in->line; *name; ++column) {
+        const size_t length = strcspn(name, ",\r\n");
+        in->set = length == 3 && memcmp(name, "set", 3) == 0 ? column : in->set;
+        in->force = length == 5 && memcmp(name, "force", 5) == 0 ? column : in->force;
+        name += length + (name[length] == ',');
+        if (*name == '\r' || *name == '\n') {
+            break;
+        }
+    }
+    return 1;
+}
+
+/* The number of a set; of more than there is room for, the last one. */
+static uint8_t find_set(pack *p, const particle *g)
+{
+    size_t k = 0;
+    const size_t length = g->length < sizeof *p->names ? g->length : sizeof *p->names - 1;
+    while (k < p->sets &&
+           (strlen(p->names[k]) != length || memcmp(p->names[k], g->name, length) != 0)) {
+        ++k;
+    }
+    if (k == p->sets && k < SETS) {
+        memcpy(p->names[k], g->name, length);
+        p->names[k][length] = '\0';
+        ++p->sets;
+    }
+    return (uint8_t)(k < SETS ? k : SETS - 1);
 }
 
 /* The first reading: how many, and within which box. */
@@ -95,17 +163,19 @@ static int survey(pack *p, const char *path)
 {
     particle g;
     double time = 0.0;
-    FILE *file = open_rows(path);
-    if (!file) {
+    rows in;
+    if (!open_rows(&in, path)) {
         return 0;
     }
-    for (size_t rows = 0; read_particle(file, &g); ++rows) {
-        if (rows == 0) {
+    for (size_t count = 0; read_particle(&in, &g); ++count) {
+        if (count == 0) {
             p->first = p->last = g.id;
             memcpy(p->low, g.r, sizeof g.r);
             memcpy(p->high, g.r, sizeof g.r);
         }
-        p->snapshots += rows == 0 || g.time > time;
+        p->snapshots += count == 0 || g.time > time;
+        p->most = fmax(p->most, g.force);
+        find_set(p, &g);
         time = g.time;
         p->first = fmin(p->first, g.id);
         p->last = fmax(p->last, g.id);
@@ -114,7 +184,7 @@ static int survey(pack *p, const char *path)
             p->high[i] = fmax(p->high[i], g.r[i]);
         }
     }
-    fclose(file);
+    fclose(in.file);
     return 1;
 }
 
@@ -127,6 +197,8 @@ static void put_place(pack *p, const particle *g)
         const double part = width > 0.0 ? (g->r[i] - p->low[i]) / width : 0.0;
         p->places[3 * k + (size_t)i] = (uint16_t)lround(part * (ABSENT - 1));
     }
+    p->set[k] = find_set(p, g);
+    p->forces[k] = p->most > 0.0 ? (uint16_t)lround(g->force / p->most * ABSENT) : 0;
 }
 
 static size_t count_of(const pack *p)
@@ -134,43 +206,87 @@ static size_t count_of(const pack *p)
     return (size_t)(p->last - p->first) + 1;
 }
 
-static void put_snapshot(FILE *out, const pack *p, size_t number)
+static void put_snapshot(FILE *out, const pack *p, size_t number, const uint16_t *what, size_t size)
 {
     if (number > 0 && (number - 1) % p->stride == 0) {
         fputs(number > 1 ? ",\"" : "\"", out);
-        base64_put(out, p->places, 6 * count_of(p));
+        base64_put(out, what, size * count_of(p));
         fputc('"', out);
     }
 }
 
-/* The second reading: the snapshots, then what belongs to all. */
-static void put_all(FILE *out, pack *p, FILE *file, double *times)
+/* Places (`width` 3) or forces (1) of all snapshots that are written. */
+static void put_frames(FILE *out, pack *p, rows *in, int width, double *times, size_t *kept)
 {
+    const size_t size = (size_t)width * sizeof *p->places;
+    uint16_t *what = width == 3 ? p->places : p->forces;
     particle g;
     size_t number = 0;
-    size_t kept = 0;
     double time = 0.0;
-    fputs("{\"frames\":[", out);
-    while (read_particle(file, &g)) {
+    *kept = 0;
+    while (read_particle(in, &g)) {
         if (number == 0 || g.time > time) {
-            put_snapshot(out, p, number++);
-            memset(p->places, 0xff, 6 * count_of(p));
+            put_snapshot(out, p, number++, what, size);
+            memset(what, width == 3 ? 0xff : 0, size * count_of(p));
             time = g.time;
             if ((number - 1) % p->stride == 0) {
-                times[kept++] = time;
+                times[(*kept)++] = time;
             }
         }
         put_place(p, &g);
     }
-    put_snapshot(out, p, number);
+    put_snapshot(out, p, number, what, size);
+}
+
+/* The colours that come along: forces and sets, as far as the file tells them. */
+static int put_colours(FILE *out, pack *p, const char *path, double *times)
+{
+    rows in;
+    size_t kept = 0;
+    if (!open_rows(&in, path)) {
+        return 0;
+    }
+    if (in.force > 0 && p->most > 0.0) {
+        fprintf(out, ",\"most\":%.9g,\"forces\":[", p->most);
+        put_frames(out, p, &in, 1, times, &kept);
+        fputc(']', out);
+    }
+    fclose(in.file);
+    if (p->sets > 1) {
+        fputs(",\"sets\":[", out);
+        for (size_t k = 0; k < p->sets; ++k) {
+            fputs(k > 0 ? "," : "", out);
+            text_put_json(out, p->names[k]);
+        }
+        fputs("],\"set\":\"", out);
+        base64_put(out, p->set, count_of(p));
+        fputc('"', out);
+    }
+    return 1;
+}
+
+/* The second reading: the snapshots, then what belongs to all. */
+static int put_all(FILE *out, pack *p, const char *path, double *times)
+{
+    rows in;
+    size_t kept = 0;
+    if (!open_rows(&in, path)) {
+        return 0;
+    }
+    fputs("{\"frames\":[", out);
+    put_frames(out, p, &in, 3, times, &kept);
+    fclose(in.file);
     fprintf(out, "],\"count\":%zu,\"radii\":\"", count_of(p));
     base64_put(out, p->radii, sizeof *p->radii * count_of(p));
     fputs("\",\"times\":[", out);
     for (size_t k = 0; k < kept; ++k) {
         fprintf(out, k > 0 ? ",%.9g" : "%.9g", times[k]);
     }
-    fprintf(out, "],\"low\":[%.9g,%.9g,%.9g],\"high\":[%.9g,%.9g,%.9g]}", p->low[0], p->low[1],
+    fprintf(out, "],\"low\":[%.9g,%.9g,%.9g],\"high\":[%.9g,%.9g,%.9g]", p->low[0], p->low[1],
             p->low[2], p->high[0], p->high[1], p->high[2]);
+    const int good = put_colours(out, p, path, times);
+    fputc('}', out);
+    return good;
 }
 
 int snapshots_put(FILE *out, const char *command, const char *path)
@@ -186,22 +302,22 @@ int snapshots_put(FILE *out, const char *command, const char *path)
         fputs("null", out);
         return 1;
     }
-    p.stride = 1 + 6 * count_of(&p) * p.snapshots / BYTES_MAX;
+    p.stride = 1 + 8 * count_of(&p) * p.snapshots / BYTES_MAX;
     p.radii = calloc(count_of(&p), sizeof *p.radii);
     p.places = malloc(6 * count_of(&p));
+    p.forces = malloc(2 * count_of(&p));
+    p.set = calloc(count_of(&p), 1);
     double *times = malloc(p.snapshots * sizeof *times);
-    FILE *file = open_rows(path);
-    const int good = file && p.radii && p.places && times;
-    if (good) {
-        put_all(out, &p, file, times);
-    } else {
+    const int good = p.radii && p.places && p.forces && p.set && times;
+    if (!good) {
         fprintf(stderr, "se3d %s: %s: out of memory\n", command, path);
-    }
-    if (file) {
-        fclose(file);
+    } else if (!put_all(out, &p, path, times)) {
+        fprintf(stderr, "se3d %s: %s: cannot be read\n", command, path);
     }
     free(p.radii);
     free(p.places);
+    free(p.forces);
+    free(p.set);
     free(times);
     return good;
 }

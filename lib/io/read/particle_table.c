@@ -22,13 +22,16 @@ enum {
     FIELD_TIME = 10,
     FIELD_MATERIAL = 11,
     FIELD_ID = 12,
-    FIELD_COUNT = 13,
+    FIELD_SET = 13, /* what an output has besides is passed over */
+    FIELD_FORCE = 14,
+    FIELD_COUNT = 15,
     COLUMNS_MAX = 32,
     QUOTE_MAX = 24 /* of a file that may not have been meant to be shown */
 };
 
 static const char *const fields[FIELD_COUNT + 1] = {
-    "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "radius", "time", "material", "id", NULL};
+    "x",  "y",      "z",    "vx",       "vy", "vz",  "wx",    "wy",
+    "wz", "radius", "time", "material", "id", "set", "force", NULL};
 
 typedef struct table {
     se3di_reader *reader;
@@ -80,7 +83,7 @@ static bool read_header(table *t)
         if (!fields[k]) {
             return fail(t, cell,
                         "is not a column: x, y, z, radius are required; vx, vy, vz, wx, wy, wz, "
-                        "material, time, id are optional");
+                        "material, time, id, set, force are optional");
         }
         if (seen >> k & 1u) {
             return fail(t, cell, "appears twice");
@@ -115,6 +118,9 @@ static bool read_cell(table *t, int field, const char *cell, double *time)
     double value = 0.0;
     if (field == FIELD_MATERIAL) {
         return cell[0] == '\0' || read_material(t, cell);
+    }
+    if (field == FIELD_SET) {
+        return true;
     }
     if (!read_number(t, cell, &value)) {
         return false;

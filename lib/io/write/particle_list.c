@@ -2,6 +2,7 @@
 /* Snapshots of particles, in ascending order of the ids. */
 #include "io/write/particle_list.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "io/base/pool.h"
@@ -11,17 +12,25 @@
 #include "io/write/csv.h"
 #include "se3d/clump.h"
 
+enum {
+    MATERIAL = 12, /* columns: numbers before it */
+    SET,
+    FORCE,
+    CLUMP,
+    COLUMNS
+};
+
 const char *se3di_tagged_get_column(size_t k)
 {
-    static const char *const names[SE3DI_PARTICLE_COLUMNS + 1] = {
-        "time", "id", "radius", "x",  "y",  "z",        "vx",
-        "vy",   "vz", "wx",     "wy", "wz", "material", "clump"};
+    static const char *const names[COLUMNS] = {"time",     "id",  "radius", "x",    "y",  "z",
+                                               "vx",       "vy",  "vz",     "wx",   "wy", "wz",
+                                               "material", "set", "force",  "clump"};
     return names[k];
 }
 
 size_t se3di_tagged_count_columns(const se3d_model *model)
 {
-    return (size_t)SE3DI_PARTICLE_COLUMNS + (model->particles->clump_count > 0 ? 1 : 0);
+    return model->particles->clump_count > 0 ? COLUMNS : CLUMP;
 }
 
 static const char *name_of(const se3d_model *model, se3d_material material)
@@ -37,7 +46,7 @@ static const char *name_of(const se3d_model *model, se3d_material material)
     return "";
 }
 
-/* Numbers of all particles, [n], [n], [3 n] ... in turn. */
+/* Numbers of all particles, [n], [3 n], [3 n], [3 n], [3 n] in turn. */
 static se3d_status read_set(const se3d_particles *set, size_t n, double *numbers, uint32_t *ids,
                             se3di_particle_rows *out, se3d_material *materials)
 {
@@ -47,6 +56,9 @@ static se3d_status read_set(const se3d_particles *set, size_t n, double *numbers
     }
     if (status >= 0) {
         status = se3d_particles_get_all(set, n, numbers + n, numbers + 4 * n, numbers + 7 * n);
+    }
+    if (status >= 0) {
+        status = se3d_particles_get_forces(set, n, numbers + 10 * n, NULL);
     }
     if (status >= 0) {
         status = se3d_particles_get_tags(set, n, out->tags);
@@ -62,7 +74,7 @@ se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
     const size_t n = se3d_particles_count(set);
     uint32_t *ids = se3di_iopool_array(pool, n + 1, sizeof *ids);
     uint32_t *clumps = se3di_iopool_array(pool, n + 1, sizeof *clumps);
-    double *numbers = se3di_iopool_array(pool, 10 * n + 1, sizeof *numbers);
+    double *numbers = se3di_iopool_array(pool, 13 * n + 1, sizeof *numbers);
     se3d_material *materials = se3di_iopool_array(pool, n + 1, sizeof *materials);
     double time = 0.0;
     out->count = 0;
@@ -87,7 +99,9 @@ se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
         for (size_t v = 0; v < 3; ++v) {
             memcpy(row + 3 + 3 * v, numbers + n + 3 * (v * n + k), 3 * sizeof *row);
         }
-        row[12] = clumps[k] == UINT32_MAX ? -1.0 : (double)clumps[k];
+        const double *f = numbers + 10 * n + 3 * k;
+        row[12] = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+        row[13] = clumps[k] == UINT32_MAX ? -1.0 : (double)clumps[k];
         out->materials[k] = name_of(model, materials[k]);
     }
     out->count = status < 0 ? 0 : n;
@@ -98,19 +112,21 @@ se3d_status se3di_tagged_write(const se3d_model *model, se3di_iopool *pool, int3
                                struct se3di_csv *csv)
 {
     se3di_particle_rows particles;
-    se3di_csv_cell cells[SE3DI_PARTICLE_COLUMNS + 1] = {{NULL, 0.0}};
+    se3di_csv_cell cells[COLUMNS] = {{NULL, 0.0}};
     const se3d_status status = se3di_tagged_get_rows(model, pool, &particles);
-    const size_t numbers = SE3DI_PARTICLE_COLUMNS - 1;
     for (size_t k = 0; k < particles.count; ++k) {
         if (set >= 0 && particles.tags[k] != (uint32_t)set) {
             continue;
         }
         const double *row = particles.rows + SE3DI_PARTICLE_COLUMNS * k;
-        for (size_t c = 0; c < numbers; ++c) {
+        for (size_t c = 0; c < MATERIAL; ++c) {
             cells[c].number = row[c];
         }
-        cells[numbers].text = particles.materials[k];
-        cells[numbers + 1].number = row[numbers];
+        const char *name = model->particles->sets[particles.tags[k]];
+        cells[MATERIAL].text = particles.materials[k];
+        cells[SET].text = name ? name : "";
+        cells[FORCE].number = row[12];
+        cells[CLUMP].number = row[13];
         se3di_csv_put_cells(csv, cells, se3di_tagged_count_columns(model));
     }
     return status;

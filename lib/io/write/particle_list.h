@@ -6,18 +6,19 @@
 #include "io/model/model.h"
 #include "io/write/csv.h"
 
-enum { SE3DI_PARTICLE_COLUMNS = 13 };
+enum { SE3DI_PARTICLE_COLUMNS = 14 };
 
 /* Particles as they are, in ascending order of the ids. */
 typedef struct se3di_particle_rows {
-    double *rows; /* [count * SE3DI_PARTICLE_COLUMNS]; the last one: the clump, -1: none */
+    double *rows; /* [count * SE3DI_PARTICLE_COLUMNS]; the last two: what contacts do [N]; the
+                   * clump, -1: none */
     uint32_t *tags;
     const char **materials; /* names */
     size_t count;
 } se3di_particle_rows;
 
-/* Columns of a snapshot: numbers, the material, and if the model has clumps, of which one a sphere
- * is. */
+/* Columns of a snapshot: numbers, material, set ("": without a name), the size of the force of the
+ * contacts in the last step, and if the model has clumps, of which one a sphere is. */
 size_t se3di_tagged_count_columns(const se3d_model *model);
 const char *se3di_tagged_get_column(size_t k);
 /* Copy all particles. */

@@ -272,7 +272,7 @@ typedef struct column {
     bool is_integer;
 } column;
 
-enum { COLUMNS_MOST = 5 }; /* a name NULL: there are fewer */
+enum { COLUMNS_MOST = 6 }; /* a name NULL: there are fewer */
 
 /* The rows of a table as points with what their columns say; the place is at `place`. */
 static bool write_rows(const char *path, const double *rows, size_t n, size_t width, size_t place,
@@ -298,13 +298,15 @@ static bool write_rows(const char *path, const double *rows, size_t n, size_t wi
 static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
                             const char *path)
 {
-    /* The columns of a row: time, id, radius, position, velocity, angular velocity, clump. */
+    /* The columns of a row: time, id, radius, position, velocity, angular velocity, force,
+     * clump. */
     const column columns[COLUMNS_MOST] = {
         {"radius", 2, 1, false},
         {"velocity", 6, 3, false},
         {"angular_velocity", 9, 3, false},
         {"id", 1, 1, true},
-        {model->particles->clump_count > 0 ? "clump" : NULL, 12, 1, true}};
+        {"force", 12, 1, false},
+        {model->particles->clump_count > 0 ? "clump" : NULL, 13, 1, true}};
     se3di_particle_rows list;
     (void)sample;
     return se3di_tagged_get_rows(model, pool, &list) >= 0 &&
