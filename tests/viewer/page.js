@@ -68,7 +68,7 @@ const pixel = (id, x, y) => evaluate(`(() => {
 const apart = (a, b) => Math.max(...a.map((v, k) => Math.abs(v - b[k])));
 const read = (path) => {
   const rows = fs.readFileSync(path, "utf8").trim().split("\n").map((line) => line.split(","));
-  return { names: rows[0], rows: rows.slice(1).map((row) => row.map(Number)) };
+  return { names: rows[0], rows: rows.slice(1).map((row) => row.map(Number)), texts: rows.slice(1) };
 };
 const checkMotion = async ({ names, rows }) => {
   const column = names.indexOf(body + ".position.x");
@@ -154,6 +154,14 @@ const checkPicks = async () => {
   await evaluate("se3d.set({colour: '', labels: false, picked: null})");
 };
 const checkJoints = async () => {
+  // Where things meet it is darker, and below what is close to the floor.
+  await evaluate("se3d.show(se3d.start)");
+  const [darkest, lightest] = await evaluate("se3d.light.found()"), mark = await evaluate("se3d.light.mark()");
+  check(darkest < 225 && lightest === 255, `ambient occlusion: ${darkest} to ${lightest}`);
+  check(mark > 10, `the shadow of contact: ${mark}`);
+  const plain = await colours(""), loaded = await colours("force");
+  check(loaded.hues.includes("force") && loaded.legend.startsWith("force [N] ") && loaded.picture !== plain.picture, `colours by force: ${loaded.legend}`);
+  await choose("colour", "");
   for (const [width, height, dark] of brief ? [[480, 720, true]] : [[800, 450, false], [480, 720, true]]) {
     await call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
     await evaluate(`se3d.set({dark: ${dark}})`);
@@ -256,7 +264,12 @@ const checkSeen = async () => {
   const there = await pixel("view", x, y), sky = await pixel("view", 5, 60);
   check(apart(there, sky) > 40, `the body is seen at ${x}, ${y}: ${there}, beside ${sky}`);
 };
-const checkGrains = async ({ rows }) => {
+// What can be coloured by, and what the legend and the picture are if it is one of them.
+const colours = async (hue) => {
+  await choose("colour", hue);
+  return evaluate(`({ hues: [...document.getElementById("colour").options].map((o) => o.value), legend: document.getElementById("legend").innerText.replace(/\\s+/g, " "), picture: se3d.picture(se3d.start + 0.7 * (se3d.end - se3d.start)) })`);
+};
+const checkGrains = async ({ names, rows, texts }) => {
   const ids = rows.map((row) => row[1]), first = ids.reduce((a, b) => Math.min(a, b));
   for (const part of [0, 0.3, 0.61, 1]) {
     const row = rows[Math.round(part * (rows.length - 1))];
@@ -264,6 +277,16 @@ const checkGrains = async ({ rows }) => {
     const grain = await evaluate(`se3d.grain(${row[1] - first})`);
     check(apart(grain.slice(0, 3), row.slice(3, 6)) < 1e-4 && Math.abs(grain[3] - row[2]) < 1e-6, `at t = ${row[0]} grain ${row[1]} is at ${grain}, not ${row.slice(2, 6)}`);
   }
+  // Forces and sets come along in files that tell them.
+  const { hues, legend } = await colours("force");
+  if (names.includes("force")) check(hues.includes("force") && /^force \[N\] 0\.00.*[1-9]/.test(legend), `colours by force: ${hues}, ${legend}`);
+  else check(!hues.includes("force"), "no forces, no colours of them");
+  if (names.includes("set")) {
+    const column = names.indexOf("set"), sets = [...new Set(texts.map((row) => row[column]))], last = await colours("set");
+    check(sets.length < 2 || sets.every((set) => last.legend.includes(set || "without a name")), `sets ${sets}: ${last.legend}`);
+    check(sets.length < 2 || last.picture !== (await colours("force")).picture, "sets have colours of their own");
+  }
+  await choose("colour", "");
   const time = await evaluate("se3d.measure(5)");
   console.log(`${new Set(ids).size} grains: ${time.toFixed(1)} ms a picture, drawn by the processor alone`);
   check(time < 2000, "grains stay interactive");

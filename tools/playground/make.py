@@ -85,8 +85,8 @@ def make_live_page(three):
     read = lambda name: (VIEWER / name).read_text()
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n<title>se3d</title>\n<style>\n' +
             read("viewer.css") + "</style></head><body>\n" + read("viewer.html") + read("live.html") +
-            "<script>window.se3dAsk = parent.se3dAsk;</script>\n<script>\n" + three + "\n</script>\n<script>\n" +
-            read("plots.js") + "</script>\n<script>\n" + read("viewer.js") + "</script>\n<script>\n" + read("live.js") + "</script>\n</body></html>\n")
+            "<script>window.se3dAsk = parent.se3dAsk;</script>\n<script>\n" + three + "\n" +
+            "".join("</script>\n<script>\n" + read(name + ".js") for name in ("plots", "light", "viewer", "live")) + "</script>\n</body></html>\n")
 
 
 def make_page(engine, three):

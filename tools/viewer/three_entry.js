@@ -11,8 +11,9 @@ export { uPlot };
 export { OrbitControls } from "three/addons/controls/OrbitControls.js";
 export { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 export {
-  AnimationMixer, AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry,
-  HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, InterpolateSmooth, Line, LineBasicMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MeshStandardMaterial, MOUSE, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion,
-  Raycaster, Scene, ShaderMaterial, ShadowMaterial, Vector2, Vector3, WebGLRenderer,
+  AnimationMixer, AxesHelper, ArrowHelper, BufferAttribute, BufferGeometry, Color, CustomBlending, DepthTexture, DirectionalLight,
+  DoubleSide, EdgesGeometry, HemisphereLight, InstancedBufferAttribute, InstancedBufferGeometry, InterpolateSmooth, Line,
+  LinearFilter, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshStandardMaterial, MOUSE, NearestFilter, OneFactor,
+  OrthographicCamera, PCFShadowMap, PerspectiveCamera, Plane, PlaneGeometry, Quaternion, Raycaster, Scene, ShaderMaterial,
+  ShadowMaterial, SrcColorFactor, UnsignedIntType, Vector2, Vector3, WebGLRenderer, WebGLRenderTarget, ZeroFactor,
 } from "three";

@@ -4,9 +4,9 @@
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 let se3dRenderer = null, se3dSlow = 0; // one for all that is shown in this page; how slow pictures are
-// Shows a scene: `glb` with its motion, `other` (null: none) that of another run, `results` {names, units, values} beside it, `packed` grains or null, `modes` of a
-// file {names, rows} or null. With `live`
-// ({post}, see live.js) there is no motion: what `feed` gets is shown. `close` takes all away again.
+// Shows a scene: `glb` with its motion, `other` (null: none) that of another run, `results` {names, units, values} beside
+// it, `packed` grains or null, `modes` of a file {names, rows} or null. With `live` ({post}, see live.js) there is no
+// motion: what `feed` gets is shown. `close` takes all away again.
 const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const $ = (id) => document.getElementById(id);
   const decode = se3dDecode;
@@ -164,7 +164,6 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (e && o.isMesh) { e.parts.push(o); if (!e.place && o.name === e.name) e.place = o; }
   });
   const shown = elements.filter((e) => e.place);
-
   const scene = new THREE.Scene();
   scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6));
   const sun = new THREE.DirectionalLight(0xffffff, 2.2);
@@ -184,7 +183,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   if (packed) {
     let count = packed.count || 0, place, paints, places, paint;
     const { low = [0, 0, 0], high = [0, 0, 0] } = packed, radii = new Float32Array(decode(packed.radii || ""));
-    const frames = (packed.frames || []).map((text) => new Uint16Array(decode(text)));
+    const frames = (packed.frames || []).map((text) => new Uint16Array(decode(text))), forces = (packed.forces || []).map((text) => new Uint16Array(decode(text)));
+    const set = new Uint8Array(decode(packed.set || ""));
     // With room for so many.
     const make = (most) => {
       const shape = new THREE.InstancedBufferGeometry();
@@ -246,11 +246,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     };
     self.move = live ? () => {} : (t) => { const [a, b] = locate((k) => grainTimes[k], grainTimes.length, t); shownAt = [a, b]; move(t); };
     self.list = () => ({ place, count });
+    const force = (k, a) => forces[a][k] / 65535 * packed.most;
     self.fastest = () => { let most = 0; for (let k = 0; k < count; ++k) most = Math.max(most, speed(k, ...shownAt)); return most; };
     self.paint = (what, span) => {
       for (let k = 0; k < count; ++k) {
-        const part = what === "size" ? (radii[k] - span[0]) / (span[1] - span[0] || 1) : what ? speed(k, ...shownAt) / (span[1] || 1) : 0;
-        const c = what ? ramp(part).map((v) => v / 255) : [0.93, 0.72, 0.42];
+        const part = what === "size" ? (radii[k] - span[0]) / (span[1] - span[0] || 1) : what === "force" ? (forces.length ? force(k, shownAt[0]) / (span[1] || 1) : 0)
+          : what === "speed" ? speed(k, ...shownAt) / (span[1] || 1) : 0;
+        const c = what === "set" ? se3dPalette(set[k]) : what ? se3dRamp(part).map((v) => v / 255) : [0.93, 0.72, 0.42];
         for (let i = 0; i < 3; ++i) paints[3 * k + i] = c[i];
       }
       paint.needsUpdate = true;
@@ -289,6 +291,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const reckon = (o) => {
       if (!o.isMesh || !o.visible) return;
       if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
+        o.userData.isPlane = true;
         if (Math.abs(va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z) < 0.5) o.material.opacity = 0.08;
         return;
       }
@@ -307,8 +310,9 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       own = [least.sub(bodies[heaviest].position), most.sub(bodies[heaviest].position)];
     }
   }
-  // What goes far for its size is followed, and as large as it is itself.
-  const isFar = !live && !packed && !second && own !== null && high.distanceTo(low) > 4 * largest0;
+  // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
+  const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
+  const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 4 * largest0;
   if (isFar) { pose(start); low.copy(own[0]).add(bodies[heaviest].position); high.copy(own[1]).add(bodies[heaviest].position); }
   if (grid) { // a floor under a road lies just below it
     let least = Infinity;
@@ -317,7 +321,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (least < Infinity) grid.position.z = least - 0.004 * high.distanceTo(low);
   }
   if (packed && packed.box) { if (packed.box[0] !== null) { low.min(va.fromArray(packed.box)); high.max(va.fromArray(packed.box, 3)); } }
-  else if (packed) { low.min(va.fromArray(packed.low)); high.max(va.fromArray(packed.high)); }
+  else if (packed) { const wide = grains.sizes()[1]; low.min(va.fromArray(packed.low).subScalar(wide)); high.max(va.fromArray(packed.high).addScalar(wide)); }
   if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
   const center = low.clone().add(high).multiplyScalar(0.5), edge = high.clone();
   const size = Math.max(1e-6, high.distanceTo(low));
@@ -351,6 +355,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   floor.position.set(center.x, center.y, grid ? grid.position.z : low.z);
   floor.receiveShadow = true;
   scene.add(floor);
+  const light = se3dLight(renderer, scene, camera, { size, floor });
 
   let film = null; // width and height of the pictures of a film
   // Where the camera is, and so far away that the box around all is in the picture.
@@ -387,9 +392,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     ray.near = 0; ray.far = Math.max(0, way - 1.05 * pin);
     return ray.intersectObjects(solids, false).map((hit) => hit.object).filter((o) => o.material.opacity === 1 && !own.includes(o));
   };
+  const tight = new Set(); // what leaves nothing of a joint
   // For each joint and some grains the fewest things before one of its points; none: it is seen.
   const hidden = (azimuth, height, count) => {
     const found = [], eye = new THREE.Vector3(), at = new THREE.Vector3();
+    tight.clear();
     const stride = Math.ceil(shown.length / 60);
     for (let k = 0; k < count; ++k) {
       const t = start + (end - start) * (count > 1 ? k / (count - 1) : 0);
@@ -402,6 +409,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
           .map((p) => blockers(eye, at.fromArray(p).applyMatrix4(e.place.matrixWorld), e.parts));
         const free = around.filter((list) => !list.length).length;
         if (free < 2) found.push(around[0].length ? around[0] : around.find((list) => list.length));
+        if (free === 0) around.flat().forEach((o) => tight.add(o));
       });
       if (grains) {
         grains.move(t);
@@ -428,7 +436,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const see = () => {
     if (state.solid) return;
     for (let round = 0; round < 4; ++round) {
-      const some = hidden(orbit.azimuth, orbit.height, live ? 1 : 4).flat().filter((o) => o.name === "shape" && !clear.has(o) && !isSlim(o));
+      const some = hidden(orbit.azimuth, orbit.height, live ? 1 : 4).flat().filter((o) => o.name === "shape" && !clear.has(o) && (tight.has(o) || !isSlim(o)));
       if (!some.length) return;
       some.forEach((o) => clear.add(o));
       glaze();
@@ -501,7 +509,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     live.post("pull", `${pull.body} ${[...pull.point.toArray(), ...pull.place.toArray()].join(" ")}`);
   };
 
-  const draw = () => {
+  const draw = (isQuick) => {
     const [width, height] = film || [innerWidth, innerHeight];
     if (renderer.domElement.width !== Math.round(width * renderer.getPixelRatio()) || camera.aspect !== width / height) {
       const { distance } = orbit;
@@ -529,19 +537,14 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       }
     }
     stretch();
-    renderer.render(scene, camera);
+    light.render(isQuick === true);
     write();
     $("time").value = state.time;
     $("clock").textContent = shape ? "mode " + state.mode : state.time.toFixed(3) + " s";
     plot();
   };
 
-  // Colours by speed, or of grains by size: from blue over green to yellow (viridis, which all tell apart and which prints well).
-  const scale5 = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
-  const ramp = (part) => {
-    const x = 4 * Math.min(1, Math.max(0, part || 0)), k = Math.min(3, Math.floor(x));
-    return scale5[k].map((c, i) => c + (x - k) * (scale5[k + 1][i] - c));
-  };
+  // Colours by speed, force, size or set.
   const painted = bodies.map((b, k) => {
     const list = [];
     if (k > 0) b.children.forEach((o) => { if (o.isMesh && o.material.opacity === 1 && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, own: o.material.color.clone() }); });
@@ -556,9 +559,19 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     pose(b);
     return bodies.map((o, k) => (b > a ? o.position.distanceTo(from[k]) / (b - a) : 0));
   };
+  // Joints, springs and dampers with a force among the results.
+  const loads = elements.filter((e) => e.parts.length).map((e) => {
+    const columns = [".force", ".force.x", ".force.y", ".force.z"].map((end) => results.names.indexOf(e.name + end)).filter((k) => k > 0);
+    let most = 0;
+    for (let r = 0; r < rows; ++r) most = Math.max(most, Math.hypot(...columns.map((k) => at(r, k))) || 0);
+    return { e, columns, most, own: e.parts.map((o) => o.material.color.clone()) };
+  }).filter((l) => l.columns.length);
   let range = null;
+  const tint = (o, much) => { const [r, g, b] = se3dRamp(much / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); o.material.color.convertSRGBToLinear(); };
   const measureRange = () => {
     if (state.colour === "size") return grains.sizes();
+    if (state.colour === "set") return [0, 0];
+    if (state.colour === "force") return [0, Math.max(packed && packed.most || 0, ...loads.map((l) => l.most))];
     let most = 0;
     for (let k = 0; k <= 40; ++k) {
       const t = start + (end - start) * k / 40;
@@ -575,11 +588,17 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (grains) { grains.move(state.time); grains.paint(state.colour, range); }
     painted.forEach((list, k) => list.forEach(({ o, own }) => {
       o.material.color.copy(own);
-      if (now) { const [r, g, b] = ramp(now[k] / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); o.material.color.convertSRGBToLinear(); }
+      if (now) tint(o, now[k]);
+      else if (state.colour === "force") o.material.color.setHex(0x9aa5b0);
+    }));
+    loads.forEach(({ e, columns, own }) => e.parts.forEach((o, k) => {
+      o.material.color.copy(own[k]);
+      if (state.colour === "force") tint(o, Math.hypot(...columns.map((c) => value(c, state.time))));
     }));
     $("legend").style.display = state.colour ? "block" : "none";
     if (state.colour) {
-      $("legend-what").textContent = state.colour === "size" ? "radius [m]" : "speed [m/s]";
+      $("legend-what").textContent = { size: "radius [m]", force: "force [N]", speed: "speed [m/s]", set: "set" }[state.colour];
+      $("legend").classList.toggle("listed", state.colour === "set");
       $("legend-low").textContent = range[0].toPrecision(3); $("legend-high").textContent = range[1].toPrecision(3);
     }
   };
@@ -673,7 +692,14 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     phase = state.phase;
     $("help").style.display = state.help ? "block" : "none";
   };
-  for (const [key, text] of [["", "material"], ["speed", "speed"], ...(packed && !live ? [["size", "size"]] : [])]) $("colour").add(new Option(text, key));
+  const hues = ["speed", ...(packed && !live ? ["size"] : []), ...(loads.length || (packed && packed.forces) ? ["force"] : []), ...(packed && packed.sets ? ["set"] : [])];
+  for (const [key, text] of [["", "material"], ...hues.map((hue) => [hue, hue])]) $("colour").add(new Option(text, key));
+  $("legend-sets").replaceChildren(...((packed && packed.sets) || []).map((name, k) => {
+    const line = document.createElement("div"), mark = document.createElement("b");
+    mark.style.background = `rgb(${se3dPalette(k).map((v) => Math.round(255 * v))})`;
+    line.append(mark, name || "without a name");
+    return line;
+  }));
   $("colour").onchange = () => { set({ colour: $("colour").value }); draw(); };
   $("mode").add(new Option("none", "0"));
   shapes.forEach((s, k) => $("mode").add(new Option(`${k + 1}: ` + (s.imag > 0 ? `${s.frequency.toPrecision(4)} Hz, damping ${s.damping.toPrecision(3)}` : `s = ${s.real.toPrecision(3)} 1/s`), String(k + 1))));
@@ -722,7 +748,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (part.has("follow")) change.follow = follow > 0 ? follow : -1;
     if (Number(part.get("mode")) > 0 && Number(part.get("mode")) <= shapes.length) change.mode = Math.floor(Number(part.get("mode")));
     if (["ghost", "beside", "off"].includes(part.get("second"))) change.second = part.get("second");
-    if (["speed", ...(packed ? ["size"] : [])].includes(part.get("colour"))) change.colour = part.get("colour");
+    if (hues.includes(part.get("colour"))) change.colour = part.get("colour");
     const element = elements.findIndex((e) => e.name === part.get("picked")), body = bodies.findIndex((b) => b.name === part.get("picked"));
     if (element >= 0) change.picked = { element }; else if (body >= 0) change.picked = { body };
     if (part.get("plot")) plots.choose(part.get("plot").split(","));
@@ -784,10 +810,9 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost", follow: isFar ? heaviest : -1 });
   set(recall());
   see();
-  // Live: whether there is another picture than the last one.
+  // Whether there is another picture than the last one.
   let fresh = true, last = "";
   const isOther = () => {
-    if (!live) return true;
     const what = [innerWidth, innerHeight, JSON.stringify(orbit), JSON.stringify(state), pull ? JSON.stringify(pull.place) : ""].join();
     const other = fresh || what !== last;
     last = what; fresh = false;
@@ -796,7 +821,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   // At most one picture waits to be painted, so that what comes meanwhile is shown by the next one. Live, pictures that
   // take long (no GPU) are made with fewer points while all moves.
   const gl = renderer.getContext(), fine = Math.min(2, devicePixelRatio || 1);
-  let fence = null, began = 0, idle = 0, held = false;
+  let fence = null, began = 0, idle = 0, held = false, moved = 0, isRough = false;
   const isPainted = () => {
     if (!fence) return true;
     if (!gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
@@ -812,7 +837,9 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const ratio = live && se3dSlow >= 3 && (state.playing || pull) ? 0.5 * fine : fine;
     if (live && renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
     began = performance.now();
-    draw();
+    const isMoving = state.playing || pull || performance.now() - moved < 150;
+    isRough = isMoving && se3dSlow > 0; // the fine picture comes when all rests
+    draw(isRough);
     fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
   };
@@ -825,11 +852,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (shape && state.playing && !live) {
       set({ phase: (state.phase + 0.7 * state.speed * passed) % 1 });
     } else if (state.playing && end > start && !live) {
-      state.time += state.speed * passed;
-      if (state.time > end) state.time = start + (state.time - end) % (end - start);
+      state.time = start + (state.time + state.speed * passed - start) % (end - start);
     }
-    if (!film) controls.update();
-    if (!film && isOther()) paint();
+    if (film) return; // its pictures are asked for
+    controls.update();
+    if (isOther()) { moved = now; paint(); } else if (isRough && now - moved > 200) paint();
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);
@@ -857,6 +884,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     closing.abort();
     controls.dispose();
     plots.close();
+    light.close();
     return () => scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
   };
   // For tests and films.
@@ -940,6 +968,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       return false;
     },
     // Milliseconds a picture takes, all of it drawn, over some times of the motion.
+    light,
     measure: (count) => {
       const gl = renderer.getContext(), pixel = new Uint8Array(4), begin = performance.now();
       for (let k = 0; k < count; ++k) {
