@@ -15,6 +15,7 @@ if(NOT MSVC)
     check_linker_flag(C "-Wl,--version-script=${PROJECT_SOURCE_DIR}/lib/se3d.map"
                       SE3D_HAS_VERSION_SCRIPT)
     check_linker_flag(C "-Wl,--no-undefined" SE3D_HAS_NO_UNDEFINED)
+    check_linker_flag(C "-Wl,-z,nodelete" SE3D_HAS_NODELETE)
 endif()
 
 # C11 without extensions, no contraction of a*b+c into one rounding (results must not depend on the
@@ -65,6 +66,9 @@ function(se3d_add_library name)
     if(SE3D_HAS_VERSION_SCRIPT)
         target_link_options(${name} PRIVATE "-Wl,--version-script=${PROJECT_SOURCE_DIR}/${arg_MAP}")
         set_target_properties(${name} PROPERTIES LINK_DEPENDS "${PROJECT_SOURCE_DIR}/${arg_MAP}")
+    endif()
+    if(SE3D_HAS_NODELETE) # threads of OpenMP wait for more in its code, which would go with ours
+        target_link_options(${name} PRIVATE "-Wl,-z,nodelete")
     endif()
     if(SE3D_HAS_NO_UNDEFINED AND NOT SE3D_SANITIZE)
         target_link_options(${name} PRIVATE "-Wl,--no-undefined")
