@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Hosts that behave badly: that trap divisions, round another way, flush small numbers to zero,
- * have small stacks, write a comma for the point, fork, or leave a callback by a jump. */
+ * have small stacks, write a comma for the point, catch signals, fork, or leave a callback by a
+ * jump. */
 #define _GNU_SOURCE
 #include <fenv.h>
 #include <locale.h>
 #include <pthread.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdio.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #if defined(__SSE2__)
@@ -219,6 +222,35 @@ static void a_comma_for_the_point_changes_nothing(void)
     setlocale(LC_ALL, "C");
 }
 
+static volatile sig_atomic_t signals;
+static volatile double heat;
+
+/* Uses numbers and rounding as handlers may. */
+static void note_signal(int number)
+{
+    (void)number;
+    const int before = fegetround();
+    fesetround(FE_DOWNWARD);
+    heat = 1.0 / (3.0 + heat);
+    fesetround(before);
+    ++signals;
+}
+
+/* A timer rings all the time, and calls to the system are not begun anew after it. */
+static void signals_change_nothing(void)
+{
+    const struct itimerval often = {{0, 500}, {0, 500}}, never = {{0, 0}, {0, 0}};
+    struct sigaction action, before;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = note_signal;
+    CHECK(sigaction(SIGALRM, &action, &before) == 0);
+    CHECK(setitimer(ITIMER_REAL, &often, NULL) == 0);
+    run_all(12, expect_same);
+    CHECK(setitimer(ITIMER_REAL, &never, NULL) == 0);
+    CHECK(sigaction(SIGALRM, &before, NULL) == 0);
+    CHECK(signals > 20);
+}
+
 /* Particles that two threads work on. */
 static se3d_solver *open_particles(bed *b)
 {
@@ -318,6 +350,7 @@ int main(void)
     RUN(zeros_for_small_numbers_change_nothing);
     RUN(stacks_of_64_kilobytes_suffice);
     RUN(a_comma_for_the_point_changes_nothing);
+    RUN(signals_change_nothing);
     RUN(a_child_of_fork_goes_on);
     RUN(a_system_whose_callback_jumped_away_refuses_all);
     return check_finish();
