@@ -15,6 +15,10 @@ static int fails(support_counting *counting)
     ++counting->calls;
     int hit = counting->fail_at > 0 && (counting->for_ever ? counting->calls >= counting->fail_at
                                                            : counting->calls == counting->fail_at);
+    if (counting->seed) {
+        counting->seed = counting->seed * UINT64_C(6364136223846793005) + 1442695040888963407U;
+        hit = (counting->seed >> 33) % counting->one_in == 0;
+    }
     counting->failed += hit ? 1 : 0;
     return hit;
 }
