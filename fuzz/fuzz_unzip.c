@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Archives: each input is unpacked as an archive (zip), also with the checksums that its files would
- * need, and as bytes packed by Deflate behind the size they are to have. What is refused has a
- * reason, and nothing is written beside the folder that was asked for. */
+/* Archives: each input is unpacked as an archive (zip), also with the checksums that its files
+ * would need, and as bytes packed by Deflate behind the size they are to have. What is refused has
+ * a reason, and nothing is written beside the folder that was asked for. */
 #define _XOPEN_SOURCE 700
 
 #include "fuzz.h"

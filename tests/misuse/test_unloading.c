@@ -12,7 +12,7 @@
 
 #include "se3d/io.h"
 
-static const char grains[] =
+static const char heap[] =
     "se3d: 1\ncontact: {law: hooke, threads: 2}\n"
     "materials: [{name: m, density: 2500, stiffness: 2e4}]\n"
     "particles: [{material: m, radius: 0.01, packing: lattice, lower: [0, 0, 0], upper: [0.2, 0.2, "
@@ -46,7 +46,7 @@ static void threads_outlive_the_library(void)
     char path[900];
     snprintf(path, sizeof path, "%s/unloading.yaml", build ? build : ".");
     FILE *file = fopen(path, "wb");
-    CHECK(file && fputs(grains, file) >= 0 && fclose(file) == 0);
+    CHECK(file && fputs(heap, file) >= 0 && fclose(file) == 0);
     for (int k = 0; k < 3; ++k) {
         load_run_and_close(SE3D_IO_FILE, path, build ? build : ".");
     }
