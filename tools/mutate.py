@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Mutants: change one sign, factor, operand or call of a source file and see that a test fails.
 
-    tools/mutate.py [--build build/dev] [--count 100] [--seed 1] --tests TEST[,TEST...] FILE...
+    tools/mutate.py [--build build/dev] [--count 100] [--seed 1] [--seconds S] --tests TEST[,TEST...] FILE...
 
 TEST is a program of the tests (test_finite-difference_primitives). Only the changed file is compiled,
 and linked in place of its object; nothing of the build folder is changed. Prints the mutants that
-all tests let pass, with what was changed; those that the compiler refuses are left out."""
+all tests let pass, with what was changed; those that the compiler refuses are left out. With
+--seconds no mutant is begun after that time. A test that takes far longer than without a change has
+failed."""
 import argparse
 import json
 import os
@@ -16,6 +18,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import time
 
 RULES = [  # what is searched in code, what takes its place, what it is called
     (re.compile(r" \+ (?!1\b|2\b|3\b)"), " - ", "sign"),
@@ -68,6 +71,16 @@ class Bench:
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.commands = {entry["file"]: entry for entry in json.load(file)}
         self.build, self.folder, self.tests = build, folder, tests
+        self.environment = {**os.environ, "SE3D_SOURCE_DIR": os.getcwd(), "SE3D_BUILD_DIR": build}
+        self.longest = {test: self.time(test) for test in tests}
+
+    def time(self, test):
+        """For how long a test may run; without a change it must pass."""
+        begun = time.monotonic()
+        if subprocess.run([os.path.join(self.build, "tests", test)], capture_output=True, check=False,
+                          env=self.environment).returncode:
+            sys.exit(f"{test} fails without any change")
+        return max(60.0, 10.0 * (time.monotonic() - begun))
 
     def compile(self, path, text):
         entry = self.commands[os.path.abspath(path)]
@@ -94,8 +107,8 @@ class Bench:
         if linked.returncode:
             sys.exit(f"{test} was not linked:\n{linked.stderr}")
         try:
-            return subprocess.run([program], capture_output=True, check=False, timeout=60,
-                                  env={**os.environ, "SE3D_SOURCE_DIR": os.getcwd()}).returncode != 0
+            return subprocess.run([program], capture_output=True, check=False, timeout=self.longest[test],
+                                  env=self.environment).returncode != 0
         except subprocess.TimeoutExpired:
             return True
 
@@ -105,6 +118,7 @@ def main():
     parser.add_argument("--build", default="build/dev")
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--tests", required=True)
     parser.add_argument("files", nargs="+")
     options = parser.parse_args()
@@ -113,11 +127,11 @@ def main():
         lines, found = mutants_of(path)
         every += [(path, lines, mutant) for mutant in found]
     random.Random(options.seed).shuffle(every)
-    killed, passed = 0, 0
+    killed, passed, begun = 0, 0, time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(os.path.abspath(options.build), options.tests.split(","), folder)
         for path, lines, (number, changed, what) in every:
-            if killed + passed == options.count:
+            if killed + passed == options.count or time.monotonic() - begun > options.seconds:
                 break
             if not bench.compile(path, "\n".join(lines[:number] + [changed] + lines[number + 1:])):
                 continue
