@@ -5,6 +5,7 @@
 #
 #     tools/release-check.sh [STAGE...]     all stages, or those: hours
 #     tools/release-check.sh --smoke        each stage that needs no build of its own, on a part: 10 minutes
+#                                           after a build of the preset dev; rows of their own
 #
 # A stage that is named replaces its own row only. SE3D_FUZZ_SECONDS: for how long all targets are fuzzed
 # together (86400). Builds of other presets are taken away after their stage.
@@ -50,7 +51,13 @@ stage() {
     figure=$(tail -n 1 "$out/$name.log" | tr '|' '/')
     cpu
     seconds=$((spent - before))
-    printf '| %s | `%s` | %s | %s | %d.%02d | %s |\n' "$name" "$2" "$outcome" "$figure" \
+    row=$name
+    command=$2
+    if [ -n "$smoke" ]; then
+        row="$name, smoke"
+        command='sh tools/release-check.sh --smoke'
+    fi
+    printf '| %s | `%s` | %s | %s | %d.%02d | %s |\n' "$row" "$command" "$outcome" "$figure" \
         $((seconds / 3600)) $((seconds % 3600 / 36)) "$(date +%F)" >"$out/$name.row"
     printf '%-10s %-6s %5d s  %s\n' "$name" "$outcome" $(($(date +%s) - begun)) "$figure"
 }
@@ -172,8 +179,7 @@ for each in $stages; do
 done
 
 # Rows of this run take the place of those with the same name.
-if [ -z "$smoke" ]; then
-    python3 - "$out" <<'END' || failed=$((failed + 1))
+python3 - "$out" <<'END' || failed=$((failed + 1))
 import re, sys
 from pathlib import Path
 page = Path("docs/reliability.md")
@@ -181,11 +187,11 @@ text = page.read_text()
 head = "| stage | command | outcome | figures | CPU hours | day |\n|---|---|---|---|---|---|\n"
 found = re.search(re.escape(head) + r"((?:\|.*\n)*)", text)
 old = {row.split("|")[1].strip(): row for row in found.group(1).splitlines()}
-for path in Path(sys.argv[1]).glob("*.row"):
-    old[path.stem] = path.read_text().rstrip("\n")
+for path in sorted(Path(sys.argv[1]).glob("*.row")):
+    row = path.read_text().rstrip("\n")
+    old[row.split("|")[1].strip()] = row
 rows = "".join(row + "\n" for row in old.values())
 page.write_text(text[:found.start()] + head + rows + text[found.end():])
 END
-fi
 echo "release-check: $failed failed"
 [ "$failed" -eq 0 ]
