@@ -122,6 +122,12 @@ typedef struct se3di_shape {
     double force[3], torque[3]; /* of bodies, on its body about the centre of mass, last accepted */
 } se3di_shape;
 
+/* Whether materials, groups and masks let two shapes touch. */
+static inline int se3di_shapes_meet(const se3di_shape *a, const se3di_shape *b)
+{
+    return a->material >= 0 && b->material >= 0 && (a->group & b->mask) && (b->group & a->mask);
+}
+
 /* Whether a shape is of a kind with one of these traits. Of a constant the compiler makes a mask of
  * kinds, so that it costs as much as to compare the kind. */
 static inline int se3di_shape_is(const se3di_shape *shape, uint32_t traits)

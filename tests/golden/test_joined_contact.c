@@ -197,6 +197,63 @@ static void what_touches_after_a_break_goes_on_touching(void)
     scene_end(&s);
 }
 
+/* A halo that touches nothing does not keep its ball from landing on what let it go. */
+static void what_never_touches_need_not_part(void)
+{
+    const double size[3] = {0.4, 0.4, 0.2}, at_block[3] = {0.0, 0.0, 0.1}, at[3] = {0.0, 0.0, 0.4};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
+    se3d_joint_def hold = se3d_joint_def_default();
+    se3d_constraint joint;
+    se3d_shape shape;
+    double r[3];
+    const se3d_body block = scene_box(&s, size, 20.0, at_block, scene_zero);
+    const se3d_body ball = scene_ball(&s, 0.05, 0.5, at, scene_zero);
+    se3d_shape_def halo = scene_shape(&s, ball);
+    scene_floor(&s, 0.0);
+    halo.radius = 1.0;
+    halo.mask = 0;
+    CHECK(se3d_shape_create_sphere(s.system, &halo, &shape) == SE3D_OK);
+    hold.body_i = block;
+    hold.body_j = ball;
+    hold.point_i[2] = at[2] - at_block[2];
+    CHECK(se3d_joint_create_spherical(s.system, &hold, &joint) == SE3D_OK);
+    CHECK(se3d_joint_set_broken(s.system, joint, 1) == SE3D_OK);
+    scene_solve(&s, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    CHECK(scene_run(&s, 0.8));
+    CHECK(se3d_body_get_position(s.system, ball, r) == SE3D_OK);
+    CHECK_NEAR(r[2], 0.25, 1e-2);
+    scene_end(&s);
+}
+
+/* Nor does the floor, on which a ball has lain all along, keep it from the post it was held in. */
+static void what_touched_all_along_need_not_part(void)
+{
+    const double post[3] = {0.2, 0.2, 0.4}, at[3] = {0.1, 0.0, 0.0499};
+    const double away[3] = {0.4, 0.0, 0.0499}, back[3] = {-2.0, 0.0, 0.0};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.0, 0.5, 1e5);
+    se3d_joint_def hold = se3d_joint_def_default();
+    se3d_constraint joint;
+    double r[3];
+    const se3d_body ball = scene_ball(&s, 0.05, 0.5, at, scene_zero);
+    scene_floor(&s, 0.0);
+    scene_box_on(&s, scene_ground(&s), post, scene_zero);
+    hold.body_i = scene_ground(&s);
+    hold.body_j = ball;
+    hold.point_i[0] = at[0];
+    hold.point_i[2] = 0.06;
+    hold.point_j[2] = 0.06 - at[2];
+    CHECK(se3d_joint_create_spherical(s.system, &hold, &joint) == SE3D_OK);
+    CHECK(se3d_joint_set_broken(s.system, joint, 1) == SE3D_OK);
+    CHECK(se3d_body_set_position(s.system, ball, away) == SE3D_OK);
+    scene_solve(&s, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 0.0);
+    CHECK(scene_run(&s, 0.1));
+    CHECK(se3d_body_set_velocity(s.system, ball, back) == SE3D_OK);
+    CHECK(scene_run(&s, 0.4));
+    CHECK(se3d_body_get_position(s.system, ball, r) == SE3D_OK);
+    CHECK(r[0] > 0.15 - 1e-3);
+    scene_end(&s);
+}
+
 int main(void)
 {
     RUN(an_arm_falls_on_the_floor);
@@ -205,5 +262,7 @@ int main(void)
     RUN(a_lift_lands_on_the_floor);
     RUN(what_a_broken_joint_held_touches_once_it_has_been_apart);
     RUN(what_touches_after_a_break_goes_on_touching);
+    RUN(what_never_touches_need_not_part);
+    RUN(what_touched_all_along_need_not_part);
     return check_finish();
 }

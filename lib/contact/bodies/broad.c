@@ -37,8 +37,7 @@ static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
 {
     const se3di_shape *s = &model->shapes[a];
     const se3di_shape *t = &model->shapes[b];
-    return s->body != t->body && s->material >= 0 && t->material >= 0 && (s->group & t->mask) &&
-           (t->group & s->mask) &&
+    return s->body != t->body && se3di_shapes_meet(s, t) &&
            !(model->bodies[s->body].fixed && model->bodies[t->body].fixed) &&
            !se3di_shapes_are_joined(model, a, b);
 }

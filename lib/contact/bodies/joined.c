@@ -56,8 +56,8 @@ static int overlap_at_joint(const se3di_constraint *c, const se3di_shape *a, con
     return apart < -ROUNDING * fmin(a->bound, b->bound);
 }
 
-static int keeps_apart(const se3di_model *model, const se3di_constraint *c, const se3di_shape *a,
-                       const se3di_shape *b)
+int se3di_joint_keeps_apart(const se3di_model *model, const se3di_constraint *c,
+                            const se3di_shape *a, const se3di_shape *b)
 {
     int has_a = 0, has_b = 0;
     if (c->row_count > 0 && model->rows[c->row_begin].left_out & SE3DI_ROW_PARTED) {
@@ -83,7 +83,7 @@ int se3di_shapes_are_joined(const se3di_model *model, uint32_t a, uint32_t b)
 {
     const se3di_shape *s = &model->shapes[a], *t = &model->shapes[b];
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        if (keeps_apart(model, &model->constraints[k], s, t)) {
+        if (se3di_joint_keeps_apart(model, &model->constraints[k], s, t)) {
             return 1;
         }
     }

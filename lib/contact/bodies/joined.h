@@ -5,6 +5,9 @@
 
 #include "model/model.h"
 
+/* Whether this constraint does. */
+int se3di_joint_keeps_apart(const se3di_model *model, const se3di_constraint *c,
+                            const se3di_shape *a, const se3di_shape *b);
 /* Whether a constraint keeps two shapes from touching: one between their bodies; with a fixed body
  * only if the shapes overlap at the joint, or it leaves no freedom. */
 int se3di_shapes_are_joined(const se3di_model *model, uint32_t a, uint32_t b);

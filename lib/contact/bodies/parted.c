@@ -4,6 +4,7 @@
 #include "contact/bodies/parted.h"
 
 #include "contact/bodies/broad.h"
+#include "contact/bodies/joined.h"
 #include "contact/narrow/narrow.h"
 
 static int overlap(const se3di_model *model, uint32_t i, uint32_t j)
@@ -11,7 +12,7 @@ static int overlap(const se3di_model *model, uint32_t i, uint32_t j)
     const se3di_shape *a = &model->shapes[i], *b = &model->shapes[j];
     se3di_shape_pose at_a, at_b;
     se3di_manifold manifold;
-    if (a->material < 0 || b->material < 0 || !(se3di_shapes_gap_bound(model, i, j) < 0.0)) {
+    if (!(se3di_shapes_gap_bound(model, i, j) < 0.0)) {
         return 0;
     }
     se3di_shape_place(a, &model->frames[a->body], &at_a);
@@ -20,24 +21,16 @@ static int overlap(const se3di_model *model, uint32_t i, uint32_t j)
     return manifold.count > 0;
 }
 
-static int is_of(const se3di_constraint *c, uint32_t body)
-{
-    for (uint32_t k = 0; k < c->body_count; ++k) {
-        if (c->bodies[k] == body) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
+/* All that would touch but for the joint. */
 static int are_apart(const se3di_model *model, const se3di_constraint *c)
 {
     const uint32_t shapes = (uint32_t)model->shape_slots.count;
     for (uint32_t i = 0; i < shapes; ++i) {
-        const uint32_t body = model->shapes[i].body;
-        for (uint32_t j = i + 1; is_of(c, body) && j < shapes; ++j) {
-            if (model->shapes[j].body != body && is_of(c, model->shapes[j].body) &&
-                overlap(model, i, j)) {
+        const se3di_shape *a = &model->shapes[i];
+        for (uint32_t j = i + 1; j < shapes; ++j) {
+            const se3di_shape *b = &model->shapes[j];
+            if (b->body != a->body && se3di_shapes_meet(a, b) &&
+                se3di_joint_keeps_apart(model, c, a, b) && overlap(model, i, j)) {
                 return 0;
             }
         }
