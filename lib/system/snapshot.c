@@ -3,6 +3,7 @@
 #include "system/snapshot.h"
 
 #include "base/hash.h"
+#include "force/driver_rate.h"
 #include "system/particles.h"
 
 #include <string.h>
@@ -29,6 +30,10 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
         hash = se3di_hash_bytes(hash, c->type, strlen(c->type) + 1);
         hash = add_words(hash, &c->row_count, 1);
         hash = add_words(hash, c->bodies, c->body_count);
+        if (se3di_is_driver_rate(c)) { /* its coordinate is free to the state */
+            const uint32_t words[] = {(uint32_t)c->joints[0], (uint32_t)c->coordinate};
+            hash = add_words(hash, words, 2);
+        }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *f = &model->forces[k];

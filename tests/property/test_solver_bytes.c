@@ -9,6 +9,7 @@
 #include "check.h"
 #include "support/damage.h"
 #include "support/models.h"
+#include "support/text_model.h"
 
 enum { ROOM = 40000, EVENTS = 3 };
 
@@ -135,6 +136,80 @@ static void another_program_goes_on_as_if_it_had_run_from_the_beginning(void)
     }
 }
 
+/* A bar on a rail and a hinge, the one or the other driven. */
+static text_model open_driven(const char *driver, int32_t method, int32_t formulation)
+{
+    char text[1500];
+    snprintf(text, sizeof text,
+             "se3d: 1\nbodies:\n"
+             "  - {name: car, mass: 2, inertia: [0.01, 0.01, 0.02]}\n"
+             "  - {name: bar, mass: 1, inertia: [0.01, 0.1, 0.1], position: [0.5, 0, 0]}\n"
+             "joints:\n"
+             "  - {name: rail, type: cylindrical, body_i: ground, body_j: car, at: [0, 0, 0], "
+             "axis: [1, 0, 0]}\n"
+             "  - {name: pin, type: revolute, body_i: car, body_j: bar, at: [0, 0, 0], "
+             "axis: [0, 1, 0]}\n"
+             "states:\n  - {name: servo, type: lag, time_constant: 0.2, input: sin(9*t)}\n"
+             "drivers:\n  - {name: motor, joint: rail, %s}\n"
+             "analysis: {type: dynamics, duration: 1, tolerance: 1e-7}\n",
+             driver);
+    return text_model_open(text, method, formulation, 0.0);
+}
+
+static void hand_over(const text_model *from, const text_model *to, se3d_status wanted)
+{
+    static unsigned char state[ROOM], bytes[ROOM];
+    size_t state_size, size;
+    se3d_snapshot *snapshot = NULL;
+    CHECK(!se3d_snapshot_create(from->system, &snapshot));
+    CHECK(!se3d_snapshot_write(snapshot, state, ROOM, &state_size));
+    CHECK(!se3d_solver_write(from->solver, bytes, ROOM, &size));
+    se3d_snapshot_destroy(snapshot);
+    CHECK(se3d_snapshot_read(to->system, state, state_size, &snapshot) == wanted);
+    if (!wanted) {
+        CHECK(!se3d_snapshot_restore(snapshot, to->system));
+        CHECK(!se3d_solver_read(to->solver, bytes, size));
+    }
+    se3d_snapshot_destroy(snapshot);
+}
+
+#define RATE "rate: 0.4*servo.value + 0.1*pin.rate, coordinate: displacement"
+
+/* The coordinate is the integral of its rate over the whole past. */
+static void what_a_rate_drives_goes_on(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU, SE3D_METHOD_BDF,
+                                      SE3D_METHOD_GAUSS};
+    for (int32_t k = 0; k < 12; ++k) {
+        text_model m = open_driven(RATE, methods[k % 4], k / 4);
+        text_model other = open_driven(RATE, methods[k % 4], k / 4);
+        CHECK(text_model_run(&m, 0.2));
+        hand_over(&m, &other, SE3D_OK);
+        CHECK(se3d_system_hash(m.system) == se3d_system_hash(other.system));
+        CHECK(text_model_run(&m, 0.5) && text_model_run(&other, 0.5));
+        CHECK(se3d_system_hash(m.system) == se3d_system_hash(other.system));
+        text_model_close(&m);
+        text_model_close(&other);
+    }
+}
+
+/* As many drivers of the same bodies, of other coordinates or by their values. */
+static void another_driver_is_another_model(void)
+{
+    static const char *const others[] = {"value: 0.1*t, coordinate: displacement",
+                                         "rate: servo.value, coordinate: angle"};
+    text_model m = open_driven("rate: servo.value, coordinate: displacement", -1, -1);
+    CHECK(text_model_run(&m, 0.1));
+    for (int k = 0; k < 2; ++k) {
+        text_model other = open_driven(others[k], -1, -1);
+        CHECK(text_model_run(&other, 0.1));
+        hand_over(&m, &other, SE3D_ERR_STATE);
+        hand_over(&other, &m, SE3D_ERR_STATE);
+        text_model_close(&other);
+    }
+    text_model_close(&m);
+}
+
 static void sign(unsigned char *bytes, size_t size)
 {
     const uint64_t sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, size - 8);
@@ -195,6 +270,8 @@ int main(void)
 {
     RUN(another_program_goes_on_as_if_it_had_run_from_the_beginning);
     RUN(damaged_and_foreign_bytes_are_refused);
+    RUN(what_a_rate_drives_goes_on);
+    RUN(another_driver_is_another_model);
     RUN(made_up_words_do_no_harm);
     return check_finish();
 }
