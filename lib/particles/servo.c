@@ -5,8 +5,8 @@
  *     s' = gain (F0 - F), abs(s') <= speed_max,      s += h s',      gain = 1 / (20 K h + 2 C)
  *
  * K, C: stiffness and damping of all contacts that there can be before the lists are made anew,
- * under F0, and of bonds; forces answer a step late. A wall like that takes up what comes to it as waves, and
- * never gives more than F0 s'.                                          docs/theory/servos.md */
+ * under F0, and of bonds; forces answer a step late. A wall like that takes up what comes to it as
+ * waves, and never gives more than F0 s'.                               docs/theory/servos.md */
 #include "particles/servo.h"
 
 #include "math/elementary.h"
