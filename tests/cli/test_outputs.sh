@@ -30,7 +30,7 @@ expect 'a series' 0 "$program" run "$dir/vtk.yaml" -o "$dir/vtk"
 holds "no word of it in $(cat "$dir/out")" grep -qF "wrote $dir/vtk/motion.pvd: 9 times" "$dir/out"
 holds 'something unfinished is left' [ -z "$(find "$dir/vtk" -name '*.partial')" ]
 "$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains.csv.run"
-sed 's/^output:/output:\n  - {vtk: "g\&1.pvd", every: 0.25, fields: {lower: [-9, -9, -9], upper: [9, 9, 9.5], cells: [4, 5, 6], width: 0.1}}/' "$source/examples/models/pushed_grains.yaml" >"$dir/grains.yaml"
+sed 's/^output:/output:\n  - {vtk: "g\&1.pvd", every: 0.25, fields: {lower: [-9, -9, -9], upper: [9, 9, 9.5], cells: [4, 5, 6], width: 0.1}}\n  - {average: mean.csv, every: 0.25, start: 0.25, stop: 0.75, fields: {lower: [-9, -9, -9], upper: [9, 9, 9.5], cells: [4, 5, 6], width: 0.1}}/' "$source/examples/models/pushed_grains.yaml" >"$dir/grains.yaml"
 expect 'grains' 0 "$program" run "$dir/grains.yaml" -o "$dir/grains"
 cat >"$dir/read.py" <<'END_OF_PYTHON'
 import csv, os, sys, vtk
@@ -84,6 +84,34 @@ series = sets(folder + "/grains/g&1.pvd")
 snapshots = [n for n in os.listdir(folder + "/grains") if n.endswith(".csv")]
 table = next(list(csv.DictReader(open(folder + "/grains/" + n))) for n in sorted(snapshots)
              if open(folder + "/grains/" + n).readline().startswith("time,id,radius"))
+# Averages over time: of mass, momentum and its flux, from the fields of three times.
+pairs = (0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)
+sums = [[0.0] * 18 for _ in range(120)]
+used = 0
+for time, name, path in series:
+    if name == "fields" and 0.25 - 1e-9 < time < 0.75 + 1e-9:
+        arrays = read(path).GetCellData()
+        used += 1
+        for k in range(120):
+            get = lambda n: arrays.GetArray(n).GetTuple(k)
+            rho, u = get("density")[0], get("velocity")
+            kinetic = [a + rho * u[i] * u[j] for a, (i, j) in zip(get("kinetic_stress"), pairs)]
+            for n, a in enumerate([rho, *get("solid_fraction"), *(rho * c for c in u), 0, *kinetic, *get("contact_stress")]):
+                sums[k][n] += a / 3
+assert used == 3, used
+lines = list(csv.reader(open(folder + "/grains/mean.csv")))
+assert len(lines) == 121 and lines[0][:5] == ["x", "y", "z", "density", "solid_fraction"], lines[0]
+assert max(abs(float(a) - b) for a, b in zip(lines[2], (-2.25, -7.2, -9 + 18.5 / 12))) < 1e-12, lines[2]
+moving = 0
+for line, s in zip(lines[1:], sums):
+    rho, u = s[0], [c / s[0] if s[0] > 0 else 0 for c in s[2:5]]
+    kinetic = [a - rho * u[i] * u[j] for a, (i, j) in zip(s[6:12], pairs)]
+    warm = sum(kinetic[:3]) / 3 / rho if rho > 0 else 0
+    for a, b in zip(line[3:], [rho, s[1], *u, warm, *kinetic, *s[12:]]):
+        assert abs(float(a) - b) < 1e-5 * abs(b) + 1e-7 * (1 + max(map(abs, s))), (line, s)
+    moving += rho > 0 and max(map(abs, u)) > 1e-3
+assert moving > 0
+checks += moving
 for time, name, path in series:
     if name not in ("grains", "fields"):
         continue

@@ -52,6 +52,8 @@ output:
   - {file: a.csv, every: 0.002, channels: [box.position, energy.kinetic, glue.dissipated, glue.count, glue.broken]}
   - {file: p.csv, every: 0.05, particles: true}
   - {file: p.pvd, every: 0.1}
+  - {average: m.csv, every: 0.01, start: 0.05, fields: {lower: [-0.1, -0.1, 0], upper: [0.1, 0.1, 0.2], cells: [2, 3, 4],
+     width: 0.02}}
 END
 
 sed 's/samples: 70/samples: 200/' "$source/examples/study/damper.yaml" >"$dir/sweep.yaml"

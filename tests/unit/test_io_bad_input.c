@@ -168,6 +168,7 @@ static const bad_input table[] = {
      4,
      0,
      {"output[0].fields.upper: is 0 along z"}},
+    {GLASS "output: [{average: a.csv, every: 1}]\n", 4, 0, {"output[0].fields: is missing"}},
     {"se3d: 1\noutput: [{vtk: a.pvd, fields: {}}]\n",
      2,
      0,

@@ -20,16 +20,18 @@
 #include "io/read/sections.h"
 
 /* What an entry makes: the key that says so and names the file. */
-enum { KIND_FILE = 0, KIND_VTK = 1, KIND_SUMMARY = 2, KIND_COUNT = 6 };
+enum { KIND_FILE = 0, KIND_VTK = 1, KIND_SUMMARY = 2, KIND_AVERAGE = 3, KIND_COUNT = 7 };
 static const char *const output_types[KIND_COUNT + 1] = {[KIND_FILE] = "file",
                                                          [KIND_VTK] = "vtk",
                                                          [KIND_SUMMARY] = "summary",
+                                                         [KIND_AVERAGE] = "average",
                                                          "plot",
                                                          "scene",
                                                          "video",
                                                          NULL};
 static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd",  "summary.csv",
-                                                 "results.svg", "motion.html", "motion.mp4"};
+                                                 "average.csv", "results.svg", "motion.html",
+                                                 "motion.mp4"};
 static const char *const vtk_endings[] = {".pvd", NULL};
 static const char *const plot_endings[] = {".svg", ".png", ".pdf", NULL};
 static const char *const scene_endings[] = {".html", ".glb", NULL};
@@ -39,7 +41,7 @@ static const char *const video_endings[] = {".mp4", NULL};
 static const se3di_key output_keys[] = {
     {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
     {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
-     .types = " file vtk summary ", .standard = "the step; without one a 500th of the duration",
+     .types = " file vtk summary average ", .standard = "the step; without one a 500th of the duration",
      .text = "time between rows [s]"},
     {"channels", SE3DI_KIND_CHANNELS, .types = " file summary ",
      .standard = "every channel of up to 100 bodies",
@@ -54,13 +56,18 @@ static const se3di_key output_keys[] = {
     {"vtk", SE3DI_KIND_FILE, .types = " vtk ", .words = vtk_endings,
      .text = "surfaces of the bodies and points of the particles for ParaView, see "
          "[VTK](../scene.md#vtk)"},
-    {"fields", SE3DI_KIND_OBJECT, .object = "fields", .types = " vtk ",
-     .text = "density, velocity, temperature and stress of the particles on a grid, too"},
+    {"fields", SE3DI_KIND_OBJECT, .object = "fields", .types = " vtk average ",
+     .text = "density, velocity, temperature and stress of the particles on a grid: beside the "
+         "rest, or what is averaged"},
     {"summary", SE3DI_KIND_FILE, .types = " summary ",
      .text = "minimum, maximum, mean, rms and integral of each channel over the rows, as CSV"},
-    {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, start), .types = " summary ",
+    {"average", SE3DI_KIND_FILE, .types = " average ",
+     .text = "means of `fields` over the rows, a line for each cell, as CSV"},
+    {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, start),
+     .types = " summary average ",
      .standard = "the first row", .text = "rows from this time on count [s]"},
-    {"stop", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, stop), .types = " summary ",
+    {"stop", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, stop),
+     .types = " summary average ",
      .standard = "the last row", .text = "rows up to this time count [s]"},
     {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
      .text = "SVG, PNG and the script .gp, as [se3d plot](../plots.md)"},
@@ -83,7 +90,7 @@ const se3di_object se3di_object_output = {
     "A file of results, or a picture of them. Its first key says which.",
     output_keys, output_types,
     "\"oneOf\": [{\"required\": [\"file\"]}, {\"required\": [\"vtk\"]}, {\"required\": "
-         "[\"summary\"]}, {\"required\": "
+         "[\"summary\"]}, {\"required\": [\"average\", \"fields\"]}, {\"required\": "
          "[\"plot\"]}, {\"required\": [\"scene\"]}, {\"required\": [\"video\"]}]"};
 /* clang-format on */
 
@@ -336,7 +343,7 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
     if (found == KIND_COUNT) {
         return se3di_reader_fail_key(reader, node, "file",
                                      "is missing, such as results.csv (or one of vtk, summary, "
-                                     "plot, scene, video)");
+                                     "average, plot, scene, video)");
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_object_find(&se3di_object_output, output_types[found], child->key)) {
@@ -359,6 +366,13 @@ static bool check_window(se3di_reader *reader, const se3di_node *node,
                                  output->stop, output->start);
 }
 
+static bool check_average(se3di_reader *reader, const se3di_node *node,
+                          const se3di_output_entry *output)
+{
+    return !output->average || output->grid ||
+           se3di_reader_fail_key(reader, node, "fields", "is missing: what to average");
+}
+
 static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
 {
     se3d_model *model = reader->model;
@@ -366,6 +380,7 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     const se3di_node *file = se3di_node_get(node, output_types[kind]);
     output->vtk = kind == KIND_VTK;
     output->summary = kind == KIND_SUMMARY;
+    output->average = kind == KIND_AVERAGE;
     output->start = -HUGE_VAL;
     output->stop = HUGE_VAL;
     output->node = node;
@@ -375,8 +390,8 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
         !check_window(reader, node, output) || !read_snapshots(reader, node, output) ||
         !read_contacts(reader, node, output) ||
         !se3di_read_field_grid(reader, node, &output->grid) ||
-        !check_kind_of_rows(reader, node, output) ||
-        (!output->particles && !output->contacts && !output->vtk &&
+        !check_average(reader, node, output) || !check_kind_of_rows(reader, node, output) ||
+        (!output->particles && !output->contacts && !output->vtk && !output->average &&
          !read_channels(reader, node, output))) {
         return false;
     }
@@ -511,7 +526,7 @@ static bool read_entries(se3di_reader *reader, const se3di_node *list, bool pict
         if (!find_kind(reader, node, &kind)) {
             return false;
         }
-        if ((kind > KIND_SUMMARY) == pictures &&
+        if ((kind > KIND_AVERAGE) == pictures &&
             !(pictures ? read_picture(reader, node, kind) : read_output(reader, node, kind))) {
             return false;
         }
@@ -537,7 +552,8 @@ bool se3di_read_outputs(se3di_reader *reader, const se3di_node *root)
     }
     bool results = false;
     for (size_t k = 0; k < model->output_count; ++k) {
-        results = results || !(model->outputs[k].vtk || model->outputs[k].summary);
+        const se3di_output_entry *output = &model->outputs[k];
+        results = results || !(output->vtk || output->summary || output->average);
     }
     return (results || add_default(reader)) && check_rows(reader) &&
            read_entries(reader, list, true);

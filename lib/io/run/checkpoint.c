@@ -19,7 +19,7 @@
 
 #define FILE_NAME "run.checkpoint"
 #define MARK      UINT64_C(0x544B504344334553) /* "SE3DCPKT" */
-#define VERSION   UINT64_C(3)
+#define VERSION   UINT64_C(4)
 #define LIBRARY                                                                                    \
     (((uint64_t)SE3D_VERSION_MAJOR << 32) + ((uint64_t)SE3D_VERSION_MINOR << 16) +                 \
      (uint64_t)SE3D_VERSION_PATCH)
@@ -234,6 +234,9 @@ static void pack_outputs(se3di_coder *p, const se3di_runner *r, double *next)
         }
         if (file->summary) {
             se3di_summary_pack(file->summary, p);
+        }
+        if (file->average) {
+            se3di_average_pack(file->average, p);
         }
     }
 }

@@ -40,7 +40,7 @@ static void plan_passing(se3di_runner *r, const se3di_analysis_entry *entry)
 
 static bool needs_more_than_motion(const se3di_output_entry *entry)
 {
-    bool more = entry->vtk || entry->particles || entry->contacts;
+    bool more = entry->vtk || entry->average || entry->particles || entry->contacts;
     for (size_t k = 0; k < entry->count && !more; ++k) {
         more = !se3di_channel_is_shown(&entry->channels[k]);
     }

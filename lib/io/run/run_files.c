@@ -2,6 +2,7 @@
 /* Files of results while a model runs: opened, one row after the other, flushed, closed. */
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -85,10 +86,31 @@ static se3d_status join(se3di_runner *r, const char *file, char *path, size_t si
     return se3di_files_fail(r, SE3D_ERR_IO, text);
 }
 
-static void put_summary_head(se3di_output_file *file)
+/* What is written at the end, in place of rows. */
+static bool open_sums(const se3di_runner *r, const se3di_output_entry *entry,
+                      se3di_output_file *file)
 {
-    for (size_t k = 0; k < SE3DI_SUMMARY_COLUMNS; ++k) {
-        se3di_csv_put_name(&file->csv, se3di_summary_get_column(k), k + 1 == SE3DI_SUMMARY_COLUMNS);
+    if (entry->summary) {
+        file->summary = se3di_summary_create(&r->run->pool, entry);
+    }
+    if (entry->average) {
+        file->average = se3di_average_create(r->model, &r->run->pool, entry);
+    }
+    return !entry->summary == !file->summary && !entry->average == !file->average;
+}
+
+static size_t count_sums(const se3di_output_file *file)
+{
+    return file->summary ? SE3DI_SUMMARY_COLUMNS : SE3DI_AVERAGE_COLUMNS;
+}
+
+static void put_sums_head(se3di_output_file *file)
+{
+    const size_t count = count_sums(file);
+    for (size_t k = 0; k < count; ++k) {
+        se3di_csv_put_name(
+            &file->csv, file->summary ? se3di_summary_get_column(k) : se3di_average_get_column(k),
+            k + 1 == count);
     }
 }
 
@@ -129,11 +151,8 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     for (size_t k = 0; k < entry->count; ++k) {
         columns += se3di_channel_get_width(&entry->channels[k]);
     }
-    if (entry->summary) {
-        file->summary = se3di_summary_create(&r->run->pool, entry);
-        if (!file->summary) {
-            return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
-        }
+    if (!open_sums(r, entry, file)) {
+        return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     file->entry = entry;
     file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
@@ -147,8 +166,8 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     if (r->resume) {
         return SE3D_OK; /* its first line is there */
     }
-    if (entry->summary) {
-        put_summary_head(file);
+    if (entry->summary || entry->average) {
+        put_sums_head(file);
         return SE3D_OK;
     }
     for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
@@ -241,6 +260,13 @@ void se3di_files_begin_rows(se3di_runner *r)
     se3di_sample_renew(&r->sample, &r->stats);
 }
 
+/* With the rounding of times. */
+static bool is_in_window(const se3di_output_file *file, double time)
+{
+    const double slack = 1e-12 * fabs(time);
+    return time + slack >= file->entry->start && time - slack <= file->entry->stop;
+}
+
 se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double time)
 {
     double *row = file->row;
@@ -254,6 +280,11 @@ se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double 
     }
     if (file->entry->particles || file->entry->contacts) {
         return sample_list(r, file);
+    }
+    if (file->average) {
+        const se3d_status status =
+            is_in_window(file, time) ? se3di_average_add(file->average, time) : SE3D_OK;
+        return status < 0 ? se3di_files_fail(r, status, se3d_status_get_text(status)) : SE3D_OK;
     }
     *row++ = time;
     for (size_t k = 0; k < file->entry->count; ++k) {
@@ -271,8 +302,7 @@ se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double 
         row += width;
     }
     if (file->summary) {
-        const double late = time * (1.0 + 1e-12), early = time * (1.0 - 1e-12);
-        if (late >= file->entry->start && early <= file->entry->stop) {
+        if (is_in_window(file, time)) {
             se3di_summary_add(file->summary, time, file->row + 1);
         }
         return SE3D_OK;
@@ -338,9 +368,6 @@ static void warn_of_no_rows(const se3di_runner *r, const se3di_output_file *file
 static se3d_status close_summary(se3di_runner *r, se3di_output_file *file)
 {
     se3d_run *run = r->run;
-    if (!file->summary->begun) {
-        warn_of_no_rows(r, file);
-    }
     se3di_summary_finish(file->summary);
     se3di_summary_write(file->summary, &file->csv);
     for (size_t k = 0; k < file->summary->count && file->summary->begun; ++k) {
@@ -355,6 +382,22 @@ static se3d_status close_summary(se3di_runner *r, se3di_output_file *file)
     return SE3D_OK;
 }
 
+/* What was to be written at the end. */
+static se3d_status close_sums(se3di_runner *r, se3di_output_file *file)
+{
+    se3d_status status = SE3D_OK;
+    if (!(file->summary ? file->summary->begun : file->average->rows > 0)) {
+        warn_of_no_rows(r, file);
+    }
+    if (file->summary) {
+        status = close_summary(r, file);
+    } else {
+        se3di_average_write(file->average, &file->csv);
+    }
+    file->csv.columns = count_sums(file);
+    return status;
+}
+
 /* Complete one file. */
 static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run_file *about)
 {
@@ -365,13 +408,12 @@ static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run
         about->rows = se3di_vtk_count(file->vtk);
         return status < 0 ? fail_path(r, about->path, why) : SE3D_OK;
     }
-    if (file->summary) {
-        const se3d_status status = close_summary(r, file);
+    if (file->summary || file->average) {
+        const se3d_status status = close_sums(r, file);
         if (status < 0) {
             se3di_csv_abandon(&file->csv);
             return status;
         }
-        file->csv.columns = SE3DI_SUMMARY_COLUMNS;
     }
     return close_csv(r, &file->csv, about);
 }

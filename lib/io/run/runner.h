@@ -10,6 +10,7 @@
 #include "io/model/model.h"
 #include "io/run/run_events.h"
 #include "io/run/watch.h"
+#include "io/write/average.h"
 #include "io/write/csv.h"
 #include "io/write/summary.h"
 #include "io/write/vtk.h"
@@ -17,8 +18,9 @@
 typedef struct se3di_output_file {
     const se3di_output_entry *entry;
     se3di_csv csv;
-    se3di_vtk *vtk;         /* NULL: it is a CSV file */
-    se3di_summary *summary; /* NULL: it has rows */
+    se3di_vtk *vtk;             /* NULL: it is a CSV file */
+    se3di_summary *summary;     /* NULL: it has rows, */
+    se3di_average_sum *average; /* unless it is one of fields */
     double *row;
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
