@@ -3,6 +3,9 @@
  * its numbers are zero. */
 #include "property/test_joint_world.h"
 
+#include "joint/equation.h"
+#include "primitive/scale.h"
+
 /* A callback that can be told to fail. */
 typedef struct failing {
     int fails;
@@ -172,6 +175,104 @@ static void points_that_coincide_have_no_distance(void)
     world_destroy(&w);
 }
 
+/* Beside points that are far away the distance that rounding leaves is none. */
+static void far_points_coincide_to_rounding(void)
+{
+    static const double place[2][2] = {{1e6, 0.0}, {0.0, 1e6}}; /* of the point, of the body */
+    const double upright[4] = {1.0, 0.0, 0.0, 0.0};
+    for (int k = 0; k < 2; ++k) {
+        const double at[3] = {place[k][1], 0.0, 0.0};
+        world w;
+        se3d_joint_def def = se3d_joint_def_default();
+        se3d_constraint link;
+        world_init(&w, 3);
+        CHECK(!se3d_body_set_orientation(w.system, w.body[0], upright));
+        CHECK(!se3d_body_set_position(w.system, w.body[0], at));
+        def.body_i = w.ground;
+        def.body_j = w.body[0];
+        def.point_i[0] = 1e6;
+        def.point_j[0] = place[k][0];
+        def.point_j[1] = 1.5e-6;
+        CHECK(se3d_joint_create_distance(w.system, &def, &link) == SE3D_ERR_INVALID_ARGUMENT);
+        def.point_j[1] = 5e-6;
+        CHECK(!se3d_joint_create_distance(w.system, &def, &link));
+        world_destroy(&w);
+    }
+}
+
+/* What bodies must do is [phi, nu, gamma]; the row asks for x and for the turn about z. */
+static se3d_status swept(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                         double *jacobian, double *nu, double *gamma)
+{
+    (void)ctx, (void)t, (void)bodies;
+    if (phi) {
+        phi[0] = 0.25;
+    }
+    if (jacobian) {
+        jacobian[0] = 1.0;
+        jacobian[5] = 2.0;
+    }
+    if (nu) {
+        nu[0] = 0.5;
+    }
+    if (gamma) {
+        gamma[0] = -0.75;
+    }
+    return SE3D_OK;
+}
+
+static void violations_of_user_constraints_are_those_of_their_rows(void)
+{
+    const double v[3] = {3.0, 0.0, 0.0}, omega[3] = {0.0, 0.0, 1.5};
+    world w;
+    se3d_user_constraint_def def = se3d_user_constraint_def_default();
+    se3d_constraint constraint;
+    double violation[3];
+    world_init(&w, 3);
+    def.callback = swept;
+    def.bodies[0] = w.body[2];
+    CHECK(!se3d_user_constraint_create(w.system, &def, &constraint));
+    CHECK(!se3d_body_set_velocity(w.system, w.body[2], v));
+    CHECK(!se3d_body_set_angular_velocity(w.system, w.body[2], omega));
+    double *a = w.system->model.acceleration + 6 * (size_t)world_index(&w, w.body[2]);
+    a[0] = 7.0;
+    a[5] = -0.5;
+    CHECK(!se3di_violation_measure(&w.system->model, violation));
+    CHECK_NEAR(violation[0], 0.25, 1e-15);
+    CHECK_NEAR(violation[1], 3.0 + 2.0 * 1.5 - 0.5, 1e-15);
+    CHECK_NEAR(violation[2], 7.0 - 2.0 * 0.5 + 0.75, 1e-15);
+    world_destroy(&w);
+}
+
+/* The size of a model is that of the longest arm, on either body; rows of squares are measured by
+ * its square. */
+static void rows_are_measured_by_the_size_of_the_model(void)
+{
+    const double origin[3] = {0.0, 0.0, 0.0};
+    for (int side = 0; side < 2; ++side) {
+        world w;
+        se3d_primitive_def def = se3d_primitive_def_default();
+        se3d_constraint square;
+        world_init(&w, 3);
+        for (int k = 0; k < WORLD_BODIES; ++k) {
+            CHECK(!se3d_body_set_position(w.system, w.body[k], origin));
+        }
+        def.type = SE3D_PRIMITIVE_D;
+        def.body_i = w.body[0];
+        def.body_j = w.body[1];
+        (side ? def.point_j : def.point_i)[1] = 3.0;
+        def.value = 18.0;
+        CHECK(!se3d_primitive_create(w.system, &def, &square));
+        const se3di_model *model = &w.system->model;
+        const double size = se3di_model_get_size(model);
+        CHECK_NEAR(size, 3.0, 1e-15);
+        CHECK_NEAR(se3di_row_get_scale(model, 0, size), 9.0, 1e-14);
+        CHECK_NEAR(se3di_row_violation(model, &model->rows[0], 18.0), 9.0 - 18.0, 1e-14);
+        CHECK_NEAR(se3di_row_measure(model, 0, size), 1.0, 1e-14);
+        world_destroy(&w);
+    }
+}
+
 int main(void)
 {
     RUN(a_driver_whose_function_fails_has_no_equation);
@@ -179,5 +280,8 @@ int main(void)
     RUN(an_angle_without_a_direction_has_no_equation);
     RUN(numbers_that_overflow_are_not_given);
     RUN(points_that_coincide_have_no_distance);
+    RUN(far_points_coincide_to_rounding);
+    RUN(violations_of_user_constraints_are_those_of_their_rows);
+    RUN(rows_are_measured_by_the_size_of_the_model);
     return check_finish();
 }
