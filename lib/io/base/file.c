@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Safe reading and writing, on POSIX systems and on Windows. */
 #if !defined(_WIN32)
-#define _XOPEN_SOURCE 700
+#define _XOPEN_SOURCE    700
+#define _DARWIN_C_SOURCE /* flock */
 #endif
 
 #include "io/base/file.h"
@@ -92,9 +93,23 @@ void se3di_temporary_remove(const char *path)
 {
     (void)path;
 }
+
+bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold)
+{
+    *hold = -1;
+    return se3di_temporary_make(within, path, size);
+}
+
+void se3di_temporary_release(const char *path, int hold)
+{
+    (void)path;
+    (void)hold;
+}
 #else
+#include <dirent.h>
 #include <fcntl.h>
 #include <ftw.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -199,10 +214,14 @@ static int make_folder(const char *path)
     return mkdir(path, 0777);
 }
 
+static const char *choose_folder(const char *within)
+{
+    return within && within[0] ? within : "/tmp";
+}
+
 bool se3di_temporary_make(const char *within, char *path, size_t size)
 {
-    const int length =
-        snprintf(path, size, "%s/se3d-XXXXXX", within && within[0] ? within : "/tmp");
+    const int length = snprintf(path, size, "%s/se3d-XXXXXX", choose_folder(within));
     if (length < 0 || (size_t)length >= size) {
         errno = ENAMETOOLONG;
         return false;
@@ -222,6 +241,72 @@ void se3di_temporary_remove(const char *path)
 {
     enum { OPEN_MOST = 16 };
     (void)nftw(path, take_each, OPEN_MOST, FTW_DEPTH | FTW_PHYS);
+}
+
+/* Folders that are held have the name of the second kind, and get it once they are locked: the lock
+ * goes with the process, so one that can be locked is nobody's. */
+static const char held_mark[] = "se3d-held-";
+
+/* Lock a folder of this user. @return -1: it is none, or another process has it */
+static int lock_folder(const char *path)
+{
+    struct stat about;
+    const int number = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (number >= 0 && (fstat(number, &about) != 0 || about.st_uid != geteuid() ||
+                        flock(number, LOCK_EX | LOCK_NB) != 0)) {
+        close(number);
+        return -1;
+    }
+    return number;
+}
+
+static void sweep(const char *within)
+{
+    char path[PATH_SIZE];
+    DIR *folder = opendir(within);
+    for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
+        const int length = snprintf(path, sizeof path, "%s/%s", within, entry->d_name);
+        if (strncmp(entry->d_name, held_mark, strlen(held_mark)) != 0 || length < 0 ||
+            (size_t)length >= sizeof path) {
+            continue;
+        }
+        const int hold = lock_folder(path);
+        if (hold >= 0) {
+            se3di_temporary_release(path, hold);
+        }
+    }
+    if (folder) {
+        closedir(folder);
+    }
+}
+
+bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold)
+{
+    char name[PATH_SIZE];
+    *hold = -1;
+    sweep(choose_folder(within));
+    if (!se3di_temporary_make(within, path, size)) {
+        return false;
+    }
+    const char *random = path + strlen(path) - 6; /* of mkdtemp */
+    const int length =
+        snprintf(name, sizeof name, "%s/%s%s", choose_folder(within), held_mark, random);
+    if (length < 0 || (size_t)length >= sizeof name || (size_t)length >= size) {
+        return true; /* it stays as it is */
+    }
+    *hold = lock_folder(path);
+    if (*hold >= 0 && rename(path, name) == 0) {
+        memcpy(path, name, (size_t)length + 1);
+    }
+    return true;
+}
+
+void se3di_temporary_release(const char *path, int hold)
+{
+    se3di_temporary_remove(path);
+    if (hold >= 0) {
+        close(hold);
+    }
 }
 #endif
 

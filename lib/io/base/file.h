@@ -43,6 +43,11 @@ FILE *se3di_partial_continue(const char *path, uint64_t size, uint64_t hash);
  * that is in it, without following links. @return false: errno says why; not on Windows. */
 bool se3di_temporary_make(const char *within, char *path, size_t size);
 void se3di_temporary_remove(const char *path);
+/* The same for one that is held as long as this process lives: what processes that were killed have
+ * left in `within` is taken away first. *hold: for se3di_temporary_release, -1 if the system cannot
+ * tell who lives; then it stays if the process is killed. */
+bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold);
+void se3di_temporary_release(const char *path, int hold);
 /* Let a file survive that the machine stops. */
 bool se3di_file_sync(FILE *file);
 /* Take a file away, and what was left of it under its temporary name; folders stay. */

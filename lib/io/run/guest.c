@@ -92,6 +92,7 @@ typedef struct guest {
     const se3di_guest_entry *entry;
     const char *folder; /* of the unit, or where it is unpacked */
     const char *made;   /* by us, to be taken away; NULL: none */
+    int hold;           /* of it */
     se3di_guest_description description;
     uint32_t *inputs, *outputs; /* value references */
     bool *wholes;               /* [outputs] whole numbers */
@@ -421,13 +422,16 @@ static se3d_status unpack(guest *g, se3di_iopool *pool, const char *temporary, c
         return SE3D_OK; /* a folder, or the description is found missing there */
     }
     fclose(file);
-    if (!se3di_temporary_make(temporary, path, sizeof path)) {
+    if (!HAS_OBJECTS) {
+        return fail(g, SE3D_ERR_UNSUPPORTED, problem, "units of other programs are for Linux");
+    }
+    if (!se3di_temporary_hold(temporary, path, sizeof path, &g->hold)) {
         snprintf(g->told, sizeof g->told, "%.150s: %s", path, se3di_file_get_text(errno));
         return fail(g, SE3D_ERR_IO, problem, "it cannot be unpacked");
     }
     g->folder = g->made = se3di_iopool_copy(pool, path, strlen(path));
     if (!g->made) {
-        se3di_temporary_remove(path);
+        se3di_temporary_release(path, g->hold);
         return fail(g, SE3D_ERR_NO_MEMORY, problem, "out of memory");
     }
     const se3d_status status =
@@ -533,7 +537,7 @@ void se3di_guests_close(se3di_guests *guests)
         }
         unload(g);
         if (g->made) {
-            se3di_temporary_remove(g->made);
+            se3di_temporary_release(g->made, g->hold);
         }
     }
     se3di_floats_resume();
