@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Recipes of package managers: every place is filled, each is a text of its kind, and the options
-# that they give exist.
+# that they give exist, and its manager finds in it what it asks for.
 set -eu
 source=${SE3D_SOURCE_DIR:-.}
 work=${SE3D_BUILD_DIR:?the build folder}/tests/recipes
@@ -13,12 +13,26 @@ for bad in 'https://example.org/a b' 'ftp://example.org/a' 'https://example.org/
     grep -q 'must be https' "$work/err"
 done
 ! grep -rn '@[A-Z0-9]*@' "$work"
-python3 - "$work" <<'E'
-import ast, json, pathlib, sys
-work = pathlib.Path(sys.argv[1])
-ast.parse((work / "conan/conanfile.py").read_text())
-assert json.loads((work / "vcpkg/se3d/vcpkg.json").read_text())["version"].count(".") == 2
-E
+
+# Each recipe is asked by stand-ins for its manager.
+here=$source/tests/install
+PYTHONDONTWRITEBYTECODE=1 python3 "$here/recipes.py" "$work" "$source"
+cmake -DFOLDER="$work" -P "$here/vcpkg.cmake" 2>"$work/vcpkg.txt"
+for words in 'URLS;https://example.org/libse3d.tar.gz;FILENAME;libse3d-[0-9.]*.tar.gz;SHA512;[0-9a-f]\{128\}$' \
+    'ARCHIVE;/archive$' 'SOURCE_PATH;/source;OPTIONS;-DSE3D_BUILD_TESTS=OFF' 'CONFIG_PATH;lib/cmake/se3d$' \
+    'FILE_LIST;/source/LICENSE$'; do
+    grep -q "$words" "$work/vcpkg.txt" || {
+        cat "$work/vcpkg.txt"
+        echo "no step of vcpkg gets $words" >&2
+        exit 1
+    }
+done
+if command -v ruby >/dev/null; then
+    ruby -W1 "$here/formula.rb" "$work/homebrew/se3d.rb" "$work"
+    "${CC:-cc}" -std=c11 -fsyntax-only -I"$source/include" "$work/test.c" # the program that it tries
+else
+    echo 'no ruby: the formula of Homebrew was not read'
+fi
 options=$(grep -rhoE 'SE3D_[A-Z_]+' "$work" | sort -u)
 [ "$(echo "$options" | wc -l)" -ge 5 ]
 for option in $options; do
