@@ -17,6 +17,8 @@ show_main() {
     folder=results/$name
     echo "== $name: se3d run examples/models/$name.yaml -o $folder"
     "$program" run "examples/models/$name.yaml" -o "$folder" || return 1
+    "$program" sketch -q "examples/models/$name.yaml" -o "$folder/sketch.svg" || return 1
+    echo "picture: $(pwd)/$folder/sketch.svg (any browser)"
     echo "results: $(pwd)/$folder/$name.csv"
     echo "scene:   $(pwd)/$folder/scene.glb (Blender, any glTF viewer)"
     if command -v gnuplot >/dev/null 2>&1; then
