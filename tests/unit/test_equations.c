@@ -4,7 +4,9 @@
 #include "property/test_joint_world.h"
 
 #include "joint/equation.h"
+#include "joint/user.h"
 #include "primitive/scale.h"
+#include "se3d/io.h"
 
 /* A callback that can be told to fail. */
 typedef struct failing {
@@ -273,6 +275,38 @@ static void rows_are_measured_by_the_size_of_the_model(void)
     }
 }
 
+/* By a driver whose value follows another joint, angle = sqrt(x): it has no curvature where the
+ * root has no value, nor where the multiplier makes it too large. */
+static void curvatures_that_are_not_finite_are_refused(void)
+{
+    static const char text[] =
+        "se3d: 1\nbodies:\n  - {name: a, mass: 1, inertia: [1, 1, 1]}\n"
+        "  - {name: b, mass: 1, inertia: [1, 1, 1], position: [1e-4, 0, 0]}\njoints:\n"
+        "  - {name: ja, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: jb, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [1, 0, "
+        "0]}\n"
+        "drivers: [{name: d, joint: ja, value: 'sqrt(jb.displacement + 1e-4)'}]\n"
+        "analysis: {type: dynamics, duration: 1}\n";
+    const double before[3] = {-1.0, 0.0, 0.0}, one = 1.0, huge = 1e305;
+    double H[24 * 24], g[24];
+    se3d_model *read = NULL;
+    se3d_model_error error;
+    se3d_constraint driver;
+    se3d_body body;
+    CHECK(!se3d_model_read_text(text, sizeof text - 1, "m.yaml", NULL, &read, &error));
+    se3d_system *system = se3d_model_get_system(read);
+    CHECK(!se3d_constraint_find(system, "d", &driver));
+    CHECK(!se3d_body_find(system, "b", &body));
+    const se3di_constraint *law = &system->model.constraints[driver.index1 - 1];
+    CHECK(se3di_user_body_count(law) <= 4);
+    CHECK(!se3di_user_curvature(&system->model, law, 0.0, &one, H, g));
+    CHECK(se3di_user_curvature(&system->model, law, 0.0, &huge, H, g) == SE3D_ERR_NOT_FINITE);
+    CHECK(!se3d_body_set_position(system, body, before));
+    CHECK(se3di_user_curvature(&system->model, law, 0.0, &one, H, g) == SE3D_ERR_NOT_FINITE);
+    se3d_model_destroy(read);
+}
+
 int main(void)
 {
     RUN(a_driver_whose_function_fails_has_no_equation);
@@ -283,5 +317,6 @@ int main(void)
     RUN(far_points_coincide_to_rounding);
     RUN(violations_of_user_constraints_are_those_of_their_rows);
     RUN(rows_are_measured_by_the_size_of_the_model);
+    RUN(curvatures_that_are_not_finite_are_refused);
     return check_finish();
 }
