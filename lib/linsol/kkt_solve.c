@@ -15,6 +15,7 @@ static const double pivot_is_good = 1e-4;   /* relative; then a solve with E = 0
 static const double pivot_is_safe = 1e-11;  /* the same if bodies go before their joints */
 static const double row_rounding = 4e-16;   /* of the terms of a row */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
+static const double part_noise = 1e-14;     /* of multipliers, in the dependent directions */
 static const double weight_range = 1e4;
 
 /* ---- factor ---- */
@@ -421,8 +422,9 @@ static void add_to_multipliers(se3di_kkt *kkt, double sign, double *x, double *l
     }
 }
 
-/* Returns whether once more is needed: the part itself is known to about u / eps. */
-static bool project_once(se3di_kkt *kkt, double *x, double *l)
+/* Returns whether once more is needed: the part itself is known to about u / eps. *most: the
+ * largest number of the last one, which falls until eps times the rest of l is left. */
+static bool project_once(se3di_kkt *kkt, double *x, double *l, double *most)
 {
     const size_t m = kkt->layout.row_count;
     for (size_t i = 0; i < m; ++i) {
@@ -430,7 +432,9 @@ static bool project_once(se3di_kkt *kkt, double *x, double *l)
     }
     solve_once(kkt, NULL, kkt->residual_c, kkt->correction_x, kkt->correction_l);
     add_to_multipliers(kkt, -1.0, x, l);
-    return largest_entry(kkt->correction_l, m) * 2.2e-16 / kkt->eps > 1e-12 * largest_entry(l, m);
+    const double before = *most;
+    *most = largest_entry(kkt->correction_l, m);
+    return *most<0.5 * before && * most * 2.2e-16 / kkt->eps> part_noise * largest_entry(l, m);
 }
 
 static void save_multipliers(se3di_kkt *kkt, const double *x, const double *l)
@@ -469,11 +473,11 @@ static double allowed_imbalance(const se3di_kkt *kkt, const double *l)
 static void project(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
                     se3di_kkt_solve_info *info)
 {
-    double before = HUGE_VAL;
+    double before = HUGE_VAL, most = HUGE_VAL;
     const se3di_kkt_solve_info unprojected = *info;
     save_multipliers(kkt, x, l);
     info->projected = true;
-    for (int32_t step = 0; step < 8 && project_once(kkt, x, l); ++step) {
+    for (int32_t step = 0; step < 8 && project_once(kkt, x, l, &most); ++step) {
     }
     const double limit = 1e-14 + 10.0 * unprojected.residual_b + allowed_imbalance(kkt, l);
     for (int32_t step = 0;; ++step) {

@@ -156,6 +156,58 @@ static void equal_gears_share_the_effort_in_every_method(void)
     }
 }
 
+/* A planetary gear: what three equal planets carry is redundant, and shared by them alike. */
+static void equal_planets_carry_equal_loads(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU, SE3D_METHOD_BDF,
+                                      SE3D_METHOD_RATTLE, SE3D_METHOD_GENERALIZED_ALPHA};
+    static const char head[] =
+        "se3d: 1\ngravity: [0, -9.81, 0]\nbodies:\n"
+        "  - {name: sun, mass: 1, inertia: [0.01, 0.01, 0.02]}\n"
+        "  - {name: arm, mass: 2, inertia: [0.02, 0.02, 0.04]}\njoints:\n"
+        "  - {name: js, type: revolute, body_i: ground, body_j: sun, at: [0, 0, 0], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: jc, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, 0, "
+        "1]}\n";
+    char text[6000], planets[1000] = "";
+    snprintf(text, sizeof text, "%s", head);
+    for (int k = 0; k < 3; ++k) {
+        const double x = 0.3 * cos(2.0943951023931953 * k), y = 0.3 * sin(2.0943951023931953 * k);
+        const size_t used = strlen(text), listed = strlen(planets);
+        snprintf(planets + listed, sizeof planets - listed,
+                 "  - {name: p%d, mass: 0.3, inertia: [1e-3, 1e-3, 2e-3], position: [%.17g, %.17g, "
+                 "0]}\n",
+                 k, x, y);
+        snprintf(text + used, sizeof text - used,
+                 "  - {name: jp%d, type: revolute, body_i: arm, body_j: p%d, at: [%.17g, %.17g, 0],"
+                 " axis: [0, 0, 1]}\n"
+                 "  - {name: s%d, type: coupler, terms: [{joint: js, ratio: 2}, {joint: jc, ratio: "
+                 "-2}, {joint: jp%d}]}\n"
+                 "  - {name: r%d, type: coupler, terms: [{joint: jc, ratio: 4}, {joint: jp%d}]}\n",
+                 k, k, x, y, k, k, k, k);
+    }
+    char full[8000];
+    const char *joints = strstr(text, "joints:");
+    snprintf(full, sizeof full,
+             "%.*s%s%sforces: [{type: torque, body: sun, value: [0, 0, 6]}]\n"
+             "analysis: {type: dynamics, duration: 1, step: 1e-3}\n"
+             "output: [{file: r.csv, channels: [s0.effort, s1.effort, s2.effort, r0.effort, "
+             "r1.effort, r2.effort]}]\n",
+             (int)(joints - text), text, planets, joints);
+    for (int32_t k = 0; k < 10; ++k) {
+        text_model m = text_model_open(full, methods[k / 2], k % 2, 0.0);
+        for (int row = 0; row <= 4; ++row) {
+            CHECK(se3d_solver_run(m.solver, 0.1 * row) == SE3D_INFO_REDUNDANT);
+            for (size_t c = 0; c < 6; ++c) {
+                const double first = text_model_get(&m, c / 3 * 3, 0);
+                CHECK(fabs(first) > 0.1);
+                CHECK_NEAR(text_model_get(&m, c, 0), first, 1e-12);
+            }
+        }
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(equal_gears_share_the_effort_in_every_method);
@@ -163,5 +215,6 @@ int main(void)
     RUN(a_rack_reports_the_force_on_the_rack_and_the_torque_on_the_pinion);
     RUN(a_coupler_that_moves_reports_value_force_and_effort);
     RUN(a_gear_of_itself_is_refused_with_its_reason);
+    RUN(equal_planets_carry_equal_loads);
     return check_finish();
 }
