@@ -29,6 +29,8 @@
 #define GROWTH   2.0  /* of a step at most */
 #define VIBRATES 0.5  /* (frequency times step)^2 from which orders above 2 are not stable */
 #define STIFF    1e3  /* and up to which */
+#define FILTERED 1e2  /* or (decay times step)^2, from which forces decide of positions */
+#define DECIDED  3    /* the least order then, once it is reached */
 #define LOOSE    1e-4 /* a tolerance of so few steps that their errors hardly add up */
 
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
@@ -127,8 +129,7 @@ static double measure(const se3di_bdf *m)
     return (r + v) / m->tolerance;
 }
 
-/* Six numbers a body of m->difference, positions (`at` 0) or velocities (7), without the part that
- * the constraints decide: from m->work. */
+/* Six numbers a body, positions or velocities, without the part that the constraints decide. */
 static se3d_status leave_tangent(se3di_bdf *m, double *six)
 {
     se3di_equations *equations = m->equations;
@@ -144,37 +145,89 @@ static se3d_status leave_tangent(se3di_bdf *m, double *six)
     return SE3D_OK;
 }
 
+/* Forces decide of positions within a step. */
+static int is_filtered(const se3di_bdf *m)
+{
+    return fmax(m->fast.spring2, m->fast.damper2) > FILTERED;
+}
+
+/* The same for forces far faster than the step, which decide of positions and velocities as
+ * constraints do: (I - c J)^-1 of both, with the Jacobian J of (q, v)' (Hosea, Shampine 1996). What
+ * creeps slowly under them stays. Once, positions still count over the step as velocities, which a
+ * spring does not let them become: so it is taken twice. */
+static se3d_status leave_slow(se3di_bdf *m, double *q, double *v)
+{
+    se3di_equations *equations = m->equations;
+    const se3di_assembly *assembly = m->assembly;
+    const se3di_newton *newton = &m->integration->newton;
+    const size_t n = assembly->unknown_count;
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    if (assembly->row_count > 0) {
+        memset(equations->b, 0, n * sizeof *equations->b);
+        se3di_newton_add_matrix(newton, q, equations->b);
+        SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+        memcpy(q, equations->x, n * sizeof *q);
+    }
+    memset(equations->b, 0, n * sizeof *equations->b);
+    for (size_t k = 0; k < n; ++k) {
+        v[k] *= -1.0;
+    }
+    se3di_assembly_subtract_mass(assembly, v, equations->b);
+    se3di_tangent_add_stiffness(&newton->tangent, -m->c, q, equations->b);
+    SE3DI_TRY(se3di_newton_solve(&m->integration->newton));
+    for (size_t k = 0; k < n; ++k) {
+        v[k] = equations->x[k];
+        q[k] += m->c * v[k];
+    }
+    return SE3D_OK;
+}
+
+/* m->difference as six numbers a body of positions and of velocities. */
+static void get_difference(const se3di_bdf *m, double *q, double *v)
+{
+    for (size_t k = 0; k < m->assembly->body_count; ++k) {
+        const double *d = m->difference + k * SE3DI_STATE_SIZE;
+        se3di_copy(d, q + 6 * k);
+        se3di_quat_angular_velocity(m->y + k * SE3DI_STATE_SIZE + 3, d + 3, q + 6 * k + 3);
+        se3di_copy(d + 7, v + 6 * k);
+        se3di_copy(d + 10, v + 6 * k + 3);
+    }
+}
+
+static double measure_six(const se3di_bdf *m, const double *q, const double *v)
+{
+    const se3di_state_scale *scale = &m->past->scale;
+    double largest[2] = {0.0, 0.0};
+    for (size_t k = 0; k < m->assembly->unknown_count; k += 6) {
+        if (se3di_state_is_carrier(m->assembly, k / 6)) {
+            const double z = se3di_state_part(m->assembly, k / 6, scale, v + k);
+            largest[1] = se3di_larger(largest[1], z);
+            continue;
+        }
+        const double at = se3di_norm(q + k) / scale->length + se3di_norm(q + k + 3);
+        const double rate = se3di_norm(v + k) / scale->speed + se3di_norm(v + k + 3) / scale->spin;
+        largest[0] = se3di_larger(largest[0], at);
+        largest[1] = se3di_larger(largest[1], rate);
+    }
+    return (largest[0] + largest[1]) / m->tolerance;
+}
+
 /* The same of its part in the directions that the constraints leave, if the equations are
  * factored. The others are as good as rounding is in the projection, which near a singular position
  * amplifies it by the square of the inverse distance: no shorter step would help. */
 static se3d_status measure_tangent(se3di_bdf *m, double *error)
 {
-    const se3di_state_scale *scale = &m->past->scale;
-    double largest[2] = {0.0, 0.0};
-    for (int level = 0; level < 2; ++level) {
-        for (size_t k = 0; k < m->assembly->body_count; ++k) {
-            const double *d = m->difference + k * SE3DI_STATE_SIZE;
-            double *six = m->work + 6 * k;
-            se3di_copy(level ? d + 7 : d, six);
-            if (level) {
-                se3di_copy(d + 10, six + 3);
-            } else {
-                se3di_quat_angular_velocity(m->y + k * SE3DI_STATE_SIZE + 3, d + 3, six + 3);
-            }
-        }
-        SE3DI_TRY(leave_tangent(m, m->work));
-        for (size_t k = 0; k < m->assembly->unknown_count; k += 6) {
-            if (se3di_state_is_carrier(m->assembly, k / 6)) {
-                const double z = se3di_state_part(m->assembly, k / 6, scale, m->work + k);
-                largest[1] = !level || z <= largest[1] ? largest[1] : z;
-                continue;
-            }
-            const double part = se3di_norm(m->work + k) / (level ? scale->speed : scale->length) +
-                                se3di_norm(m->work + k + 3) / (level ? scale->spin : 1.0);
-            largest[level] = se3di_larger(largest[level], part);
-        }
+    double *q = m->relaxation, *v = q + m->assembly->unknown_count;
+    get_difference(m, q, v);
+    if (is_filtered(m)) {
+        SE3DI_TRY(leave_slow(m, q, v));
+        SE3DI_TRY(leave_slow(m, q, v));
+    } else {
+        SE3DI_TRY(leave_tangent(m, q));
+        SE3DI_TRY(leave_tangent(m, v));
     }
-    *error = (largest[0] + largest[1]) / m->tolerance;
+    const double left = measure_six(m, q, v);
+    *error = is_filtered(m) && !(left < *error) ? *error : left;
     return SE3D_OK;
 }
 
@@ -328,10 +381,11 @@ static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
 {
     SE3DI_TRY(measure_error(m, order, 0, &e->here));
     /* rates that follow signals say nothing of positions: their errors stay */
-    const int is_tangent =
-        e->here > 1.0 && m->assembly->row_count > 0 && !se3di_state_has_rates(m->equations);
+    const int is_fast = is_filtered(m);
+    const int is_tangent = e->here > 1.0 && (is_fast || m->assembly->row_count > 0) &&
+                           !se3di_state_has_rates(m->equations);
     if (is_tangent) {
-        SE3DI_TRY(se3di_equations_factor(m->equations));
+        SE3DI_TRY(is_fast ? SE3D_OK : se3di_equations_factor(m->equations));
         SE3DI_TRY(measure_error(m, order, 1, &e->here));
     }
     if (!(e->here <= 1.0)) {
@@ -386,6 +440,15 @@ static int grow_at_start(se3di_bdf *m, int order, const errors *e)
     return 1;
 }
 
+/* Velocities that forces decide of are the differences of positions, and jump with the order by
+ * what the lower one makes of these: such a jump looks like an error, and orders below 3 would
+ * follow it down. */
+static int least_order(const se3di_bdf *m, int order)
+{
+    const int least = order < DECIDED ? order : DECIDED;
+    return is_filtered(m) ? least : 1;
+}
+
 /* Order and step after an accepted step. A step that would grow a little only stays. */
 static void adapt(se3di_bdf *m, int order, const errors *e)
 {
@@ -394,11 +457,13 @@ static void adapt(se3di_bdf *m, int order, const errors *e)
     }
     double best = factor_of(e->here, order);
     int chosen = order;
-    if (order > 1 && factor_of(e->lower, order - 1) > best) {
+    if (order > least_order(m, order) && factor_of(e->lower, order - 1) > best) {
         best = factor_of(e->lower, order - 1);
         chosen = order - 1;
     }
-    if (m->past->since > order && isfinite(e->higher) && factor_of(e->higher, order + 1) > best) {
+    const int rises = is_filtered(m) && order < DECIDED && e->higher <= 1.0;
+    if (m->past->since > order && isfinite(e->higher) &&
+        (rises || factor_of(e->higher, order + 1) > best)) {
         best = factor_of(e->higher, order + 1);
         chosen = order + 1;
     }
@@ -469,7 +534,7 @@ static double shrink(se3di_adaptive *step, double h, se3d_status status, double 
     const int says = step->tries == 1 && status >= 0 && isfinite(error);
     const double factor = says ? fmax(0.25, fmin(0.9, 0.9 * factor_of(error, s->order))) : 0.25;
     (void)h;
-    s->order = step->tries > 2 ? 1 : s->order;
+    s->order = step->tries > 2 ? least_order(&s->m, s->order) : s->order;
     return factor;
 }
 

@@ -119,6 +119,71 @@ static void states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by(v
     check_all(SE3D_METHOD_RADAU, 0.0, 2e-3); /* what positions are off by, over the step */
 }
 
+/* And if they are damped: what the joint yields by creeps back within 0.1 ms. Steps are those of the
+ * slow motion, not of the vibration, nor of the creep. */
+static void bushings_with_dampers_are_as_good_as_joints(void)
+{
+    static const struct way {
+        int32_t method;
+        double power; /* of 10, the least */
+        uint64_t steps;
+    } ways[] = {{SE3D_METHOD_BDF, 9.0, 1500},
+                {SE3D_METHOD_RADAU, 9.0, 1500},
+                {SE3D_METHOD_AUTO, 9.0, 1500},
+                {SE3D_METHOD_HHT, 11.0, 4000},
+                {SE3D_METHOD_GENERALIZED_ALPHA, 11.0, 4000}};
+    static path got, truth;
+    CHECK(follow(FIXED, SE3D_METHOD_DOP853, 0.0, 1e-12, &truth));
+    for (size_t way = 0; way < sizeof ways / sizeof *ways; ++way) {
+        for (double power = ways[way].power; power <= 13.0; power += 1.0) {
+            char text[1500];
+            (void)snprintf(text, sizeof text,
+                           "se3d: 1\nparameters: {k: %g, c: %g}\n" HEAD PIN
+                           "forces: [{type: bushing, body_i: a, body_j: b, at: [1, 0, 0], "
+                           "K: [k, k, k, k, k, k], C: [c, c, c, c, c, c]}]\n" TAIL,
+                           pow(10.0, power), pow(10.0, power - 4.0));
+            const int runs = follow(text, ways[way].method, 0.0, 1e-6, &got);
+            const double error = runs ? compare(&got, &truth) : HUGE_VAL;
+            const int holds = runs && error < 1e-5 && got.steps < ways[way].steps;
+            CHECK(holds);
+            if (!holds || getenv("SE3D_SHOW")) {
+                fprintf(stderr, "bushing of 1e%g N/m by %s: off by %.2g after %llu steps\n", power,
+                        se3d_method_get_name(ways[way].method), error,
+                        (unsigned long long)got.steps);
+            }
+        }
+    }
+}
+
+/* A strong spring against as strong a damper: what creeps back within a second is no error to be
+ * left out. m x'' + k x' + k x = 0 from rest at .5 m. */
+static void what_creeps_against_a_damper_is_followed(void)
+{
+    static const double values[3] = {1e5, 1e7, 1e9};
+    for (int way = 0; way < 6; ++way) {
+        const double k = values[way % 3], slow = 2.0 * k / (k + sqrt(k * k - 4.0 * k));
+        const double fast = k - slow, t = 2.0;
+        const double x = 0.5 * (fast * exp(-slow * t) - slow * exp(-fast * t)) / (fast - slow);
+        char text[800];
+        (void)snprintf(
+            text, sizeof text,
+            "se3d: 1\nparameters: {k: %g}\nbodies: [{name: a, mass: 1, inertia: [1, 1, 1], "
+            "position: [0.5, 0, 0]}]\njoints: [{type: prismatic, body_i: ground, body_j: "
+            "a, at: [0, 0, 0], axis: [1, 0, 0]}]\nforces: [{type: tsda, body_i: ground, "
+            "body_j: a, point_i: [-2, 0, 0], k: k, c: k, l0: 2}]\n" TAIL,
+            k);
+        text_model m = text_model_open(text, way < 3 ? SE3D_METHOD_BDF : SE3D_METHOD_RADAU,
+                                       SE3D_FORMULATION_ROMEGA, 0.0);
+        double r[3];
+        se3d_body body;
+        CHECK(se3d_solver_run(m.solver, t) >= 0);
+        CHECK(!se3d_system_get_body(m.system, 1, &body));
+        CHECK(!se3d_body_get_position(m.system, body, r));
+        CHECK_NEAR(r[0], x, 2e-7);
+        text_model_close(&m);
+    }
+}
+
 /* Three bars in a row; dampers so strong that the bars which they join do not turn against each
  * other, and springs. */
 #define BARS                                                                                       \
@@ -234,6 +299,8 @@ static void accelerations_are_those_of_the_motion_however_fast_a_force_is(void)
 int main(void)
 {
     RUN(accelerations_are_those_of_the_motion_however_fast_a_force_is);
+    RUN(bushings_with_dampers_are_as_good_as_joints);
+    RUN(what_creeps_against_a_damper_is_followed);
     RUN(states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by);
     RUN(chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion);
     RUN(equal_steps_of_the_newmark_family_follow_the_slow_motion);
