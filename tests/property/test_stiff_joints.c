@@ -119,8 +119,8 @@ static void states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by(v
     check_all(SE3D_METHOD_RADAU, 0.0, 2e-3); /* what positions are off by, over the step */
 }
 
-/* And if they are damped: what the joint yields by creeps back within 0.1 ms. Steps are those of the
- * slow motion, not of the vibration, nor of the creep. */
+/* And if they are damped: what the joint yields by creeps back within 0.1 ms. Steps are those of
+ * the slow motion, not of the vibration, nor of the creep. */
 static void bushings_with_dampers_are_as_good_as_joints(void)
 {
     static const struct way {
@@ -167,7 +167,8 @@ static void what_creeps_against_a_damper_is_followed(void)
         char text[800];
         (void)snprintf(
             text, sizeof text,
-            "se3d: 1\nparameters: {k: %g}\nbodies: [{name: a, mass: 1, inertia: [1, 1, 1], "
+            "se3d: 1\nparameters: {k: %g}\nbodies: [{name: a, mass: 1, "
+            "inertia: [1, 1, 1], "
             "position: [0.5, 0, 0]}]\njoints: [{type: prismatic, body_i: ground, body_j: "
             "a, at: [0, 0, 0], axis: [1, 0, 0]}]\nforces: [{type: tsda, body_i: ground, "
             "body_j: a, point_i: [-2, 0, 0], k: k, c: k, l0: 2}]\n" TAIL,
