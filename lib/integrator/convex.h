@@ -42,6 +42,7 @@ typedef struct se3di_convex_contact {
     double friction, bound, wanted;    /* mu, the cap in use, that of p_n */
     double before[3], v[3], change[3]; /* velocity of the point: at the start, now, of the search */
     double impulse[3];                 /* on j */
+    double slope[9];                   /* minus the derivative of the impulse */
     double held;                       /* energy of its springs at the start of the step */
 } se3di_convex_contact;
 
@@ -148,8 +149,14 @@ void se3di_convex_store(const se3di_convex *c, se3di_model *model, double taken)
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
 
 /* convex_sweep.c: velocities near the optimum of an island without constraints, from v*, by the
- * impulses of one contact after the other. */
-void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island);
+ * impulses of one contact after the other. Returns 1 if they hardly changed. */
+int se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island);
+/* From v and impulses of which `gradient` is not balanced. */
+void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island);
+/* The velocity at which a contact's law gives the impulse that it would have if all others stayed
+ * as they are with `impulse` and v; the cap of its friction there. Returns how much the impulse
+ * would change. */
+double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3]);
 /* contact by contact, as `c->order` says */
 static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_t k)
 {

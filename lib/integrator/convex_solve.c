@@ -16,11 +16,14 @@
 
 #define ITERATIONS  200
 #define FOLLOWING   60   /* iterations in which the caps of friction follow */
+#define MAY_FOLLOW  0.1  /* of impulses: what is left where they do */
 #define ACCURACY    1e-9 /* of impulses */
 #define CAP_CHANGE  1e-4 /* of the largest cap: it needs no other iteration */
 #define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
 #define SOLVES_MOST 500
+#define GUESSES     6    /* at which contacts act and how, before */
+#define GUESSED     1e-3 /* of the largest impulse: they will hardly change */
 #define LINE_STEPS  60
 #define LINE_SLOPE  1e-3 /* of the cost along the line, relative to that at its beginning */
 
@@ -205,8 +208,8 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
     }
 }
 
-/* Impulses, gradient and, if `is_wanted`, the blocks of the matrix at v. */
-static void evaluate(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
+/* Gradient and blocks of the matrix without contacts. */
+static void clear(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
 {
     const size_t bodies = island->body_end - island->body;
     const size_t pairs = island->pair_end - island->pair;
@@ -219,6 +222,12 @@ static void evaluate(se3di_convex *c, const se3di_convex_island *island, int is_
     if (is_wanted && pairs > 0) {
         memset(c->coupling + 36 * island->pair, 0, 36 * pairs * sizeof *c->coupling);
     }
+}
+
+/* Impulses, gradient and, if `is_wanted`, the blocks of the matrix at v. */
+static void evaluate(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
+{
+    clear(c, island, is_wanted);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         double G[9];
@@ -438,11 +447,12 @@ static void place(const se3di_convex *c, const se3di_assembly *assembly, const d
     }
 }
 
-/* v by places, M (v - v*), the momentum. */
-static void begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_island *island)
+/* v by places, M (v - v*), the momentum. Returns 1 if contacts may be far from the optimum. */
+static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_island *island)
 {
     const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
     double *aim = c->carried, *start = c->gradient;
+    int is_far = 0;
     mul_mass(c, assembly, island, aim, c->moved);
     island->momentum = weigh(c, island, c->moved);
     mul_mass(c, assembly, island, start, c->moved);
@@ -452,7 +462,7 @@ static void begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_
         memset(c->lambda, 0, assembly->row_count * sizeof *c->lambda);
     } else {
         memcpy(c->v + first, aim + first, count * sizeof *c->v);
-        se3di_convex_sweep(c, island);
+        is_far = !se3di_convex_sweep(c, island);
     }
     for (size_t k = first; k < first + count; ++k) {
         c->change[k] = c->v[k] - aim[k];
@@ -461,6 +471,84 @@ static void begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_
     memset(c->change + first, 0, count * sizeof *c->change);
     memset(c->carried + first, 0, count * sizeof *c->carried);
     move(c, island, 0.0);
+    return is_far;
+}
+
+/* What `change` does to contacts and momenta. */
+static void carry(se3di_convex *c, const se3di_assembly *assembly,
+                  const se3di_convex_island *island)
+{
+    mul_mass(c, assembly, island, c->change, c->carried);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        se3di_convex_velocity(contact, c->change, contact->change);
+    }
+}
+
+/* Impulses as linear functions of v, each about the velocity that its contact would have alone.
+ * Returns how far they are from it, as a part of the largest. */
+static double foresee(se3di_convex *c, const se3di_convex_island *island)
+{
+    double far = 0.0, largest = 0.0;
+    clear(c, island, 1);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        double ahead[3], less[3];
+        far = se3di_larger(far, se3di_convex_foresee(c, contact, ahead));
+        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, contact->slope);
+        largest = fmax(largest, se3di_norm(contact->impulse));
+        se3di_sub(contact->v, ahead, ahead);
+        se3di_mul(contact->slope, ahead, less);
+        se3di_sub(contact->impulse, less, contact->impulse);
+        subtract_impulse(contact, c->gradient);
+        add_contact(c, contact, contact->slope);
+    }
+    return largest > 0.0 ? far / largest : 0.0;
+}
+
+/* Again one contact after the other, from the impulses of all at once. */
+static void relax(se3di_convex *c, const se3di_convex_island *island)
+{
+    const size_t begin = 6 * island->body, end = 6 * island->body_end;
+    clear(c, island, 0);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        subtract_impulse(se3di_convex_at(c, k), c->gradient);
+    }
+    se3di_convex_relax(c, island);
+    memset(c->moved + begin, 0, (end - begin) * sizeof *c->moved);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        subtract_impulse(contact, c->moved);
+        se3di_convex_slip(contact, c->v, contact->v);
+    }
+    for (size_t k = begin; k < end; ++k) {
+        c->moved[k] = -c->moved[k];
+    }
+}
+
+/* Nearer to the optimum of an island without constraints. What parts, sticks and slides is chosen
+ * by impulses and velocities together, which does not depend on how stiff contacts are: Newton's
+ * method on the velocities alone stops at the kink of any of them, in a large island at one after
+ * the other. */
+static void approach(se3di_convex *c, se3di_equations *equations, const se3di_convex_island *island)
+{
+    for (int guess = 0; guess < GUESSES; ++guess) {
+        const double far = foresee(c, island);
+        solve_free(c, equations, island);
+        ++equations->counters.iterations;
+        carry(c, &equations->assembly, island);
+        for (size_t k = island->contact; k < island->contact_end; ++k) {
+            se3di_convex_contact *contact = se3di_convex_at(c, k);
+            double less[3];
+            se3di_mul(contact->slope, contact->change, less);
+            se3di_sub(contact->impulse, less, contact->impulse);
+        }
+        move(c, island, 1.0);
+        if (!(far > GUESSED)) {
+            break;
+        }
+        relax(c, island);
+    }
 }
 
 static se3d_status fail(const se3di_convex *c, se3di_equations *equations, double rest)
@@ -481,11 +569,7 @@ static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
         solve_free(c, equations, island);
     }
     ++equations->counters.iterations;
-    mul_mass(c, assembly, island, c->change, c->carried);
-    for (size_t k = island->contact; k < island->contact_end; ++k) {
-        se3di_convex_contact *contact = se3di_convex_at(c, k);
-        se3di_convex_velocity(contact, c->change, contact->change);
-    }
+    carry(c, assembly, island);
     move(c, island, is_first && assembly->row_count > 0 ? 1.0 : search(c, island));
     return SE3D_OK;
 }
@@ -495,17 +579,21 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
 {
     const se3di_assembly *assembly = &equations->assembly;
     double rest = HUGE_VAL;
-    begin(c, assembly, island);
+    if (begin(c, assembly, island)) {
+        approach(c, equations, island);
+    }
     for (int k = 0; k < ITERATIONS; ++k) {
         SE3DI_TRY(se3di_equations_ask(equations));
-        if (k < FOLLOWING) {
+        const int waits = assembly->row_count == 0 && k > 0 && !(rest <= MAY_FOLLOW);
+        if (k < FOLLOWING && !waits) {
             follow(c, island);
         }
         evaluate(c, island, 1);
         const double before = rest;
         rest = measure(c, equations, island);
         const int stays = k >= FOLLOWING && rest <= ENOUGH && rest >= 0.5 * before;
-        if ((k > 0 || assembly->row_count == 0) && (rest <= ACCURACY || stays)) {
+        if ((k > 0 || assembly->row_count == 0) && (rest <= ACCURACY || stays) &&
+            (!waits || k >= FOLLOWING)) {
             return SE3D_OK;
         }
         SE3DI_TRY(iterate(c, equations, island, k == 0));

@@ -11,10 +11,12 @@
 #include <math.h>
 #include <string.h>
 
-#define SWEEPS 50
-#define LOOKS  3    /* for an impulse of a spring that is not linear */
-#define CALM   1e-3 /* of the largest impulse: changes that need no other sweep */
-#define NEAR   1e-6 /* of an impulse: what is left of it */
+#define SWEEPS         20
+#define SWEEPS_AT_REST 2    /* impulses are those of the step before */
+#define SWEEPS_BETWEEN 8    /* guesses of all contacts at once */
+#define LOOKS          3    /* for an impulse of a spring that is not linear */
+#define CALM           1e-3 /* of the largest impulse: changes that need no other sweep */
+#define NEAR           1e-6 /* of an impulse: what is left of it */
 
 /* What an impulse on the point does to its velocity. */
 static void respond(const se3di_convex *c, se3di_convex_contact *contact)
@@ -74,13 +76,13 @@ static double find_normal(const se3di_convex_contact *contact, double h, double 
     return p;
 }
 
-/* The impulse of a contact while all others stay. Returns how much it changed. */
-static double settle(se3di_convex *c, se3di_convex_contact *contact)
+/* The impulse p that its law asks for where `impulse` left the velocity v, while all others stay.
+ */
+static void find_impulse(const se3di_convex *c, const se3di_convex_contact *contact,
+                         const double v[3], double p[3])
 {
     const double *n = contact->normal;
     const double *response = contact->response;
-    double v[3], p[3], change[3];
-    se3di_convex_slip(contact, c->v, v);
     const double vn = se3di_dot(v, n), before = se3di_dot(contact->impulse, n);
     const double normal = find_normal(contact, c->h, vn - response[0] * before, response[0]);
     const double share = 1.0 / (1.0 + contact->drag * response[1]);
@@ -92,9 +94,32 @@ static double settle(se3di_convex *c, se3di_convex_contact *contact)
     const double size = se3di_norm(p), cap = contact->friction * normal;
     se3di_scale(size > cap ? cap / size : 1.0, p, p);
     se3di_add_scaled(normal, n, p);
+}
+
+/* Give it that impulse. Returns how much it changed. */
+static double settle(se3di_convex *c, se3di_convex_contact *contact)
+{
+    double v[3], p[3], change[3];
+    se3di_convex_slip(contact, c->v, v);
+    find_impulse(c, contact, v, p);
     se3di_sub(p, contact->impulse, change);
     se3di_copy(p, contact->impulse);
     apply(c, contact, change);
+    return se3di_norm(change);
+}
+
+double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3])
+{
+    const double *n = contact->normal, *response = contact->response;
+    double p[3], change[3];
+    find_impulse(c, contact, contact->v, p);
+    se3di_sub(p, contact->impulse, change);
+    const double along = se3di_dot(change, n);
+    for (int k = 0; k < 3; ++k) {
+        ahead[k] =
+            contact->v[k] + response[1] * change[k] + (response[0] - response[1]) * along * n[k];
+    }
+    contact->bound = contact->friction * se3di_dot(p, n);
     return se3di_norm(change);
 }
 
@@ -111,11 +136,11 @@ static void remember(se3di_convex *c, const se3di_convex_island *island)
     }
 }
 
-void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
+/* Returns the sweeps after which hardly anything changed any more. */
+static int sweep_all(se3di_convex *c, const se3di_convex_island *island, int most)
 {
     const size_t count = island->contact_end - island->contact;
-    remember(c, island);
-    for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+    for (int sweep = 0; sweep < most; ++sweep) {
         double change = 0.0, largest = 0.0;
         for (size_t k = 0; k < count; ++k) {
             const size_t at = sweep % 2 ? count - 1 - k : k;
@@ -124,7 +149,26 @@ void se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
             largest = fmax(largest, se3di_norm(contact->impulse));
         }
         if (!(change > CALM * largest)) {
-            break;
+            return sweep;
         }
     }
+    return most;
+}
+
+int se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
+{
+    remember(c, island);
+    return sweep_all(c, island, SWEEPS) <= SWEEPS_AT_REST;
+}
+
+void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island)
+{
+    for (size_t k = island->body; k < island->body_end; ++k) {
+        const double *mobility = c->mobility + 10 * k, *gradient = c->gradient + 6 * k;
+        double turned[3];
+        se3di_mul(mobility + 1, gradient + 3, turned);
+        se3di_add_scaled(-mobility[0], gradient, c->v + 6 * k);
+        se3di_sub(c->v + 6 * k + 3, turned, c->v + 6 * k + 3);
+    }
+    (void)sweep_all(c, island, SWEEPS_BETWEEN);
 }
