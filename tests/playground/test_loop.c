@@ -142,6 +142,25 @@ static void check_particles(void)
     CHECK_CONTAINS(state, "\"grains\":\"");
 }
 
+/* What the list of the page has of grains runs, and shows them. */
+static void check_examples(void)
+{
+    static const char *const names[] = {"bucket",        "cantilever",    "chute",     "hopper",
+                                        "oedometer",     "pebbles",       "shear_box", "silo",
+                                        "pushed_grains", "rotating_drum", "triaxial"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        char name[100];
+        snprintf(name, sizeof name, "examples/models/%s.yaml", names[k]);
+        CHECK(*se3d_play_open(name) == '\0');
+        CHECK_CONTAINS(se3d_play_take_scene(), "\"glb\"");
+        CHECK(se3d_play_turn() >= 0.0);
+        const char *state = se3d_play_take_state();
+        CHECK_CONTAINS(state, "\"trouble\":\"\"");
+        CHECK_CONTAINS(state, "\"grains\":\"");
+        CHECK(read_number(state, "\"t\":") > 0.0);
+    }
+}
+
 static void check_refusals(void)
 {
     char words[300];
@@ -168,6 +187,7 @@ int main(void)
     check_orders();
     check_saving();
     check_particles();
+    check_examples();
     check_refusals();
     remove(path);
     return check_finish();

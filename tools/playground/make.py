@@ -72,10 +72,10 @@ def compile_all(sources, headers):
 
 
 def find_models():
-    """The text of every model that can be shown, and of what it reads, by its name."""
+    """The text of every example model, and of what it reads, by its name."""
     files = {}
     for path in sorted((ROOT / "examples/models").rglob("*")):
-        if path.is_file() and "\nparticles:" not in path.read_text():
+        if path.is_file():
             files[str(path.relative_to(ROOT / "examples/models"))] = path.read_text()
     return files
 
