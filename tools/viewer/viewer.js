@@ -139,14 +139,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     else displace(shape, much * Math.exp(-4 * phase), 0);
   };
   const pose = (t) => {
-    if (places) { put(); return; }
-    if (shape) { shake(); return; }
-    follow(t);
+    if (places) put();
+    else if (shape) shake();
+    else follow(t);
   };
-  const follow = (t) => {
-    motion.show(t);
-    if (secondMotion) secondMotion.show(t);
-  };
+  const follow = (t) => { motion.show(t); if (secondMotion) secondMotion.show(t); };
 
   // Results beside the motion.
   const n = results.names.length;
@@ -290,9 +287,9 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
     const reckon = (o) => {
       if (!o.isMesh || !o.visible) return;
-      if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
+      if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands or is a lid is hardly seen
         o.userData.isPlane = true;
-        if (Math.abs(va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z) < 0.5) o.material.opacity = 0.08;
+        if (va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z < 0.5) o.material.opacity = 0.08;
         return;
       }
       if (!o.geometry.boundingBox) o.geometry.computeBoundingBox();
@@ -385,11 +382,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const ray = new THREE.Raycaster(), solids = [];
   root.traverse((o) => { if (o.isMesh && !o.userData.wire && o.geometry.attributes.normal) solids.push(o); });
   const pin = shown.reduce((least, e) => Math.min(least, e.place.scale.x), 0.02 * size);
-  const blockers = (eye, point, own) => {
+  const blockers = (eye, point, own, near = 1.05) => {
     vb.copy(point).sub(eye);
     const way = vb.length();
     ray.set(eye, vb.normalize());
-    ray.near = 0; ray.far = Math.max(0, way - 1.05 * pin);
+    ray.near = 0; ray.far = Math.max(0, way - near * pin);
     return ray.intersectObjects(solids, false).map((hit) => hit.object).filter((o) => o.material.opacity === 1 && !own.includes(o));
   };
   const tight = new Set(); // what leaves nothing of a joint
@@ -405,11 +402,15 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       eye.copy(direction(azimuth, height)).multiplyScalar(orbit.distance).add(state.follow > 0 ? bodies[state.follow].position : orbit.target);
       shown.forEach((e, i) => {
         if (i % stride) return;
-        const around = [[0, 0, 0], [0, 0, 0.45], [0, 0, -0.45], [0.9, 0, 0], [-0.9, 0, 0], [0, 0.9, 0], [0, -0.9, 0]]
-          .map((p) => blockers(eye, at.fromArray(p).applyMatrix4(e.place.matrixWorld), e.parts));
-        const free = around.filter((list) => !list.length).length;
+        const lookAround = (near) => [[0, 0, 0], [0, 0, 0.9], [0, 0, -0.9], [0.9, 0, 0], [-0.9, 0, 0], [0, 0.9, 0], [0, -0.9, 0]]
+          .map((p) => blockers(eye, at.fromArray(p).multiply(e.place.geometry.boundingBox.max).applyMatrix4(e.place.matrixWorld), e.parts, near));
+        const around = lookAround(), free = around.filter((list) => !list.length).length;
         if (free < 2) found.push(around[0].length ? around[0] : around.find((list) => list.length));
-        if (free === 0) around.flat().forEach((o) => tight.add(o));
+        if (count < 4) return;
+        const close = lookAround(0.05); // what fits around it closely
+        if (!close.every((list) => list.some((o) => o.name === "shape"))) return;
+        found.push(close[0]);
+        close.flat().forEach((o) => tight.add(o));
       });
       if (grains) {
         grains.move(t);
@@ -643,10 +644,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
 
   const plots = se3dPlots($("plots"), { names: results.names, units: results.units, rows: () => rows, at, seek: (t) => { if (!live) { set({ time: t, playing: false }); draw(); } } });
   addEventListener("resize", () => plots.resize(), { signal: closing.signal });
-  const plot = () => {
-    if (live) plots.refresh();
-    plots.time(state.time);
-  };
+  const plot = () => { if (live) plots.refresh(); plots.time(state.time); };
 
   const set = (change) => {
     Object.assign(state, change);
