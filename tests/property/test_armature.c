@@ -485,6 +485,48 @@ static void a_rotor_lowers_the_frequency(void)
     se3d_system_destroy(p.system);
 }
 
+/* Two discs on one axis, the second on the first, whose rotor turns by the difference:
+ *
+ *     M = [J1 + I, -I; -I, J2 + I],  K = [k1 + k2, -k2; -k2, k2] */
+static void a_rotor_between_bodies_couples_their_modes(void)
+{
+    const double none[3] = {0.0}, z[3] = {0.0, 0.0, 1.0};
+    const double J[2][3] = {{1.0, 1.0, 0.7}, {1.0, 1.0, 0.4}}, k[2] = {30.0, 50.0};
+    se3d_system *system = NULL;
+    se3d_body before;
+    se3d_modes_def def = se3d_modes_def_default();
+    se3d_modes *modes = NULL;
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_system_set_gravity(system, none));
+    CHECK(!se3d_system_get_ground(system, &before));
+    for (int b = 0; b < 2; ++b) {
+        se3d_rsda_def spring = se3d_rsda_def_default();
+        se3d_force force;
+        const se3d_body disc = world_add_body(system, 2.0, J[b], none);
+        spring.joint =
+            world_join(system, se3d_joint_create_revolute, b ? "b" : "a", before, disc, none, z);
+        spring.k = k[b];
+        CHECK(!se3d_force_create_rsda(system, &spring, &force));
+        if (b) {
+            (void)add_armature(system, spring.joint, SE3D_JOINT_COORDINATE_ANGLE, ROTOR);
+        }
+        before = disc;
+    }
+    CHECK(!se3d_modes_create(system, &def, &modes));
+    const double m = J[0][2] + ROTOR, n = J[1][2] + ROTOR;
+    const double a = m * n - ROTOR * ROTOR;
+    const double b = m * k[1] + n * (k[0] + k[1]) - 2.0 * ROTOR * k[1];
+    const double root = sqrt(b * b - 4.0 * a * k[0] * k[1]);
+    for (int mode = 0; mode < 2; ++mode) {
+        se3d_eigenvalue value;
+        const double w = sqrt(0.5 * (mode ? b + root : b - root) / a);
+        CHECK(!se3d_modes_get_eigenvalue(modes, (size_t)mode, &value));
+        CHECK_NEAR(value.imaginary, w, 1e-12 * w);
+    }
+    se3d_modes_destroy(modes);
+    se3d_system_destroy(system);
+}
+
 /* Its displacement goes with the angle. */
 static void a_screw_has_it_on_its_angle(void)
 {
@@ -535,6 +577,7 @@ int main(void)
     RUN(loops_have_armatures_on_any_joint);
     RUN(a_new_inertia_acts_at_once_and_is_audited);
     RUN(a_rotor_lowers_the_frequency);
+    RUN(a_rotor_between_bodies_couples_their_modes);
     RUN(a_screw_has_it_on_its_angle);
     return check_finish();
 }
