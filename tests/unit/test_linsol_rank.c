@@ -210,6 +210,27 @@ static void least_norm_solution_is_exact_and_orthogonal_to_the_null_space(void)
     }
 }
 
+/* More equations than unknowns, of full rank and consistent: the solution is the one they have. */
+static void unique_solutions_are_found(void)
+{
+    enum { M = 7, N = 4 };
+    static const double wanted[N] = {0.5, -2.0, 3.0, 0.25};
+    double A[M * N], g[M] = {0.0}, l[N];
+    int32_t rank = 0;
+    fill_random(A, (size_t)M * N, 11);
+    for (int c = 0; c < N; ++c) {
+        for (int r = 0; r < M; ++r) {
+            A[c * M + r] *= 1.0 + c; /* columns of other lengths are taken in another order */
+            g[r] += A[c * M + r] * wanted[c];
+        }
+    }
+    CHECK(se3di_rank_least_norm(&memory, M, N, A, g, 1e-10, l, &rank) == SE3D_OK);
+    CHECK(rank == N);
+    for (int c = 0; c < N; ++c) {
+        CHECK_NEAR(l[c], wanted[c], 1e-13);
+    }
+}
+
 /* b <- (L L^T)^-1 b */
 static void solve_cholesky(size_t n, const double *L, double *b)
 {
@@ -294,6 +315,7 @@ int main(void)
     RUN(tolerance_decides_what_is_dependent);
     RUN(a_failing_allocation_leaves_nothing_behind);
     RUN(least_norm_solution_is_exact_and_orthogonal_to_the_null_space);
+    RUN(unique_solutions_are_found);
     RUN(small_and_large_factorisations_solve);
     RUN(singular_matrices_are_refused);
     return check_finish();
