@@ -52,6 +52,13 @@ static se3di_handle add_named(se3di_slots *slots, uint32_t owner, const char *na
     return handle;
 }
 
+/* What is replaced by something of this name; SE3DI_NO_INDEX: nothing, it is new. */
+static uint32_t find_replaced(const se3di_model *model, const se3di_slots *slots, uint32_t owner,
+                              const char *name)
+{
+    return model->replaces && name ? se3di_slots_find_name(slots, owner, name) : SE3DI_NO_INDEX;
+}
+
 /* Take the object `dense` out, and its name. */
 static void remove_named(se3di_model *model, se3di_slots *slots, uint32_t dense, uint32_t owner,
                          char *name)
@@ -213,11 +220,31 @@ void se3di_model_touch_values(se3di_model *model)
     se3di_model_touch_inputs(model);
 }
 
+static void replace_body(se3di_model *model, uint32_t index, const se3di_body *body,
+                         const se3di_frame *frame)
+{
+    se3di_body *old = &model->bodies[index];
+    char *name = old->name;
+    const uint32_t users = old->users;
+    *old = *body;
+    old->name = name;
+    old->users = users;
+    model->frames[index] = *frame;
+    memset(model->acceleration + 6 * (size_t)index, 0, 6 * sizeof *model->acceleration);
+    se3di_model_touch(model);
+}
+
 se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
                                  const se3di_frame *frame, se3di_handle *handle)
 {
     size_t count = model->body_slots.count;
     char *name;
+    const uint32_t old = find_replaced(model, &model->body_slots, 0, body->name);
+    if (old != SE3DI_NO_INDEX) {
+        replace_body(model, old, body, frame);
+        *handle = se3di_slots_handle(&model->body_slots, old);
+        return SE3D_OK;
+    }
     RESERVE(model, bodies, body_capacity, count + 1, sizeof *model->bodies);
     RESERVE(model, frames, frame_capacity, count + 1, sizeof *model->frames);
     RESERVE(model, acceleration, acceleration_capacity, count + 1, 6 * sizeof *model->acceleration);
@@ -324,6 +351,14 @@ se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marke
 {
     size_t count = model->marker_slots.count;
     char *name;
+    const uint32_t owner = se3di_model_owner(model, marker->body);
+    const uint32_t old = find_replaced(model, &model->marker_slots, owner, marker->name);
+    if (old != SE3DI_NO_INDEX) {
+        memcpy(model->markers[old].s, marker->s, sizeof marker->s);
+        memcpy(model->markers[old].p, marker->p, sizeof marker->p);
+        *handle = se3di_slots_handle(&model->marker_slots, old);
+        return SE3D_OK;
+    }
     RESERVE(model, markers, marker_capacity, count + 1, sizeof *model->markers);
     SE3DI_TRY(se3di_slots_reserve(&model->marker_slots, &model->allocator));
     SE3DI_TRY(copy_name(model, &model->marker_slots, marker->name, &name));
@@ -331,7 +366,7 @@ se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marke
     model->markers[count].name = name;
     model->markers[count].users = 0;
     ++model->bodies[marker->body].users;
-    *handle = add_named(&model->marker_slots, se3di_model_owner(model, marker->body), name);
+    *handle = add_named(&model->marker_slots, owner, name);
     return SE3D_OK;
 }
 
@@ -405,24 +440,55 @@ static void count_constraint_users(se3di_model *model, const se3di_constraint *c
     }
 }
 
-/* Angle terms of the joint's own rows (a screw) refer to the turn counter that is being made. */
-static void place_terms(se3di_model *model, const se3di_draft *draft, int32_t own_angle)
+/* Put the rows and terms of a draft where `constraint` has its own. Angle terms of the joint's own
+ * rows (a screw) refer to its turn counter. */
+static void place_terms(se3di_model *model, const se3di_draft *draft,
+                        const se3di_constraint *constraint)
 {
     if (draft->term_count > 0) { /* a callback's rows have none */
-        memcpy(model->terms + model->term_count, draft->terms,
+        memcpy(model->terms + constraint->term_begin, draft->terms,
                draft->term_count * sizeof *draft->terms);
     }
     for (uint32_t k = 0; k < draft->term_count; ++k) {
-        se3di_term *term = &model->terms[model->term_count + k];
+        se3di_term *term = &model->terms[constraint->term_begin + k];
         if (draft->has_angle && term->type == SE3DI_PRIMITIVE_ANGLE && term->angle < 0) {
-            term->angle = own_angle;
+            term->angle = constraint->angle;
         }
     }
     for (uint32_t k = 0; k < draft->row_count; ++k) {
-        model->rows[model->row_count + k] = draft->rows[k];
-        model->rows[model->row_count + k].term_begin += (uint32_t)model->term_count;
-        model->lambda[model->row_count + k] = 0.0;
+        const uint32_t row = constraint->row_begin + k;
+        model->rows[row] = draft->rows[k];
+        model->rows[row].term_begin += constraint->term_begin;
+        model->lambda[row] = 0.0;
     }
+    if (draft->has_angle) {
+        model->angles[constraint->angle] = draft->angle;
+    }
+}
+
+/* A constraint with as many rows and terms, and with a turn counter or without, takes the place of
+ * another one. */
+static se3d_status replace_constraint(se3di_model *model, uint32_t index, const se3di_draft *draft)
+{
+    se3di_constraint *constraint = &model->constraints[index];
+    const se3di_constraint old = *constraint;
+    if (strcmp(old.type, draft->constraint.type) != 0 || old.row_count != draft->row_count ||
+        old.term_count != draft->term_count || (old.angle >= 0) != (draft->has_angle != 0)) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    count_constraint_users(model, &old, UINT32_MAX);
+    *constraint = draft->constraint;
+    constraint->name = old.name;
+    constraint->users = old.users;
+    constraint->row_begin = old.row_begin;
+    constraint->row_count = old.row_count;
+    constraint->term_begin = old.term_begin;
+    constraint->term_count = old.term_count;
+    constraint->angle = old.angle;
+    place_terms(model, draft, constraint);
+    count_constraint_users(model, constraint, 1);
+    se3di_model_touch(model);
+    return SE3D_OK;
 }
 
 se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *draft,
@@ -431,6 +497,11 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
     size_t count = model->constraint_slots.count;
     size_t rows = model->row_count + draft->row_count;
     char *name;
+    const uint32_t old = find_replaced(model, &model->constraint_slots, 0, draft->constraint.name);
+    if (old != SE3DI_NO_INDEX) {
+        *handle = se3di_slots_handle(&model->constraint_slots, old);
+        return replace_constraint(model, old, draft);
+    }
     RESERVE(model, constraints, constraint_capacity, count + 1, sizeof *model->constraints);
     RESERVE(model, rows, row_capacity, rows, sizeof *model->rows);
     RESERVE(model, lambda, lambda_capacity, rows, sizeof *model->lambda);
@@ -448,10 +519,8 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
     constraint->term_begin = (uint32_t)model->term_count;
     constraint->term_count = draft->term_count;
     constraint->angle = draft->has_angle ? (int32_t)model->angle_count : -1;
-    place_terms(model, draft, constraint->angle);
-    if (draft->has_angle) {
-        model->angles[model->angle_count++] = draft->angle;
-    }
+    place_terms(model, draft, constraint);
+    model->angle_count += draft->has_angle ? 1 : 0;
     model->row_count += draft->row_count;
     model->term_count += draft->term_count;
     count_constraint_users(model, constraint, 1);
@@ -553,11 +622,45 @@ void se3di_force_release(const se3d_allocator *allocator, se3di_force *force)
     force->tyre = NULL;
 }
 
+/* Of a tyre the states of its slips stay. */
+static int has_same_lags(const se3di_tyre *a, const se3di_tyre *b)
+{
+    return (a != NULL) == (b != NULL) &&
+           (!a || (a->lags[0] == b->lags[0] && a->lags[1] == b->lags[1]));
+}
+
+static se3d_status replace_force(se3di_model *model, uint32_t index, const se3di_force *force)
+{
+    se3di_force *old = &model->forces[index];
+    se3di_force own = *force;
+    if (old->type != force->type || old->type == SE3DI_FORCE_STATE ||
+        old->owns_angle != force->owns_angle || !has_same_lags(old->tyre, force->tyre)) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    SE3DI_TRY(se3di_force_own(&model->allocator, &own));
+    if (own.tyre) {
+        memcpy(own.tyre->carrier, old->tyre->carrier, sizeof own.tyre->carrier);
+    }
+    own.name = old->name;
+    own.users = old->users;
+    count_force_users(model, old, UINT32_MAX);
+    se3di_force_release(&model->allocator, old);
+    *old = own;
+    count_force_users(model, old, 1);
+    se3di_model_touch(model);
+    return SE3D_OK;
+}
+
 se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
                                   se3di_handle *handle)
 {
     size_t count = model->force_slots.count;
     se3di_force own = *force;
+    const uint32_t old = find_replaced(model, &model->force_slots, 0, force->name);
+    if (old != SE3DI_NO_INDEX) {
+        *handle = se3di_slots_handle(&model->force_slots, old);
+        return replace_force(model, old, force);
+    }
     RESERVE(model, forces, force_capacity, count + 1, sizeof *model->forces);
     SE3DI_TRY(se3di_slots_reserve(&model->force_slots, &model->allocator));
     SE3DI_TRY(se3di_force_own(&model->allocator, &own));
@@ -579,11 +682,14 @@ se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_for
                                              const se3di_angle *angle, se3di_handle *handle)
 {
     se3di_force owner = *force;
+    const uint32_t old = find_replaced(model, &model->force_slots, 0, force->name);
+    const int is_new = old == SE3DI_NO_INDEX;
     RESERVE(model, angles, angle_capacity, model->angle_count + 1, sizeof *model->angles);
-    owner.angle = (int32_t)model->angle_count;
+    owner.angle = is_new ? (int32_t)model->angle_count : model->forces[old].angle;
     owner.owns_angle = 1;
     SE3DI_TRY(se3di_model_add_force(model, &owner, handle));
-    model->angles[model->angle_count++] = *angle;
+    model->angles[owner.angle] = *angle;
+    model->angle_count += is_new ? 1 : 0;
     return SE3D_OK;
 }
 
@@ -622,6 +728,9 @@ se3d_status se3di_model_add_state(se3di_model *model, const se3di_force *state, 
     se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}, .v = {z, 0.0, 0.0}};
     se3di_force data = *state;
     se3di_handle carrier;
+    if (find_replaced(model, &model->force_slots, 0, state->name) != SE3DI_NO_INDEX) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
     se3di_frame_update(&frame);
     SE3DI_TRY(se3di_model_add_body(model, &body, &frame, &carrier));
     data.body_j = (uint32_t)model->body_slots.count - 1;
@@ -655,8 +764,12 @@ static void remove_lags(se3di_model *model, uint32_t tyre)
 se3d_status se3di_model_add_tyre(se3di_model *model, const se3di_force *force,
                                  const se3di_force *lag, se3di_handle *handle)
 {
+    const size_t before = model->force_slots.count;
     SE3DI_TRY(se3di_model_add_force(model, force, handle));
-    const uint32_t tyre = (uint32_t)model->force_slots.count - 1;
+    if (model->force_slots.count == before) {
+        return SE3D_OK; /* replaced, its states are there */
+    }
+    const uint32_t tyre = (uint32_t)before;
     for (int k = 0; k < 2; ++k) {
         se3di_force state = *lag;
         se3di_handle unused;
@@ -725,19 +838,48 @@ static void count_wheel_users(se3di_model *model, const se3di_wheel *wheel, uint
     }
 }
 
+/* Let the wheel across know, and any other that was across no longer. */
+static void pair_wheel(se3di_model *model, uint32_t index)
+{
+    const int32_t opposite = model->wheels[index].opposite;
+    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
+        if (model->wheels[k].opposite == (int32_t)index && (int32_t)k != opposite) {
+            model->wheels[k].opposite = -1;
+        }
+    }
+    if (opposite >= 0) {
+        model->wheels[opposite].opposite = (int32_t)index;
+    }
+}
+
+static void replace_wheel(se3di_model *model, uint32_t index, const se3di_wheel *wheel)
+{
+    se3di_wheel *old = &model->wheels[index];
+    char *name = old->name;
+    count_wheel_users(model, old, UINT32_MAX);
+    *old = *wheel;
+    old->name = name;
+    count_wheel_users(model, old, 1);
+    pair_wheel(model, index);
+}
+
 se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
                                   se3di_handle *handle)
 {
     size_t count = model->wheel_slots.count;
     char *name;
+    const uint32_t old = find_replaced(model, &model->wheel_slots, 0, wheel->name);
+    if (old != SE3DI_NO_INDEX) {
+        replace_wheel(model, old, wheel);
+        *handle = se3di_slots_handle(&model->wheel_slots, old);
+        return SE3D_OK;
+    }
     RESERVE(model, wheels, wheel_capacity, count + 1, sizeof *model->wheels);
     SE3DI_TRY(se3di_slots_reserve(&model->wheel_slots, &model->allocator));
     SE3DI_TRY(copy_name(model, &model->wheel_slots, wheel->name, &name));
     model->wheels[count] = *wheel;
     model->wheels[count].name = name;
-    if (wheel->opposite >= 0) {
-        model->wheels[wheel->opposite].opposite = (int32_t)count;
-    }
+    pair_wheel(model, (uint32_t)count);
     count_wheel_users(model, wheel, 1);
     *handle = add_named(&model->wheel_slots, 0, name);
     return SE3D_OK;

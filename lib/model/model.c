@@ -293,6 +293,7 @@ static se3d_status clone_arrays(const se3di_model *model, se3di_model *copy)
 se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
 {
     *copy = *model;
+    copy->replaces = 0;
     disown(copy);
     se3di_model slots = *copy; /* slot counts stay zero in `copy` until its arrays are filled */
     se3d_status status = clone_slots(model, &slots);

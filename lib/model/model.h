@@ -250,6 +250,9 @@ typedef struct se3di_model {
     uint32_t left_out_row;   /* its row; 0 after it was told */
     int32_t shows_before;    /* 1: the halves of what force elements remember are exchanged, see
                                   se3di_forces_show */
+    int32_t replaces;        /* 1: what is added takes the place of what has its name, see
+                                  se3d_system_set_replacing; not copied by se3di_model_clone */
+    int32_t reserved;
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;

@@ -174,6 +174,23 @@ se3d_status se3di_check_name(se3d_system *system, const char *name)
     return SE3D_OK;
 }
 
+/* Whether a name of these may be given again. */
+static int may_be_replaced(const se3di_model *model, const se3di_slots *slots)
+{
+    return model->replaces && (slots == &model->body_slots || slots == &model->marker_slots ||
+                               slots == &model->constraint_slots || slots == &model->force_slots ||
+                               slots == &model->wheel_slots);
+}
+
+se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char *what)
+{
+    return added == SE3D_ERR_INVALID_ARGUMENT
+               ? SE3DI_FAIL_OF(system, "name", added,
+                               " is taken by another kind of element, which %s cannot replace",
+                               what)
+               : SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for %s", what);
+}
+
 se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
                                  const char *what, const char *name)
 {
@@ -181,7 +198,8 @@ se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, 
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_check_name(system, name));
-    if (se3di_slots_find_name(slots, owner, name) != SE3DI_NO_INDEX) {
+    if (!may_be_replaced(&system->model, slots) &&
+        se3di_slots_find_name(slots, owner, name) != SE3DI_NO_INDEX) {
         return SE3DI_FAIL_OF(system, "name", SE3D_ERR_INVALID_ARGUMENT,
                              " = \"%.64s\" is taken by another %s, must be unique", name, what);
     }
@@ -215,7 +233,7 @@ se3d_status se3di_give_created(se3d_system *system, se3d_status added, const cha
                                se3di_handle created, void *handle)
 {
     if (added < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for %s", what);
+        return se3di_fail_added(system, added, what);
     }
     memcpy(handle, &created, sizeof created);
     return SE3D_OK;

@@ -55,8 +55,7 @@ se3d_status se3di_constraint_add(se3d_system *system, const se3di_draft *draft,
     se3di_handle handle;
     se3d_status status = se3di_model_add_constraint(&system->model, draft, &handle);
     if (status < 0) {
-        return SE3DI_FAIL(system, status, "out of memory for a %s constraint",
-                          draft->constraint.type);
+        return se3di_fail_added(system, status, draft->constraint.type);
     }
     *constraint = (se3d_constraint){handle.index1, handle.generation};
     return SE3D_OK;

@@ -102,6 +102,13 @@ se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept)
     return SE3D_OK;
 }
 
+se3d_status se3d_system_set_replacing(se3d_system *system, int32_t on)
+{
+    SE3DI_EDIT(system);
+    system->model.replaces = on != 0;
+    return SE3D_OK;
+}
+
 void se3d_system_destroy(se3d_system *system)
 {
     if (!system || se3di_enter(system, SE3DI_BUSY_FREE, __func__) < 0) {

@@ -154,6 +154,9 @@ void se3di_audit_change(se3di_model *model, double before);
 double se3di_audit_contacts(const se3di_model *model);
 void se3di_audit_contacts_change(se3di_model *model, double before);
 
+/* Say why an element was not added: no memory, or another kind of element has its name. */
+se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char *what);
+
 /* `name` (not NULL) is well formed. */
 se3d_status se3di_check_name(se3d_system *system, const char *name);
 /* `name` is well formed and free among the elements of `slots`, of which it would be another

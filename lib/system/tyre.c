@@ -241,13 +241,10 @@ se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def
     }
     SE3DI_TRY(take_numbers(system, &full, &data));
     se3di_force lag = se3di_force_blank(SE3DI_FORCE_STATE, NULL);
-    se3di_handle handle;
+    se3di_handle handle = {0, 0};
     lag.rest = SLIP;
-    if (se3di_model_add_tyre(&system->model, &data, &lag, &handle) < 0) {
-        return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a tyre");
-    }
-    *force = (se3d_force){handle.index1, handle.generation};
-    return SE3D_OK;
+    const se3d_status added = se3di_model_add_tyre(&system->model, &data, &lag, &handle);
+    return se3di_give_created(system, added, "a tyre", handle, force);
 }
 
 se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,

@@ -203,6 +203,7 @@ CALL(system_set_gravity, a->system, a->in)
 CALL(system_get_gravity, a->system, a->out[0])
 CALL(system_set_log, a->system, NULL, NULL)
 CALL(system_set_kept, a->system, 0)
+CALL(system_set_replacing, a->system, 0)
 CALL(system_set_time, a->system, a->number)
 CALL(system_get_time, a->system, a->out[0])
 CALL(system_get_ground, a->system, a->out[0])
@@ -624,6 +625,7 @@ static const row rows[] = {
     {"se3d_system_get_gravity", call_system_get_gravity, "so0", NULL, NULL},
     {"se3d_system_set_log", call_system_set_log, "S", NULL, NULL},
     {"se3d_system_set_kept", call_system_set_kept, "S", NULL, NULL},
+    {"se3d_system_set_replacing", call_system_set_replacing, "S", NULL, NULL},
     {"se3d_system_set_time", call_system_set_time, "Sn", NULL, NULL},
     {"se3d_system_get_time", call_system_get_time, "so0", NULL, NULL},
     {"se3d_system_get_ground", call_system_get_ground, "sh0", NULL, NULL},

@@ -636,7 +636,7 @@ static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
         const char *file;
         uint64_t count;
         int kept;
-    } files[] = {{"study/damper", 7, 1}, {"fsae/two_wheels", 2, 0}};
+    } files[] = {{"study/damper", 7, 1}, {"fsae/two_wheels", 2, 1}};
     static const char head[] =
         "se3d: 1\nunits: {length: mm, angle: deg}\nparameters: {a: 2, m: 3*a + b, b: 1, J: 2e4, "
         "up: 30, x: 0, block: 1}\ngravity: [0, 0, -9810]\n"
@@ -661,8 +661,8 @@ static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
                 {"0", "", "J: [20000, -1, 3e4], up: [10, -500]", "up", 6, 1},
                 {"0", ", tolerance: 1e-9", "J: [2e4, 3e4]", "1", 2, 1},
                 {"10*x", "", "b: [1, 2]", "x", 2, 1},
-                {"10*a", "", "a: [2, 3]", "1", 2, 0},  /* where it stands */
-                {"x + m", "", "b: [1, 2]", "1", 2, 0}, /* through another parameter */
+                {"10*a", "", "a: [2, 3]", "1", 2, 1},  /* where it stands */
+                {"x + m", "", "b: [1, 2]", "1", 2, 1}, /* through another parameter */
                 {"0", "", "a: [2, 3]", "b, u: {max: a*pin.angle}", 2, 0}, /* what is measured */
                 {"0", ", method: radau, tolerance: 1e-6*a", "a: [1, 2]", "1", 2, 0}};
     char text[3000];
@@ -679,6 +679,60 @@ static void samples_are_set_in_place_with_the_bits_of_a_reading(void)
                  rows[k].last);
         se3d_model *model = read_model(text);
         compare_samples(model, rows[k].count, rows[k].kept);
+        se3d_model_destroy(model);
+    }
+}
+
+/* Two corners of a car, one of them mirrored: whatever is moved, what is made of it follows. */
+static void hardpoints_are_set_in_place_with_the_bits_of_a_reading(void)
+{
+    static const char head[] =
+        "se3d: 1\nunits: {length: mm, angle: deg}\nparameters: {y: 0, z: 0, k: 38, on: 1, drag: "
+        "3}\n"
+        "include:\n- {file: %s/examples/fsae/corner.yaml, prefix: l_, parameters: "
+        "{%s}}\n"
+        "- {file: %s/examples/fsae/corner.yaml, prefix: r_, mirror: y, parameters: {k: k}}\n"
+        "bodies:\n- {name: chassis, mass: 200, inertia: [1e7, 5e7, 5e7], fixed: true, markers: "
+        "[{name: eye, position: [9, y, 3]}]}\n- {name: rack, mass: 1, inertia: [1e3, 1e3, 1e3], "
+        "fixed: true}\nforces:\n- {name: bar, type: rsda, body_i: r_bar, body_j: l_bar, axis: [0, "
+        "1, "
+        "0], ref: [1, 0, 0], k: 100}\n- {name: pull, type: force, body: l_wheel, at: [0, 600, "
+        "228], "
+        "value: [0, 0, drag*t]}\n- {name: mount, type: bushing, body_i: ground, body_j: r_upright, "
+        "at: [0, -600, z], K: [90, 90, 110, 0, 0, 0], C: [1, 1, 1, 0, 0, 0]}\n"
+        "drivers:\n- {name: l_brake, joint: l_bearing, value: 0}\n- {name: r_brake, joint: "
+        "r_bearing, value: 0}\n- {name: side, joint: l_rocker_pin, value: 0.1*t}\n%s"
+        "analysis: {type: dynamics, duration: 0.01, method: dop853}\n"
+        "study: {parameters: {%s}, measures: {a: {final: l_hub.toe}, b: {final: l_hub.camber}, c: "
+        "{final: r_hub.travel}, d: {final: l_hub.motion_ratio}, e: {final: l_hub.track_change}, f: "
+        "{max: l_link_joint.force.z}, g: {final: energy.balance}, h: {final: "
+        "r_hub.ackermann_error}, "
+        "i: {final: %s}}}\n";
+    static const struct {
+        const char *given, *more, *parameters, *last;
+        int kept;
+    } rows[] = {
+        {"link_inner: \"[68, 213 + y, 152 + z]\"", "", "y: [0, 4, -3], z: [1]", "l_spring.force",
+         1},
+        {"hub: \"[y, 600, 228 + z]\", k: k", "", "y: [0, 6], z: [2], k: [38, 30]", "l_hub.caster",
+         1},
+        {"lower_ball: \"[y, 572, 130]\"", "", "y: [4, 1]", "mount.force.z", 1},
+        {"steered: on", "", "on: [1, 0]", "l_hub.toe", 0},
+        {"toe: y, k: k", "", "y: [0, 1]", "l_upright.position.x", 1},
+        {"", "", "z: [0, 5]", "mount.torque.x", 0}, /* about the point of the channel */
+        {"", "", "y: [0, 5]", "chassis.eye.position.y", 1},
+        {"", "events: [{name: up, channel: pull.force.z, value: 1, action: record}]\n",
+         "drag: [2, 5]", "pull.force.z", 0},
+    };
+    const char *folder = getenv("SE3D_SOURCE_DIR");
+    const char *source = folder ? folder : ".";
+    char text[6000];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        snprintf(text, sizeof text, head, source, rows[k].given, source, rows[k].more,
+                 rows[k].parameters, rows[k].last);
+        se3d_model *model = read_model(text);
+        CHECK(model != NULL);
+        compare_samples(model, 2, rows[k].kept);
         se3d_model_destroy(model);
     }
 }
@@ -734,6 +788,7 @@ int main(void)
     RUN(tables_have_a_row_for_each_sample);
     RUN(requests_are_answered);
     RUN(samples_are_set_in_place_with_the_bits_of_a_reading);
+    RUN(hardpoints_are_set_in_place_with_the_bits_of_a_reading);
     RUN(numbers_of_measures_are_those_of_their_sample);
     return check_finish();
 }

@@ -22,7 +22,7 @@ typedef struct se3di_component {
     const char *prefix;                   /* of its names, with those of its callers */
     const struct se3di_component *parent; /* that it is included in; NULL: the model */
     const se3di_node *caller;             /* the entry of `include` or `instances` */
-    const se3di_scope *scope;
+    se3di_scope *scope;
     size_t depth;
     se3di_placement place;
     struct se3di_component *next;

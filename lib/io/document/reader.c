@@ -138,6 +138,15 @@ bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_o
     return fail_unknown_type(reader, node, child, object);
 }
 
+bool se3di_reader_wants(const se3di_reader *reader, const se3di_node *node)
+{
+    bool wanted = !reader->wanted;
+    for (size_t k = 0; reader->wanted && k < reader->wanted->count && !wanted; ++k) {
+        wanted = reader->wanted->nodes[k] == node;
+    }
+    return wanted;
+}
+
 bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,
                      const se3di_node **list)
 {

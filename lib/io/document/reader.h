@@ -17,12 +17,21 @@ typedef struct se3di_measured {
     const char *written; /* the text before its channels became variables, of the same length */
 } se3di_measured;
 
+/* Entries of the lists of a part. */
+typedef struct se3di_again {
+    const se3di_node **nodes; /* [count] */
+    size_t count, capacity;
+} se3di_again;
+
 typedef struct se3di_reader {
     se3d_model *model; /* what the sections fill; below only what values need of it */
     se3di_iopool *pool;
     const char *file;
     se3d_system *system;         /* NULL: not made yet */
     const se3di_component *part; /* where it stands; NULL: not known yet */
+    const se3di_again *again;    /* [parts] the model was read before, and these entries are read
+                                  * again: the system replaces what has their names; NULL: all */
+    const se3di_again *wanted;   /* those of the part where it stands; NULL: all */
     const se3di_scope *scope;    /* names and units of the file */
     int alternative;             /* of the units of a key, "[m, rad]": 0, 1, ...; negative: any */
     se3di_measured measured;     /* in the expression at hand; names NULL: none */
@@ -66,6 +75,8 @@ bool se3di_check_whole(se3di_reader *reader, const se3di_node *node);
 /* The `type` of a map, one of `types`; `what` is "a joint type", ... */
 bool se3di_read_type(se3di_reader *reader, const se3di_node *node, const se3di_object *object,
                      const char **type);
+/* Whether an entry of a list is to be read, which it is but where only some are read again. */
+bool se3di_reader_wants(const se3di_reader *reader, const se3di_node *node);
 /* A list, or nothing (NULL or empty: *list is NULL). */
 bool se3di_read_list(se3di_reader *reader, const se3di_node *map, const char *key,
                      const se3di_node **list);

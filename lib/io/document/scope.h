@@ -33,6 +33,8 @@ typedef struct se3di_scope {
 /* Add a name that is not there yet. @return false: out of memory. */
 bool se3di_scope_add(se3di_scope *scope, se3di_iopool *pool, const char *name,
                      const se3di_amount *value);
+/* Give a name another value. @return false: it is of another kind than before, and stays */
+bool se3di_scope_renew(se3di_scope *scope, const char *name, const se3di_amount *value);
 const se3di_amount *se3di_scope_find(const se3di_scope *scope, const char *name);
 
 #endif

@@ -389,7 +389,9 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
         }
         (entry == 0 ? se3di_place_orientation : se3di_flip_orientation)(&reader->part->place,
                                                                         def.orientation);
-        if (se3di_ionames_find(&owner->markers, marker.name, NULL)) {
+        size_t known = 0;
+        const bool is_known = se3di_ionames_find(&owner->markers, marker.name, &known);
+        if (is_known && !reader->again) {
             return se3di_reader_fail(reader, name, "`%.60s` is the name of two markers",
                                      marker.name);
         }
@@ -399,6 +401,10 @@ static bool read_markers(se3di_reader *reader, const se3di_node *body, size_t en
         const se3d_status status = se3d_marker_create(model->system, &def, &marker.marker);
         if (status < 0) {
             return se3di_reader_fail_system(reader, node, status);
+        }
+        if (is_known) {
+            memcpy(model->markers[known].position, marker.position, sizeof marker.position);
+            continue;
         }
         se3di_marker_entry *grown =
             se3di_iopool_grow(&model->pool, model->markers, model->marker_count,
@@ -465,7 +471,7 @@ static bool read_body_name(se3di_reader *reader, const se3di_node *node, const c
     if (strcmp(*name, "ground") == 0) {
         return se3di_reader_fail(reader, child, "the name with its prefix is that of the ground");
     }
-    if (se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
+    if (!reader->again && se3di_ionames_find(&reader->model->body_names, *name, NULL)) {
         return se3di_reader_fail(reader, child, "`%.60s` is the name of two bodies", *name);
     }
     return true;
@@ -509,7 +515,11 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
     if (status < 0) {
         return se3di_reader_fail_system(reader, node, status);
     }
-    const size_t entry = reader->model->body_count;
+    size_t entry = reader->model->body_count;
+    if (reader->again) {
+        return se3di_ionames_find(&reader->model->body_names, name, &entry) &&
+               read_markers(reader, node, entry);
+    }
     return add_body(reader, name, node, body) && read_markers(reader, node, entry) &&
            (!se3di_is_bar(node) || se3di_add_bar_shapes(reader, node, &bar, entry)) &&
            se3di_read_shapes(reader, node, entry);
@@ -527,6 +537,9 @@ bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
+        if (!se3di_reader_wants(reader, node)) {
+            continue;
+        }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_body(reader, node))) {
             return false;
         }

@@ -140,6 +140,9 @@ bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
+        if (!se3di_reader_wants(reader, node)) {
+            continue;
+        }
         if (!se3di_read_when(reader, node, &wanted)) {
             return false;
         }

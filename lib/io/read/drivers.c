@@ -138,7 +138,7 @@ static bool read_drivers(se3di_reader *reader, const se3di_node *root, follows w
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
-        if (find_follows(reader, node) != which) {
+        if (!se3di_reader_wants(reader, node) || find_follows(reader, node) != which) {
             continue;
         }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_driver(reader, node))) {

@@ -18,6 +18,17 @@ const char *const se3di_coordinates[] = {[SE3D_JOINT_COORDINATE_ANGLE] = "angle"
 static const char *const kind_texts[] = {"joint", "constraint", "driver", "force",
                                          "wheel", "state",      "road"};
 
+static void begin_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
+                          const char *name, se3di_element_entry *entry)
+{
+    memset(entry, 0, sizeof *entry);
+    entry->name = name;
+    entry->node = node;
+    entry->part = reader->part;
+    entry->kind = kind;
+    reader->alternative = 0;
+}
+
 bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_element_kind kind,
                         se3di_element_entry **entry)
 {
@@ -36,7 +47,13 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
             return se3di_reader_fail_memory(reader);
         }
     }
-    if (se3di_ionames_find(&model->element_names, name, NULL)) {
+    size_t known = 0;
+    if (se3di_ionames_find(&model->element_names, name, &known)) {
+        if (reader->again && model->elements[known].node == node) {
+            *entry = &model->elements[known];
+            begin_element(reader, node, kind, (*entry)->name, *entry);
+            return true;
+        }
         return se3di_reader_fail_key(
             reader, node, "name",
             "`%.60s` is the name of two elements: joints, constraints, "
@@ -53,12 +70,7 @@ bool se3di_read_element(se3di_reader *reader, const se3di_node *node, se3di_elem
     }
     model->elements = grown;
     *entry = &model->elements[model->element_count++];
-    memset(*entry, 0, sizeof **entry);
-    (*entry)->name = name;
-    (*entry)->node = node;
-    (*entry)->part = reader->part;
-    (*entry)->kind = kind;
-    reader->alternative = 0;
+    begin_element(reader, node, kind, name, *entry);
     return true;
 }
 

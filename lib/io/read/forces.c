@@ -599,6 +599,9 @@ bool se3di_read_forces(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
+        if (!se3di_reader_wants(reader, node)) {
+            continue;
+        }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_force(reader, node))) {
             return false;
         }

@@ -128,6 +128,9 @@ bool se3di_read_joints(se3di_reader *reader, const se3di_node *root)
     for (int round = 0; round < 2; ++round) {
         for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
             bool wanted = true;
+            if (!se3di_reader_wants(reader, node)) {
+                continue;
+            }
             if (!se3di_read_when(reader, node, &wanted) ||
                 !se3di_read_type(reader, node, &se3di_object_joint, &type) ||
                 (wanted && (find_coupling(type) != NULL) == (round == 1) &&

@@ -184,14 +184,20 @@ static bool create_system(se3di_reader *reader, const se3di_node *root)
 static bool read_section(se3di_reader *reader,
                          bool (*read)(se3di_reader *reader, const se3di_node *root))
 {
-    for (const se3di_component *part = reader->model->parts; part; part = part->next) {
-        se3di_reader_enter(reader, part);
-        if (!read(reader, part->root)) {
-            return false;
+    size_t index = 0;
+    bool good = true;
+    for (const se3di_component *part = reader->model->parts; part && good; part = part->next) {
+        reader->wanted = reader->again ? &reader->again[index++] : NULL;
+        if (!reader->wanted || reader->wanted->count > 0) {
+            se3di_reader_enter(reader, part);
+            good = read(reader, part->root);
         }
     }
-    se3di_reader_enter(reader, reader->model->parts);
-    return true;
+    if (good) {
+        reader->wanted = NULL;
+        se3di_reader_enter(reader, reader->model->parts);
+    }
+    return good;
 }
 
 /* What moves and what acts on it. */
@@ -224,6 +230,15 @@ static bool is_geometric(const se3di_reader *reader, const se3di_node *root)
         }
     }
     return is_list ? all->count > 0 : all != NULL;
+}
+
+bool se3di_read_mechanism_again(se3di_reader *reader, const se3di_node *root)
+{
+    reader->is_geometric = is_geometric(reader, root);
+    return read_section(reader, se3di_read_bodies) && read_section(reader, se3di_read_joints) &&
+           read_section(reader, se3di_read_constraints) &&
+           read_section(reader, se3di_read_drivers) && read_section(reader, se3di_read_forces) &&
+           read_section(reader, se3di_read_followers) && read_section(reader, se3di_read_wheels);
 }
 
 static bool read_model(se3di_reader *reader, se3di_library *library, const se3di_node *root)

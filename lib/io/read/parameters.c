@@ -158,19 +158,16 @@ bool se3di_read_value(se3di_reader *reader, const se3di_node *node, se3di_amount
 }
 
 /* What the caller gives for a point is in the units of the caller. */
-static bool take_given(const resolver *r, const parameter *p, se3di_amount *value)
+static bool take_given(se3di_reader *reader, const se3di_component *caller, const se3di_node *node,
+                       se3di_amount *value)
 {
     const se3di_measure metre = {{1, 0, 0, 0}, 1.0, 1.0};
-    *value = *p->given;
-    if (!p->is_point) {
-        return true;
-    }
     if (value->rank != 3 ||
         (value->hard && !se3di_dimension_fits(value->dimension, metre.dimension))) {
-        return se3di_reader_fail(r->reader, p->node, "is a point, but what is given for it is not");
+        return se3di_reader_fail(reader, node, "is a point, but what is given for it is not");
     }
     if (!value->hard) {
-        const se3di_measure unit = se3di_units_of(&r->caller->scope->units, metre.dimension);
+        const se3di_measure unit = se3di_units_of(&caller->scope->units, metre.dimension);
         for (size_t k = 0; k < 3; ++k) {
             value->v[k] = value->v[k] * unit.times / unit.over;
         }
@@ -187,14 +184,31 @@ static bool read_point(se3di_reader *reader, const se3di_node *node, se3di_amoun
     return se3di_read_vector(reader, node, 3, value->v);
 }
 
+/* `given` (NULL: nothing) stands for what its own entry says. */
+static bool eval_entry(se3di_reader *reader, const se3di_component *caller, const se3di_node *node,
+                       bool is_point, const se3di_amount *given, se3di_amount *value)
+{
+    if (!given) {
+        return is_point ? read_point(reader, node, value) : se3di_read_value(reader, node, value);
+    }
+    *value = *given;
+    return !is_point || take_given(reader, caller, node, value);
+}
+
+bool se3di_read_parameter_again(se3di_reader *reader, se3di_scope *scope, const se3di_node *node,
+                                bool is_point, const se3di_amount *given)
+{
+    se3di_amount value;
+    return eval_entry(reader, reader->part->parent, node, is_point, given, &value) &&
+           (se3di_scope_renew(scope, node->key, &value) ||
+            se3di_reader_fail(reader, node, "is of another kind than before"));
+}
+
 static bool finish(resolver *r, size_t index)
 {
     parameter *p = &r->list[index];
     se3di_amount value;
-    const bool good = p->given      ? take_given(r, p, &value)
-                      : p->is_point ? read_point(r->reader, p->node, &value)
-                                    : se3di_read_value(r->reader, p->node, &value);
-    if (!good) {
+    if (!eval_entry(r->reader, r->caller, p->node, p->is_point, p->given, &value)) {
         return false;
     }
     p->state = DONE;

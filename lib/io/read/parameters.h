@@ -20,4 +20,9 @@ bool se3di_read_value(se3di_reader *reader, const se3di_node *node, se3di_amount
  * settings of the options. */
 bool se3di_read_parameters(se3di_reader *reader, se3di_component *part, const se3di_given *given);
 
+/* Give a parameter or point of the part where the reader stands, which has its scope, its value
+ * anew: that of its entry, or `given`, if it is not NULL. Nothing else follows. */
+bool se3di_read_parameter_again(se3di_reader *reader, se3di_scope *scope, const se3di_node *node,
+                                bool is_point, const se3di_amount *given);
+
 #endif

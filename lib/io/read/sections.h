@@ -21,6 +21,9 @@ bool se3di_read_state_laws(se3di_reader *reader);
 bool se3di_read_roads(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_forces(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_wheels(se3di_reader *reader, const se3di_node *root);
+/* Bodies and elements of `reader->again`, in the model that they are in already; states, roads and
+ * drivers that have rates are none of them. */
+bool se3di_read_mechanism_again(se3di_reader *reader, const se3di_node *root);
 bool se3di_read_analyses(se3di_reader *reader, const se3di_node *root);
 /* `contact` and `particles`, after the analyses. */
 bool se3di_read_contact(se3di_reader *reader, const se3di_node *root);

@@ -177,11 +177,12 @@ static bool is_across(const se3di_element_entry *entry, const wheel_seat *seat,
            fabs(se3di_dot(apart, seat->up)) <= near * sqrt(se3di_dot(seat->up, seat->up));
 }
 
-/* A wheel read before that is across and has no opposite one yet. */
-static void find_opposite(const se3di_reader *reader, const wheel_seat *seat, se3d_wheel_def *def)
+/* A wheel read before `last` that is across and has no opposite one yet. */
+static void find_opposite(const se3di_reader *reader, const se3di_element_entry *last,
+                          const wheel_seat *seat, se3d_wheel_def *def)
 {
     const se3d_model *model = reader->model;
-    for (size_t k = 0; k + 1 < model->element_count && def->opposite.index1 == 0; ++k) {
+    for (size_t k = 0; &model->elements[k] < last && def->opposite.index1 == 0; ++k) {
         const se3di_element_entry *entry = &model->elements[k];
         if (is_across(entry, seat, def) && !entry->is_paired) {
             def->opposite = entry->wheel;
@@ -276,7 +277,7 @@ static bool read_wheel(se3di_reader *reader, const se3di_node *node)
         !read_relations(reader, node, &def)) {
         return false;
     }
-    find_opposite(reader, &seat, &def);
+    find_opposite(reader, entry, &seat, &def);
     entry->body_i = def.chassis;
     entry->body_j = def.body;
     memcpy(entry->point_j, seat.at, sizeof entry->point_j);
@@ -297,6 +298,9 @@ bool se3di_read_wheels(se3di_reader *reader, const se3di_node *root)
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
         bool wanted = true;
+        if (!se3di_reader_wants(reader, node)) {
+            continue;
+        }
         if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_wheel(reader, node))) {
             return false;
         }

@@ -6,8 +6,8 @@
 #include "io/study/study.h"
 
 /* Get a model with these values, without reading it, if they are of parameters that say nothing but
- * what can be set in a system; else *model is NULL. `pool`: of the sample; the model is to be left
- * by se3di_inplace_end, before the pool ends.
+ * what can be defined again in a system; else *model is NULL. `pool`: of the sample; the model is
+ * to be left by se3di_inplace_end, before the pool ends.
  * @return OK, NO_MEMORY */
 se3d_status se3di_inplace_begin(se3d_study *study, const se3di_named *values, size_t count,
                                 se3di_iopool *pool, se3d_model **model);
