@@ -263,7 +263,7 @@ static void world_add_servo(world *w)
     plane.position[2] = 100.0;
     plane.normal[2] = -1.0;
     CHECK(!se3d_shape_create_plane(w->system, &plane, &servo.shape));
-    servo.axis[2] = servo.speed_max = 1.0;
+    servo.axis[2] = servo.speed_max = servo.gain = 1.0;
     CHECK(!se3d_particles_add_servo(w->particles, &servo, NULL));
 }
 
