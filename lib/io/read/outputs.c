@@ -41,7 +41,8 @@ static const char *const video_endings[] = {".mp4", NULL};
 static const se3di_key output_keys[] = {
     {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
     {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
-     .types = " file vtk summary average ", .standard = "the step; without one a 500th of the duration",
+     .types = " file vtk summary average ",
+     .standard = "the step; without one a 500th of the duration",
      .text = "time between rows [s]"},
     {"channels", SE3DI_KIND_CHANNELS, .types = " file summary ",
      .standard = "every channel of up to 100 bodies",
