@@ -142,7 +142,7 @@ static void check_particles(void)
     CHECK_CONTAINS(state, "\"grains\":\"");
 }
 
-/* What the list of the page has of grains runs, and shows them. */
+/* The particle models in the list of the page run, and show their particles. */
 static void check_examples(void)
 {
     static const char *const names[] = {"bucket",        "cantilever",    "chute",     "hopper",
