@@ -3,7 +3,8 @@
 
 The declarations are those of include/se3d, read by the C preprocessor, so that nothing is said
 twice. Where the library is: SE3D_INCLUDE (a folder), SE3D_LIBRARIES (folders, separated by ":"), or
-what pkg-config says of se3d-io.
+what pkg-config says of se3d-io. Folders with shared libraries are remembered in the module, or those
+that SE3D_RUNPATH names (empty: none).
 
     python3 build_se3d.py        leaves the module beside the package, for use from the source tree
     pip install .                does the same by way of setup.py
@@ -105,8 +106,8 @@ def builder():
     ffi.cdef(CALLBACKS)
     libraries = [argument[2:] for argument in arguments if argument.startswith("-l")]
     others = [argument for argument in arguments if not argument.startswith("-l")]
-    shared = [folder for folder in folders
-              if os.path.exists(os.path.join(folder, "libse3d.so"))]
+    shared = [folder for folder in os.environ.get("SE3D_RUNPATH", os.pathsep.join(folders)).split(os.pathsep)
+              if folder and os.path.exists(os.path.join(folder, "libse3d.so"))]
     ffi.set_source("se3d._se3d", SOURCE,
                    include_dirs=includes, library_dirs=folders, libraries=libraries,
                    runtime_library_dirs=shared, extra_link_args=others)

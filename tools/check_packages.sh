@@ -58,6 +58,15 @@ cp consumer.c consumer.cpp
 cmake -S . -B made '-DCOMPONENTS=se3d;se3d_static;io;io_static' >log 2>&1 && cmake --build made >>log 2>&1 || { cat log; exit 1; }
 (cd made && ctest --output-on-failure --no-tests=error >log 2>&1) || { cat made/log; exit 1; }
 
+step 'Python'
+/usr/bin/python3 - <<'PYTHON'
+import se3d
+with se3d.System() as system:
+    bar = system.body(mass=1, inertia=(1, 1, 1), position=(0.5, 0, 0))
+    pin = system.joint("revolute", system.ground, bar, at=(0, 0, 0), axis=(0, 1, 0))
+    se3d.Solver(system).run(0.1)
+    print(f"{se3d.__file__}: {pin.angle:.6f} rad")
+PYTHON
 step 'program'
 se3d run -q pendulum.yaml -o results --duration 0.1
 [ "$(wc -l <results/pendulum.csv)" = 12 ]

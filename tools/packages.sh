@@ -16,6 +16,7 @@ cmake -S . -B build/deb -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -
 cmake --build build/deb -j "$(se3d_jobs)"
 rm -f build/deb/*.deb
 (cd build/deb && cpack -G DEB)
+sh tools/python_package.sh
 if command -v lintian >/dev/null 2>&1; then
     lintian --fail-on error,warning build/deb/*.deb
 else
