@@ -55,6 +55,7 @@
 #include "se3d/state.h"
 #include "se3d/system.h"
 #include "se3d/tyre.h"
+#include "se3d/wall_map.h"
 #include "se3d/wheel.h"
 
 #endif

@@ -186,10 +186,69 @@ static void fields_do_not_depend_on_threads(void)
     }
 }
 
+/* On the triangle it is on, a sphere presses with its weight and drags by friction while it slips
+ * ever slower: v - 7/2 mu g t. */
+static void triangles_know_who_slides_on_them(void)
+{
+    static const double corners[12] = {-1.0, -1.0, 0.0, 1.0,  -1.0, 0.0,
+                                       1.0,  1.0,  0.0, -1.0, 1.0,  0.0};
+    static const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+    const double R = 0.01, mass = 2500.0 * 4.0 / 3.0 * PI * R * R * R, weight = 9.81 * mass;
+    const double t = 0.03, mu = 0.4, area = 2.0, z = 0.2 + R - weight / 2e4;
+    const double r[6] = {3.5, -0.5, z, 2.5, 0.5, z}, v[6] = {0.6, 0.8, 0.0, 0.0, 0.0, 0.0};
+    const double radius[2] = {R, R};
+    enum { NUMBERS = 2 * SE3D_WALL_VALUES };
+    double values[NUMBERS];
+    size_t count = 0;
+    se3d_system *system = NULL;
+    se3d_particles *set = NULL;
+    se3d_material material;
+    se3d_shape mesh;
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def def = se3d_shape_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_particles_create(system, NULL, &set));
+    stuff.density = 2500.0;
+    stuff.stiffness = 2e4;
+    stuff.friction = mu;
+    CHECK(!se3d_material_create(system, &stuff, &material));
+    def.vertices = corners;
+    def.vertex_count = 4;
+    def.triangles = triangles;
+    def.triangle_count = 2;
+    def.material = material;
+    def.position[0] = 3.0;
+    def.position[2] = 0.2;
+    CHECK(!se3d_shape_create_mesh(system, &def, &mesh));
+    CHECK(!se3d_particles_add(set, material, 2, r, radius, v, NULL, NULL));
+    CHECK(!se3d_particles_get_wall_map(set, mesh, NUMBERS, values, &count) && count == NUMBERS);
+    CHECK_NEAR(values[SE3D_WALL_PRESSURE], 0.0, 0.0); /* nobody has looked yet */
+    CHECK(se3d_particles_run(set, t) >= 0);
+    CHECK(!se3d_particles_get_wall_map(set, mesh, NUMBERS, values, &count) && count == NUMBERS);
+    for (size_t k = 0; k < 2; ++k) {
+        const double *f = values + k * SE3D_WALL_VALUES;
+        const int slides = f[SE3D_WALL_PLACE] > 3.0;
+        const double side = slides ? 1.0 / 3.0 : -1.0 / 3.0, drag = slides ? mu * weight : 0.0;
+        CHECK_NEAR(f[SE3D_WALL_PLACE], 3.0 + side, 1e-12);
+        CHECK_NEAR(f[SE3D_WALL_PLACE + 1], -side, 1e-12);
+        CHECK_NEAR(f[SE3D_WALL_PLACE + 2], 0.2, 1e-12);
+        CHECK_NEAR(f[SE3D_WALL_AREA], area, 1e-12);
+        CHECK_NEAR(f[SE3D_WALL_PRESSURE] * area / weight, 1.0, 1e-3);
+        CHECK_NEAR(f[SE3D_WALL_SHEAR] * area / weight, 0.6 * drag / weight, 1e-3);
+        CHECK_NEAR(f[SE3D_WALL_SHEAR + 1] * area / weight, 0.8 * drag / weight, 1e-3);
+        CHECK_NEAR(f[SE3D_WALL_SHEAR + 2] * area / weight, 0.0, 1e-6);
+        CHECK_NEAR(f[SE3D_WALL_SLIDING] * area / weight, slides ? 1.0 - 3.5 * mu * 9.81 * t : 0.0,
+                   5e-3);
+    }
+    se3d_particles_destroy(set);
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(sums_are_what_there_is);
     RUN(uniform_beds_are_uniform);
+    RUN(triangles_know_who_slides_on_them);
     RUN(fields_do_not_depend_on_threads);
     return check_finish();
 }

@@ -483,6 +483,37 @@ static se3d_status averages_reject_misuse(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status wall_maps_reject_misuse(arguments *a)
+{
+    static const double corners[9] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    static const uint32_t triangle[3] = {0, 1, 2};
+    double values[SE3D_WALL_VALUES];
+    size_t count = 9;
+    se3d_material material;
+    se3d_particles *p = particles_open(a, &material);
+    se3d_shape_def def = se3d_shape_def_default();
+    se3d_shape mesh, plane;
+    CHECK(!se3d_shape_create_plane(a->system, &def, &plane));
+    def.vertices = corners;
+    def.vertex_count = 3;
+    def.triangles = triangle;
+    def.triangle_count = 1;
+    CHECK(!se3d_shape_create_mesh(a->system, &def, &mesh));
+    CHECK(se3d_particles_get_wall_map(NULL, mesh, SE3D_WALL_VALUES, values, &count) ==
+          SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_map(p, mesh, 1, NULL, &count) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_map(p, mesh, SE3D_WALL_VALUES, values, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_map(p, plane, 1, values, &count) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_particles_get_wall_map(p, mesh, 0, NULL, &count) && count == SE3D_WALL_VALUES);
+    CHECK(!se3d_particles_get_wall_map(p, mesh, SE3D_WALL_VALUES, values, &count) &&
+          values[SE3D_WALL_AREA] == 0.5);
+    CHECK(!se3d_shape_destroy(a->system, mesh));
+    CHECK(se3d_particles_get_wall_map(p, mesh, SE3D_WALL_VALUES, values, &count) ==
+          SE3D_ERR_STALE_HANDLE);
+    se3d_particles_destroy(p);
+    return SE3D_OK;
+}
+
 static se3d_status fields_reject_misuse(arguments *a)
 {
     enum { NUMBERS_OF = 8 * SE3D_FIELD_VALUES };
