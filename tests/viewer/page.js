@@ -313,7 +313,7 @@ const checkModes = async ({ names, rows }) => {
   await until(`se3d.position("a")[0] !== ${first[0][0]}`);
 };
 const until = async (expression) => {
-  for (let k = 0; k < 200; ++k) { const value = await evaluate(expression); if (value) return value; await wait(25); }
+  for (let k = 0; k < 800; ++k) { const value = await evaluate(expression); if (value) return value; await wait(25); }
   check(false, `${expression} never came`);
 };
 // A page in which a model runs that has a body, a spring and a parameter `k`.

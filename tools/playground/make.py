@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make the playground: make.py PAGE. One page with the library as WebAssembly in it, which needs no
-server and asks for nothing: a model file on the left, what it does on the right. Needs emscripten
-(emcc), npm, and on Debian the sources of AMD, libyaml and expat, which are fetched.
-Compiles what is newer than its object only, in build/playground."""
+"""Make the playground: make.py [--quick] PAGE. One page with the library as WebAssembly in it, which
+needs no server and asks for nothing: a model file on the left, what it does on the right. Needs
+emscripten (emcc), npm, and on Debian the sources of AMD, libyaml and expat, which are fetched.
+Compiles what is newer than its object only, in build/playground. With --quick, for tests: the
+library as two sources, not optimised."""
 import base64
 import concurrent.futures
 import json
@@ -42,9 +43,15 @@ def run(words):
         sys.exit(f"make.py: failed: {shlex.join(map(str, words))[-300:]}")
 
 
-def find_sources():
+def find_sources(is_quick):
     """What is compiled, and the folders of headers."""
-    sources = sorted((ROOT / "lib").rglob("*.c")) + [ROOT / name for name in PLAYED]
+    sources = sorted((ROOT / "lib").rglob("*.c"))
+    if is_quick:
+        run([sys.executable, "tools/amalgamate.py", WORK])
+        sources = [WORK / "se3d.c", WORK / "se3d-io.c"]
+        # browsers take no functions with as many variables as kernels have that are not optimised
+        sources[0].write_text(sources[0].read_text().replace("__attribute__((always_inline))", ""))
+    sources += [ROOT / name for name in PLAYED]
     headers = []
     for package, (patterns, names) in SOURCES.items():
         folder = ROOT / "build" / ("amd" if package == "suitesparse" else package)
@@ -56,7 +63,7 @@ def find_sources():
     return sources, [f"-I{path}" for path in [*headers, WORK]]
 
 
-def compile_all(sources, headers):
+def compile_all(sources, headers, flags):
     newest = max(path.stat().st_mtime for folder in ("include", "lib", "tools/se3d")
                  for ending in ("*.h", "*.inc") for path in (ROOT / folder).rglob(ending))
     objects, due = [], []
@@ -64,7 +71,7 @@ def compile_all(sources, headers):
         made = WORK / (str(source.relative_to(ROOT)).replace("/", "_") + ".o")
         objects.append(made)
         if not made.exists() or made.stat().st_mtime < max(newest, source.stat().st_mtime):
-            due.append(["emcc", *FLAGS, *headers, "-c", source, "-o", made])
+            due.append(["emcc", *flags, *headers, "-c", source, "-o", made])
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 2) as pool:
         for _ in pool.map(run, due):
             pass
@@ -103,15 +110,19 @@ def make_page(engine, three):
 
 
 def main(words):
-    if len(words) != 2:
-        sys.exit("use: make.py PAGE")
+    global WORK
+    is_quick = "--quick" in words[1:2]
+    if len(words) != 2 + is_quick:
+        sys.exit("use: make.py [--quick] PAGE")
     if shutil.which("emcc") is None:
         sys.exit("make.py: emcc is missing: apt-get install --no-install-recommends emscripten")
+    if is_quick:
+        WORK = WORK.with_name("playground-quick")
     WORK.mkdir(parents=True, exist_ok=True)
-    objects = compile_all(*find_sources())
+    objects = compile_all(*find_sources(is_quick), [*FLAGS, *["-O0"] * is_quick])  # the last one counts
     run(["emcc", *LINK, *objects, "-o", WORK / "engine.js"])
     run(["sh", VIEWER / "build.sh", WORK])
-    page = pathlib.Path(words[1]).resolve()
+    page = pathlib.Path(words[-1]).resolve()
     page.parent.mkdir(parents=True, exist_ok=True)
     page.write_text(make_page((WORK / "engine.js").read_text(), (WORK / "three.js").read_text()))
     print(f"wrote {page}, {page.stat().st_size} bytes")

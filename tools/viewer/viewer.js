@@ -759,7 +759,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   $("questions").onclick = () => set({ help: !state.help });
   $("labelled").onclick = () => { set({ labels: !state.labels }); draw(); };
   for (const key of ["frames", "reactions", "traces", "dark"]) $(key).onclick = () => set({ [key]: !state[key] });
-  let chosen = new URLSearchParams(location.hash.slice(1)).has("plot"); // by the user
+  const linked = (new URLSearchParams(location.hash.slice(1)).get("plot") || "").split(",");
+  let chosen = plots.quantities.some((q) => linked.includes(q.name)); // by the user; of another model they say nothing
   $("channel").onchange = () => { chosen = true; plots.replace($("channel").value); draw(); };
   $("another").onclick = () => { chosen = true; plots.add($("channel").value); draw(); };
   addEventListener("keydown", (e) => {
