@@ -813,7 +813,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   let fresh = true, last = "";
   const isOther = () => {
     const what = [innerWidth, innerHeight, JSON.stringify(orbit), JSON.stringify(state), pull ? JSON.stringify(pull.place) : ""].join();
-    const other = fresh || what !== last;
+    const other = fresh || what !== last || document.body.classList.contains("bare"); // who takes a picture waits for one
     last = what; fresh = false;
     return other;
   };
