@@ -968,10 +968,10 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     },
     // Milliseconds a picture takes, all of it drawn, over some times of the motion.
     light,
-    measure: (count) => {
+    measure: (count, isQuick) => {
       const gl = renderer.getContext(), pixel = new Uint8Array(4), begin = performance.now();
       for (let k = 0; k < count; ++k) {
-        set({ time: start + (end - start) * k / count, playing: false }); draw();
+        set({ time: start + (end - start) * k / count, playing: false }); draw(isQuick);
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
       }
       return (performance.now() - begin) / count;
