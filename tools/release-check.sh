@@ -135,7 +135,7 @@ mutation() {
         joints=test_property_joint_equations,test_property_joint_freedoms,test_property_joint_reactions
         joints=$joints,test_unit_joints,test_unit_equations,test_finite-difference_tangent
         forces=test_finite-difference_force_jacobians,test_unit_forces,test_property_friction,test_property_stops
-        forces=$forces,test_golden_tyres,test_property_driven_friction,test_determinism_hashes
+        forces=$forces,test_golden_tyres,test_finite-difference_user_constraints,test_determinism_hashes
         assemblies=test_unit_assembly,test_finite-difference_tangent,test_property_armature
         assemblies=$assemblies,test_property_formulations,test_determinism_hashes
         steps=test_property_gauss,test_property_rattle,test_order-of-accuracy_methods,test_order-of-accuracy_bdf
