@@ -256,7 +256,7 @@ static int put_colours(FILE *out, pack *p, const char *path, double *times)
         fputs(",\"sets\":[", out);
         for (size_t k = 0; k < p->sets; ++k) {
             fputs(k > 0 ? "," : "", out);
-            text_put_json(out, p->names[k]);
+            text_put_script(out, p->names[k]);
         }
         fputs("],\"set\":\"", out);
         base64_put(out, p->set, count_of(p));
