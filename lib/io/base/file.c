@@ -246,6 +246,7 @@ void se3di_temporary_remove(const char *path)
 /* Folders that are held have the name of the second kind, and get it once they are locked: the lock
  * goes with the process, so one that can be locked is nobody's. */
 static const char held_mark[] = "se3d-held-";
+enum { RANDOM = 6 }; /* characters of mkdtemp behind it */
 
 /* Lock a folder of this user. @return -1: it is none, or another process has it */
 static int lock_folder(const char *path)
@@ -260,14 +261,19 @@ static int lock_folder(const char *path)
     return number;
 }
 
+static bool has_held_name(const char *name)
+{
+    const size_t length = strlen(held_mark);
+    return strncmp(name, held_mark, length) == 0 && strlen(name + length) == RANDOM;
+}
+
 static void sweep(const char *within)
 {
     char path[PATH_SIZE];
     DIR *folder = opendir(within);
     for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
         const int length = snprintf(path, sizeof path, "%s/%s", within, entry->d_name);
-        if (strncmp(entry->d_name, held_mark, strlen(held_mark)) != 0 || length < 0 ||
-            (size_t)length >= sizeof path) {
+        if (!has_held_name(entry->d_name) || length < 0 || (size_t)length >= sizeof path) {
             continue;
         }
         const int hold = lock_folder(path);
@@ -288,7 +294,7 @@ bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold
     if (!se3di_temporary_make(within, path, size)) {
         return false;
     }
-    const char *random = path + strlen(path) - 6; /* of mkdtemp */
+    const char *random = path + strlen(path) - RANDOM;
     const int length =
         snprintf(name, sizeof name, "%s/%s%s", choose_folder(within), held_mark, random);
     if (length < 0 || (size_t)length >= sizeof name || (size_t)length >= size) {
