@@ -21,13 +21,22 @@ static int overlap(const se3di_model *model, uint32_t i, uint32_t j)
     return manifold.count > 0;
 }
 
-/* All that would touch but for the joint. */
+static int is_of(const se3di_constraint *c, uint32_t body)
+{
+    uint32_t k = 0;
+    while (k < c->body_count && c->bodies[k] != body) {
+        ++k;
+    }
+    return k < c->body_count;
+}
+
+/* All that would touch but for the joint. Of many shapes only those of its bodies meet the rest. */
 static int are_apart(const se3di_model *model, const se3di_constraint *c)
 {
     const uint32_t shapes = (uint32_t)model->shape_slots.count;
     for (uint32_t i = 0; i < shapes; ++i) {
         const se3di_shape *a = &model->shapes[i];
-        for (uint32_t j = i + 1; j < shapes; ++j) {
+        for (uint32_t j = i + 1; is_of(c, a->body) && j < shapes; ++j) {
             const se3di_shape *b = &model->shapes[j];
             if (b->body != a->body && se3di_shapes_meet(a, b) &&
                 se3di_joint_keeps_apart(model, c, a, b) && overlap(model, i, j)) {
