@@ -434,7 +434,8 @@ static bool project_once(se3di_kkt *kkt, double *x, double *l, double *most)
     add_to_multipliers(kkt, -1.0, x, l);
     const double before = *most;
     *most = largest_entry(kkt->correction_l, m);
-    return *most<0.5 * before && * most * 2.2e-16 / kkt->eps> part_noise * largest_entry(l, m);
+    const double left = 2.2e-16 * *most / kkt->eps;
+    return *most < 0.5 * before && left > part_noise * largest_entry(l, m);
 }
 
 static void save_multipliers(se3di_kkt *kkt, const double *x, const double *l)
