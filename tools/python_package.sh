@@ -5,8 +5,9 @@
 #     sh tools/python_package.sh [BUILD]       default: build/deb, as tools/packages.sh makes it
 set -eu
 cd "$(dirname "$0")/.."
-build=$(cd "${1:-build/deb}" && pwd)
 . tools/setup.sh
+se3d_help "$@"
+build=$(cd "${1:-build/deb}" && pwd)
 # shellcheck disable=SC2086
 se3d_install $SE3D_PYTHON_PACKAGES python3-pip python3-setuptools python3-wheel dpkg-dev binutils
 umask 022
