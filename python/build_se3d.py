@@ -36,6 +36,8 @@ extern "Python" int se3d_python_interrupt(void *);
 extern "Python" int se3d_python_progress(void *, size_t, double, double);
 extern "Python" void se3d_python_mistake(void *, const se3d_model_error *);
 int se3d_python_signals(void *calls);
+typedef struct se3d_python_watch { se3d_scene *scene; void *progress; } se3d_python_watch;
+int se3d_python_row(void *watch, size_t, double, double);
 """
 
 # Asks Python for signals (Ctrl-C) at one call of 256, so that short steps stay cheap.
@@ -55,6 +57,20 @@ static int se3d_python_signals(void *calls)
         PyGILState_Release(state);
     }
     return stop;
+}
+
+typedef struct se3d_python_watch { se3d_scene *scene; void *progress; } se3d_python_watch;
+
+static int se3d_python_progress(void *, size_t, double, double);
+
+/* Of each row of a run; either may be NULL. A scene that fails once is no longer recorded. */
+static int se3d_python_row(void *ctx, size_t analysis, double time, double fraction)
+{
+    se3d_python_watch *watch = ctx;
+    if (watch->scene && SE3D_FAILED(se3d_scene_record(watch->scene))) {
+        watch->scene = NULL;
+    }
+    return watch->progress ? se3d_python_progress(watch->progress, analysis, time, fraction) : 0;
 }
 """
 

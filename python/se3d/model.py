@@ -9,7 +9,8 @@ from collections import namedtuple
 import numpy
 
 from se3d._library import Definition, check, failure, ffi, lib, text
-from se3d.system import System, escape
+from se3d.page import escape, show
+from se3d.system import System
 
 Analysis = namedtuple("Analysis", "type formulation method status start end cpu_time steps")
 Statistics = namedtuple("Statistics", "min min_time max max_time mean rms integral last")
@@ -17,6 +18,13 @@ Statistics = namedtuple("Statistics", "min min_time max max_time mean rms integr
 
 def _optional(value):
     return None if value is None else str(value)
+
+
+def _write_scene(scene, path):
+    error = ffi.new("se3d_model_error *")
+    status = lib.se3d_scene_write(scene, os.fsencode(path), error)
+    if status < 0:
+        raise failure(status, error)
 
 
 class Model:
@@ -83,49 +91,70 @@ class Model:
               self.system.pointer)
         return value[0]
 
-    def run(self, directory="results", *, progress=None):
+    def run(self, directory="results", *, progress=None, scene=True):
         """Run every analysis and write the results into a folder. progress(analysis, time,
-        fraction) is called after each row and may return True to stop. Return a Run; if an analysis
-        fails, ModelError is raised and the rows so far are in the folder."""
+        fraction) is called after each row and may return True to stop. scene: keep the motion at each
+        row, for pictures of the run. Return a Run; if an analysis fails, ModelError is raised and the
+        rows so far are in the folder."""
         options = Definition("se3d_run_options", {"directory": os.fspath(directory),
                                                   "temporary": tempfile.gettempdir()})
-        handle = None
-        if progress:
-            handle = ffi.new_handle(progress)
-            options.pointer.progress = lib.se3d_python_progress
-            options.pointer.ctx = handle
+        watch = ffi.new("se3d_python_watch *")
+        handle = ffi.new_handle(progress) if progress else None
+        if handle:
+            watch.progress = handle
+        motion = self._create_scene() if scene else None
+        if motion:
+            watch.scene = motion
+        options.pointer.progress = ffi.addressof(lib, "se3d_python_row")
+        options.pointer.ctx = watch
         calls = ffi.new("uint32_t *")
         options.pointer.interrupt = ffi.addressof(lib, "se3d_python_signals")
         options.pointer.interrupt_ctx = calls
         out, error = ffi.new("se3d_run **"), ffi.new("se3d_model_error *")
         status = lib.se3d_model_run(self.pointer, options.pointer, out, error)
-        run = Run(self, ffi.gc(out[0], lib.se3d_run_destroy), directory) if out[0] else None
+        run = (Run(self, ffi.gc(out[0], lib.se3d_run_destroy), directory, motion)
+               if out[0] else None)
         if status < 0:
             reason = failure(status, error)
             if not (progress and isinstance(reason, KeyboardInterrupt)):
                 raise reason
         return run
 
-    def write_scene(self, path):
-        """Write the present poses as binary glTF."""
-        out, error = ffi.new("se3d_scene **"), ffi.new("se3d_model_error *")
-        check(lib.se3d_scene_create(self.pointer, out))
-        scene = ffi.gc(out[0], lib.se3d_scene_destroy)
-        status = lib.se3d_scene_write(scene, os.fsencode(path), error)
+    def write(self, path, *, partial=False):
+        """Write the model as one file, with its system as it is now. partial: what a file cannot hold
+        is left out, else it is an error."""
+        options = Definition("se3d_write_options", {"partial": int(partial)})
+        error = ffi.new("se3d_model_error *")
+        status = lib.se3d_model_write(self.pointer, os.fsencode(path), options.pointer, error)
         if status < 0:
             raise failure(status, error)
 
+    def _create_scene(self):
+        out, model = ffi.new("se3d_scene **"), self.pointer
+        check(lib.se3d_scene_create(model, out))
+        # The model outlives its scenes.
+        return ffi.gc(out[0], lambda scene, _model=model: lib.se3d_scene_destroy(scene))
+
+    def write_scene(self, path):
+        """Write the present poses as binary glTF."""
+        _write_scene(self._create_scene(), path)
+
+    def _get_head(self):
+        return f"<h4>{escape(self.title or self.name)}</h4>"
+
     def _repr_html_(self):
-        return f"<h4>{escape(self.title or self.name)}</h4>" + self.system._repr_html_()
+        return (self._get_head() + show(lambda path: self.write(path, partial=True),
+                                        self.write_scene) + self.system._get_table())
 
 
 class Run:
     """The results of a model: analyses, files, tables."""
 
-    def __init__(self, model, pointer, directory):
+    def __init__(self, model, pointer, directory, scene=None):
         self.model = model
         self.pointer = pointer
         self.directory = directory
+        self._scene = scene
 
     @property
     def analyses(self):
@@ -169,3 +198,16 @@ class Run:
         if rows.size == 0:
             rows = rows.reshape(0, len(names))
         return {name: rows[:, k] for k, name in enumerate(names)}
+
+    def write_scene(self, path):
+        """Write the motion as binary glTF; a run without one has the present poses."""
+        _write_scene(self._scene or self.model._create_scene(), path)
+
+    def _repr_html_(self):
+        rows = "".join(
+            f"<tr><td>{escape(one.type)}</td><td>{escape(one.method)}</td><td>{one.start:g}</td>"
+            f"<td>{one.end:g}</td><td>{one.steps}</td></tr>" for one in self.analyses)
+        return (self.model._get_head() + show(lambda path: self.model.write(path, partial=True),
+                                              self.write_scene, self.files)
+                + "<table><tr><th>analysis</th><th>method</th><th>from [s]</th><th>to [s]</th>"
+                f"<th>steps</th></tr>{rows}</table>")

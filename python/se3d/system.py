@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A system: its elements, its state, its energies."""
 
+import os
 from collections import namedtuple
 
 import numpy
 
-from se3d._library import Definition, check, ffi, lib, pointer, text, vector
+from se3d._library import Definition, check, failure, ffi, lib, pointer, text, vector
 from se3d.elements import (Body, Constraint, Force, Function, Marker, Material, Shape, inertia_of)
+from se3d.page import escape, show
 
 Energy = namedtuple("Energy", "kinetic potential total dissipated")
 Work = namedtuple("Work", "dissipated actuators drivers")
@@ -504,7 +506,20 @@ class System:
             messages.append(text(message[0]))
         return Summary(*[getattr(summary, name) for name in Summary._fields]), messages
 
+    def write(self, path, *, partial=False):
+        """Write the system as a model file. partial: what a file cannot hold (callbacks) is left out,
+        else it is an error."""
+        options = Definition("se3d_write_options", {"partial": int(partial)})
+        error = ffi.new("se3d_model_error *")
+        status = lib.se3d_system_write(self.pointer, os.fsencode(path), options.pointer, error)
+        if status < 0:
+            raise failure(status, error)
+
     def _repr_html_(self):
+        return show(lambda path: self.write(path, partial=True)) + self._get_table()
+
+    def _get_table(self):
+        """Return counts and poses as HTML."""
         rows = "".join(
             f"<tr><td>{escape(body.name)}</td><td>{body.mass:g}</td>"
             f"<td>{', '.join(f'{x:.4g}' for x in body.position)}</td></tr>"
@@ -514,10 +529,3 @@ class System:
                 f"{lib.se3d_system_count_forces(self.pointer)} force elements, "
                 f"t = {self.time:g} s</p><table><tr><th>body</th><th>mass [kg]</th>"
                 f"<th>position [m]</th></tr>{rows}</table>")
-
-
-def escape(value):
-    """Escape a text for HTML."""
-    for character, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        value = value.replace(character, entity)
-    return value

@@ -24,6 +24,7 @@ SE3D_INCLUDE=$SE3D_SOURCE_DIR/include SE3D_LIBRARIES=$SE3D_BUILD_DIR/lib \
     cat "$work/build.log"
     exit 1
 }
+export SE3D_PROGRAM="$SE3D_BUILD_DIR/bin/se3d"
 export PYTHONPATH="$work" PYTHONDONTWRITEBYTECODE=1
 "$python" -W error -m unittest discover -s "$SE3D_SOURCE_DIR/tests/python" -v
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$SE3D_SOURCE_DIR/docs/python.md" >"$work/page.py"

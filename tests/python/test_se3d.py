@@ -2,17 +2,25 @@
 """The Python package: motions against closed forms, and what happens when something is wrong."""
 
 import ast
+import base64
 import gc
 import inspect
+import json
 import os
+import pathlib
 import signal
+import subprocess
 import tempfile
 import threading
 import unittest
+import unittest.mock
+from html import unescape
 
 import numpy
 
 import se3d
+
+VIEWER = pathlib.Path(__file__).resolve().parents[2] / "tools" / "viewer"
 
 G = 9.81
 
@@ -385,6 +393,108 @@ output:
             se3d.Model("/nowhere/model.yaml")
         with self.assertRaises(se3d.ModelError):
             se3d.Model(text=self.TEXT, parameters={"n": 3})
+
+
+class Pictures(unittest.TestCase):
+    """What notebooks show: the page of `se3d view`, else a sketch, else why there is neither."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        three = self.path("three.js")
+        with open(VIEWER / "three_entry.js", encoding="utf-8") as entry:
+            stamp = subprocess.run(["cksum"], stdin=entry, capture_output=True, text=True,
+                                   check=True).stdout
+        with open(three, "w", encoding="utf-8") as file:
+            file.write(f"/* three 0.187 uplot 1.6.32 {stamp}*/ var three;")
+        self.set(SE3D_THREE=three, SE3D_CACHE=self.path("cache"))
+        self.model = se3d.Model(text=Models.TEXT, name="<bar>")
+
+    def path(self, name):
+        return os.path.join(self.folder.name, name)
+
+    def set(self, **values):
+        patch = unittest.mock.patch.dict(os.environ, values)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def program(self, text):
+        """Let a shell script stand in for the program."""
+        path = self.path("se3d.sh")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(f"#!/bin/sh\n{text}\n")
+        os.chmod(path, 0o755)
+        self.set(SE3D_PROGRAM=path)
+
+    def real(self):
+        if not os.access(os.environ.get("SE3D_PROGRAM", ""), os.X_OK):
+            self.skipTest("the program is not built")
+
+    @staticmethod
+    def frame(html):
+        """The page in the frame, as browsers read it."""
+        return unescape(html.split('<iframe srcdoc="')[1].split('"')[0])
+
+    @staticmethod
+    def motion(page):
+        """The scene of a page: how often poses were recorded."""
+        glb = base64.b64decode(page.split('id="glb">')[1].split("<")[0])
+        scene = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
+        times = [scene["accessors"][one["samplers"][0]["input"]]["count"]
+                 for one in scene.get("animations", ())]
+        return times[0] if times else 0
+
+    def test_model_and_run_show_their_scene(self):
+        self.real()
+        html = self.model._repr_html_()
+        self.assertIn("<h4>&lt;bar&gt;</h4>", html)
+        self.assertIn("<td>bar</td>", html)
+        self.assertEqual(self.motion(self.frame(html)), 0)
+        run = self.model.run(self.path("results"))
+        page = self.frame(run._repr_html_())
+        self.assertEqual(self.motion(page), 6)
+        self.assertIn("pin.angle", page)
+        still = self.model.run(self.path("results"), scene=False)
+        self.assertEqual(self.motion(self.frame(still._repr_html_())), 0)
+        del self.model
+        gc.collect()
+        run.write_scene(self.path("x.glb"))
+
+    def test_large_page_gives_way_to_a_sketch(self):
+        self.real()
+        with unittest.mock.patch("se3d.page.LIMIT", 1000):
+            html = self.model._repr_html_()
+        self.assertIn("a notebook gets at most 1000", html)
+        self.assertNotIn("iframe", html)
+        svg = base64.b64decode(html.split("image/svg+xml;base64,")[1].split('"')[0])
+        self.assertIn(b"bar", svg)
+
+    def test_system_shows_a_sketch(self):
+        self.real()
+        with se3d.System() as system:
+            bar, _ = pendulum(system)
+            system.force_callback(lambda *_: [0] * 12, system.ground, bar)
+            html = system._repr_html_()
+        self.assertIn("image/svg+xml", html)
+        self.assertNotIn("no sketch", html)
+
+    def test_what_fails_says_why(self):
+        self.set(SE3D_PROGRAM="", PATH=self.folder.name)
+        html = self.model._repr_html_()
+        self.assertIn("no scene: the program se3d is not found", html)
+        self.assertIn("<td>bar</td>", html)
+        self.set(SE3D_PROGRAM="/nowhere/se3d")
+        self.assertIn("no scene: /nowhere/se3d: No such file", self.model._repr_html_())
+        self.program("echo first; echo 'a <reason>' >&2; exit 1")
+        html = self.model._repr_html_()
+        self.assertIn("no scene: first; a &lt;reason&gt;", html)
+        self.assertIn("no sketch: first; a &lt;reason&gt;", html)
+
+    def test_program_that_hangs_is_ended(self):
+        self.program("sleep 60 & wait")
+        with unittest.mock.patch("se3d.page.WAIT", 0.2):
+            html = self.model._repr_html_()
+        self.assertIn("no scene: se3d view took longer than 0.2 s", html)
 
 
 class Studies(unittest.TestCase):
