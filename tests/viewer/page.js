@@ -78,7 +78,11 @@ const checkMotion = async ({ names, rows }) => {
     const off = apart(await evaluate(`se3d.position(${JSON.stringify(body)})`), row.slice(column, column + 3));
     check(off < 1e-4, `at t = ${row[0]} the body is ${off} away`);
     const length = names.indexOf("spring.length");
-    if (length > 0) check(Math.abs((await evaluate('se3d.scale("spring")'))[2] - row[length]) < 1e-4, "the spring stretches");
+    if (length > 0) {
+      check(Math.abs((await evaluate('se3d.scale("spring")'))[2] - row[length]) < 1e-4, "the spring stretches");
+      const [least, most] = await evaluate('se3d.wire("spring")');
+      check(least > 0 && most < 1.001 * least, `its wire is round: ${least} to ${most} m`);
+    }
     // The line of the plot is at the time.
     const { now, min, max } = (await evaluate("se3d.plots.state()"))[0];
     check(Math.abs(now - row[0]) < 0.01 * (max - min), `the plot shows t = ${row[0]}: ${now}`);

@@ -42,6 +42,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const bodies = nodes.filter((o) => o.userData.body !== undefined);
   const grid = root.children.find((o) => o.name === "grid");
 
+  // Coils keep a round wire.
+  const coils = [], coil = (all, { nodes: list, meshes }) => all.forEach((o, k) => {
+    if (o.isMesh && meshes[list[k].mesh].name === "coil") coils.push(se3dCoil(o, o.scale.z / o.scale.x));
+  });
+  coil(nodes, json);
   // Motion: a clip of three.js. A long one was thinned out to more than half of the most samples: then a curve
   // through its points.
   const animate = (top, all, { animations: [clip], parser }) => {
@@ -70,6 +75,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       if (o.isMesh) { o.material.side = THREE.DoubleSide; Object.assign(o.userData, { own: o.material, pale }); }
     });
     secondMotion = animate(secondRoot, all, second);
+    coil(all, second.parser.json);
   }
   const grainTimes = packed && packed.times || [];
   let start = Math.min(times[0], ...grainTimes.slice(0, 1)), end = Math.max(times[times.length - 1], ...grainTimes.slice(-1), ...(secondMotion ? secondMotion.times.slice(-1) : []));
@@ -421,6 +427,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     }
     root.updateMatrixWorld(true);
     camera.lookAt(orbit.target);
+    coils.forEach((bend) => bend());
     for (const { arrow, joint, column } of arrows) {
       va.set(value(column, state.time), value(column + 1, state.time), value(column + 2, state.time));
       const length = va.length();
@@ -879,6 +886,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       along: new THREE.Vector3(0, 1, 0).applyQuaternion(a.arrow.quaternion).toArray() })),
     // Mode k from 1 at a phase, in turns.
     mode: (k, turns) => { set({ mode: k, phase: turns, playing: false }); draw(); },
+    // Least and largest radius of a spring's wire, in its middle.
+    wire: (name) => {
+      const o = nodes.find((o) => o.name === name), all = o.geometry.attributes.position, first = 8 * Math.floor(all.count / 16);
+      const ring = Array.from({ length: 8 }, (_, k) => new THREE.Vector3().fromBufferAttribute(all, first + k).applyMatrix4(o.matrixWorld));
+      const middle = ring.reduce((a, b) => a.add(b), new THREE.Vector3()).divideScalar(8), far = ring.map((p) => p.distanceTo(middle));
+      return [Math.min(...far), Math.max(...far)];
+    },
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     second: (name) => secondBodies.get(name).getWorldPosition(new THREE.Vector3()).toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),

@@ -419,8 +419,10 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
     }
     glb->looks = grown;
     glb->looks[index] = look;
-    se3di_glb_put(glb, &glb->meshes, "%s{\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
-                  index > 0 ? "," : "", surface[0]);
+    const bool is_coil =
+        !part->mesh && part->unit == SE3DI_UNIT_SPRING; /* for who bends its wire */
+    se3di_glb_put(glb, &glb->meshes, "%s{%s\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
+                  index > 0 ? "," : "", is_coil ? "\"name\":\"coil\"," : "", surface[0]);
     if (surface[2] >= 0) {
         se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", surface[1],
                       surface[2]);
