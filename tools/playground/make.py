@@ -10,6 +10,7 @@ import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -87,13 +88,20 @@ def find_models():
     return files
 
 
+def find_scripts():
+    """Those of every page, in their order, as the program has them."""
+    page = (ROOT / "tools/se3d/page.c").read_text()
+    return re.findall(r'"(\w+\.js)"', re.search(r"scripts\[\] = \{(.*?)\}", page, re.S)[1])
+
+
 def make_live_page(three):
     """The page of `se3d live`, which asks what holds it."""
     read = lambda name: (VIEWER / name).read_text()
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">\n<title>se3d</title>\n<style>\n' +
             read("viewer.css") + "</style></head><body>\n" + read("viewer.html") + read("live.html") +
             "<script>window.se3dAsk = parent.se3dAsk;</script>\n<script>\n" + three + "\n" +
-            "".join("</script>\n<script>\n" + read(name + ".js") for name in ("plots", "light", "viewer", "live")) + "</script>\n</body></html>\n")
+            "".join(f"</script>\n<script>\n{read(name)}" for name in [*find_scripts(), "live.js"]) +
+            "</script>\n</body></html>\n")
 
 
 def make_page(engine, three):
