@@ -29,8 +29,6 @@ double se3di_kinetic_energy(const se3di_model *model)
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential)
 {
     double g[3];
-    se3di_effect effect;
-    effect.wants_derivative = 0;
     *potential = 0.0;
     SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
@@ -39,8 +37,9 @@ se3d_status se3di_forces_potential(const se3di_model *model, double t, double *p
         }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
-        *potential += effect.potential;
+        double own;
+        SE3DI_TRY(se3di_force_potential(model, &model->forces[k], t, &own));
+        *potential += own;
     }
     return SE3D_OK;
 }

@@ -31,6 +31,20 @@ se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force,
     return force->released ? SE3D_OK : classes[force->type]->eval(model, force, t, effect);
 }
 
+se3d_status se3di_force_potential(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential)
+{
+    const se3di_force_class *type = classes[force->type];
+    if (type->find_potential && !force->released) {
+        return type->find_potential(model, force, t, potential);
+    }
+    se3di_effect effect;
+    effect.wants_derivative = 0;
+    const se3d_status status = se3di_force_eval(model, force, t, &effect);
+    *potential = effect.potential;
+    return status;
+}
+
 int se3di_force_is_number(const se3di_force *force)
 {
     return force->type == SE3DI_FORCE_EFFORT && force->function[0] < 0;

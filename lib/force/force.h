@@ -29,6 +29,11 @@ typedef struct se3di_effect {
 se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect);
 
+/* The potential of one element [J], without what else `eval` makes, if its type can. @return the
+ * same */
+se3d_status se3di_force_potential(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential);
+
 /* What a type of elements may be. */
 enum {
     SE3DI_FORCE_IS_SCALAR = 1,  /* acts on one coordinate: effect->coordinate, rate, value */
@@ -42,6 +47,9 @@ typedef struct se3di_force_class {
     /* `effect` comes zeroed but for wants_derivative. @return as se3di_force_eval */
     se3d_status (*eval)(const se3di_model *model, const se3di_force *force, double t,
                         se3di_effect *effect);
+    /* The potential alone, the same bits; NULL: that of `eval`. */
+    se3d_status (*find_potential)(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential);
     /* The state of the model is accepted; NULL: the type has no memory. */
     void (*accept)(const se3di_model *model, se3di_force *force);
     /* Compare what it assumed of a trial step with what came out, correct it. @return whether it

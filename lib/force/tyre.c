@@ -479,6 +479,12 @@ static void to_wrench(const se3di_frame *const frames[2], const patch *c, const 
     se3di_mul_transposed(frames[1]->A, T, wrench + 9);
 }
 
+static double find_energy(const se3di_force *force, const patch *c)
+{
+    const double deflection = c->input[SE3DI_PATCH_DEFLECTION];
+    return 0.5 * force->k * deflection * deflection;
+}
+
 static void eval_patch(const se3di_model *model, const se3di_force *force, const patch *c,
                        se3di_effect *effect)
 {
@@ -496,7 +502,7 @@ static void eval_patch(const se3di_model *model, const se3di_force *force, const
     }
     to_wrench(frames, c, of, effect->wrench);
     const double *in = c->input;
-    effect->potential = 0.5 * force->k * in[SE3DI_PATCH_DEFLECTION] * in[SE3DI_PATCH_DEFLECTION];
+    effect->potential = find_energy(force, c);
     effect->power[1] = c->rise * se3di_dot(effect->wrench + 6, c->up); /* of a road that rises */
     effect->power[0] = effect->power[1] -
                        force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, c);
@@ -515,6 +521,15 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     patch c;
     SE3DI_TRY(take_patch(model, force, t, &c));
     eval_patch(model, force, &c, effect);
+    return SE3D_OK;
+}
+
+static se3d_status find_potential(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential)
+{
+    patch c;
+    SE3DI_TRY(take_patch(model, force, t, &c));
+    *potential = c.touches ? find_energy(force, &c) : 0.0;
     return SE3D_OK;
 }
 
@@ -647,5 +662,6 @@ se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
 const se3di_force_class se3di_force_class_tyre = {
     .name = "tyre",
     .eval = eval_tyre,
+    .find_potential = find_potential,
     .traits = SE3DI_FORCE_IS_ELASTIC | SE3DI_FORCE_HOLDS,
 };

@@ -771,8 +771,10 @@ static void power_balances_for_every_element(void)
             create[k](&w);
             se3di_effect e = {.wants_derivative = 0};
             CHECK(se3di_force_eval(w.model, w.force, 0.3, &e) == SE3D_OK);
-            double power = 0.0;
+            double power = 0.0, alone = NAN;
             double potential_rate = 0.0;
+            CHECK(se3di_force_potential(w.model, w.force, 0.3, &alone) == SE3D_OK);
+            CHECK(alone == e.potential);
             const double h = 1e-5;
             for (int b = 0; b < 2; ++b) {
                 power += se3di_dot(e.wrench + 6 * b, w.model->frames[1 + b].v);
