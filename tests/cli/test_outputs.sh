@@ -150,6 +150,45 @@ if [ -n "$python" ]; then
 else
     echo 'SKIPPED: no python3-vtk9: the series were not read back' >&2
 fi
+
+# The map of a wall, of the contacts of its five rows: triangle 1 is where y < x in the frame of the tray.
+printf 'v %s 0\n' '-0.1 -0.1' '0.1 -0.1' '0.1 0.1' '-0.1 0.1' >"$dir/floor.obj"
+printf 'f %s\n' '1 2 3' '1 3 4' >>"$dir/floor.obj"
+cat >"$dir/wall.yaml" <<'END_OF_YAML'
+se3d: 1
+contact: {law: hooke}
+materials: [{name: stone, density: 2500, stiffness: 2e4, friction: 0.3}]
+particles:
+  - {material: stone, radius: [0.008, 0.014], lower: [-0.08, -0.08, 0.01], upper: [0.08, 0.08, 0.06], count: 40, seed: 2}
+bodies:
+  - {name: tray, position: [0, 0, 0.5], mass: 1, inertia: [1, 1, 1],
+     shapes: [{name: floor, type: mesh, file: floor.obj, position: [0, 0, -0.5], material: stone}]}
+joints: [{name: rail, type: prismatic, body_i: ground, body_j: tray, at: [0, 0, 0], axis: [1, 0, 0]}]
+drivers: [{name: shake, joint: rail, value: 0.01*sin(20*t)}]
+analysis: {type: dynamics, duration: 0.4}
+output:
+  - {file: contacts.csv, every: 0.05, contacts: true}
+  - {wall_map: wall.csv, shape: floor, every: 0.05, start: 0.1, stop: 0.3}
+END_OF_YAML
+expect 'the map of a wall' 0 "$program" run -q "$dir/wall.yaml" -o "$dir/wall"
+cat >"$dir/wall.awk" <<'END_OF_AWK'
+function differs(a, b) { return (a - b) ^ 2 > 1e-18 * b ^ 2 }
+FILENAME ~ /contacts.csv/ && $4 == "floor" && $1 > 0.0999 && $1 < 0.3001 {
+    t = $6 < $5 - 0.01 * sin(20 * $1) ? 2 : 3
+    pressure[t] += $12 / 0.02 / 5
+    shear[t] += $13 / 0.02 / 5
+    ++contacts
+}
+FILENAME ~ /wall.csv/ && FNR == 1 { head = $0 }
+FILENAME ~ /wall.csv/ && FNR > 1 {
+    bad += differs($1, 0.1 / 3 * (5 - 2 * FNR)) || differs($3, -0.5) || differs($4, 0.02)
+    bad += differs($5, pressure[FNR]) || differs($6, shear[FNR]) || $9 <= 0
+    ++lines
+}
+END { exit !(head == "x,y,z,area,pressure,shear.x,shear.y,shear.z,sliding" && lines == 2 && contacts > 40 && !bad) }
+END_OF_AWK
+holds "is not the mean of its contacts: $(cat "$dir/wall/wall.csv")" \
+    awk -F, -f "$dir/wall.awk" "$dir/wall/contacts.csv" "$dir/wall/wall.csv"
 mkdir "$dir/blocked"
 : >"$dir/blocked/motion"
 expect 'a folder of a series that cannot be made' 1 "$program" run "$dir/vtk.yaml" -o "$dir/blocked"

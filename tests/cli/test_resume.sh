@@ -31,6 +31,8 @@ output:
   - {summary: s.csv, every: 0.01, channels: [rod.position, energy.kinetic]}
 END
 
+printf 'v -0.1 %s %s\n' -1 0 1 0 1 0.1 1 1 -1 1 >"$dir/side.obj"
+printf 'f %s\n' '1 2 3' '1 3 4' '1 4 5' >>"$dir/side.obj"
 cat >"$dir/heap.yaml" <<'END'
 se3d: 1
 contact: {law: hooke}
@@ -44,7 +46,7 @@ clumps:
 bonds:
   - {name: glue, gap: 6e-3, young: 3e5, damping: 0.1, tensile_strength: 1.5e4, shear_strength: 1.5e4}
 bodies:
-  - {name: ground, shapes: [{type: plane, material: stone}]}
+  - {name: ground, shapes: [{type: plane, material: stone}, {name: side, type: mesh, file: side.obj, material: stone}]}
   - {name: box, mass: 0.5, inertia: [1e-3, 1e-3, 1e-3], position: [0, 0, 0.3],
      shapes: [{type: box, size: [0.06, 0.06, 0.06], material: stone}]}
 analysis: {type: dynamics, duration: 0.6}
@@ -54,6 +56,7 @@ output:
   - {file: p.pvd, every: 0.1}
   - {average: m.csv, every: 0.01, start: 0.05, fields: {lower: [-0.1, -0.1, 0], upper: [0.1, 0.1, 0.2], cells: [2, 3, 4],
      width: 0.02}}
+  - {wall_map: w.csv, every: 0.01, start: 0.05, shape: side}
 END
 
 sed 's/samples: 70/samples: 200/' "$source/examples/study/damper.yaml" >"$dir/sweep.yaml"
@@ -124,6 +127,7 @@ try_study() {
 try_model swing.yaml
 try_model heap.yaml
 holds 'some bonds broke, some hold' awk -F, 'END {exit !($NF > 0 && $(NF - 1) > 0)}' "$w/a.csv"
+holds 'the wall is pressed' awk -F, 'NR > 1 && $5 > 0 {++n} END {exit !n}' "$w/w.csv"
 try_study sweep.yaml
 kills=$(((kills + 2) / 3))
 for model in chain.yaml cell.yaml boxes.yaml; do

@@ -154,25 +154,7 @@ static const bad_input table[] = {
      {"flows[1].name: `a` is taken"}},
 #include "bad_bonds.inc"
     {"se3d: 1\nflows: []\n", 2, 0, {"flows: needs `particles`"}},
-    {GLASS "output: [{vtk: a.pvd, fields: {lower: [0, 0, 0], upper: [1, 1, 1], width: 1}}]\n",
-     4,
-     0,
-     {"output[0].fields.cells: is missing"}},
-    {GLASS "output: [{vtk: a.pvd, fields: {lower: [0, 0, 0], upper: [1, 1, 1], cells: [1, 2, 1.5], "
-           "width: 1}}]\n",
-     4,
-     0,
-     {"output[0].fields.cells: has 1.5, must be three whole numbers"}},
-    {GLASS "output: [{vtk: a.pvd, fields: {lower: [0, 0, 0], upper: [1, 1, 0], cells: [1, 2, 1], "
-           "width: 1}}]\n",
-     4,
-     0,
-     {"output[0].fields.upper: is 0 along z"}},
-    {GLASS "output: [{average: a.csv, every: 1}]\n", 4, 0, {"output[0].fields: is missing"}},
-    {"se3d: 1\noutput: [{vtk: a.pvd, fields: {}}]\n",
-     2,
-     0,
-     {"output[0].fields: needs `particles`"}},
+#include "bad_outputs.inc"
     {GLASS "bodies: [{name: ground, shapes: [{type: funnel, bottom_radius: 0, top_radius: 0, "
            "length: 1}]}]\n",
      4,

@@ -14,9 +14,10 @@ typedef struct se3di_output_entry {
     int32_t set;                 /* of whose particles; -1: all */
     bool vtk;                    /* a series for ParaView, no channels */
     bool summary;                /* of the channels over the run, in place of rows, */
-    bool average;                /* of `grid` over the run, no channels, */
+    bool average;                /* of `grid`, or else of `wall`, over the run, no channels, */
     double start, stop;          /* between these times [s] */
     const se3d_field_grid *grid; /* of a series or average: fields of the particles; NULL: none */
+    se3d_shape wall;             /* the mesh whose triangles are averaged */
     double every;                /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;

@@ -17,21 +17,30 @@
 #include "io/model/tagged.h"
 #include "io/read/field_grid.h"
 #include "io/read/objects.h"
+#include "io/read/particle_names.h"
 #include "io/read/sections.h"
 
 /* What an entry makes: the key that says so and names the file. */
-enum { KIND_FILE = 0, KIND_VTK = 1, KIND_SUMMARY = 2, KIND_AVERAGE = 3, KIND_COUNT = 7 };
+enum {
+    KIND_FILE = 0,
+    KIND_VTK = 1,
+    KIND_SUMMARY = 2,
+    KIND_AVERAGE = 3,
+    KIND_WALL_MAP = 4, /* pictures follow */
+    KIND_COUNT = 8
+};
 static const char *const output_types[KIND_COUNT + 1] = {[KIND_FILE] = "file",
                                                          [KIND_VTK] = "vtk",
                                                          [KIND_SUMMARY] = "summary",
                                                          [KIND_AVERAGE] = "average",
+                                                         [KIND_WALL_MAP] = "wall_map",
                                                          "plot",
                                                          "scene",
                                                          "video",
                                                          NULL};
-static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd",  "summary.csv",
-                                                 "average.csv", "results.svg", "motion.html",
-                                                 "motion.mp4"};
+static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd", "summary.csv",
+                                                 "average.csv", "wall.csv",   "results.svg",
+                                                 "motion.html", "motion.mp4"};
 static const char *const vtk_endings[] = {".pvd", NULL};
 static const char *const plot_endings[] = {".svg", ".png", ".pdf", NULL};
 static const char *const scene_endings[] = {".html", ".glb", NULL};
@@ -41,7 +50,7 @@ static const char *const video_endings[] = {".mp4", NULL};
 static const se3di_key output_keys[] = {
     {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
     {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
-     .types = " file vtk summary average ",
+     .types = " file vtk summary average wall_map ",
      .standard = "the step; without one a 500th of the duration",
      .text = "time between rows [s]"},
     {"channels", SE3DI_KIND_CHANNELS, .types = " file summary ",
@@ -64,11 +73,15 @@ static const se3di_key output_keys[] = {
      .text = "minimum, maximum, mean, rms and integral of each channel over the rows, as CSV"},
     {"average", SE3DI_KIND_FILE, .types = " average ",
      .text = "means of `fields` over the rows, a line for each cell, as CSV"},
+    {"wall_map", SE3DI_KIND_FILE, .types = " wall_map ",
+     .text = "means of what particles do to each triangle of a mesh over the rows, as CSV"},
+    {"shape", SE3DI_KIND_TEXT, .types = " wall_map ",
+     .text = "the name of that mesh, also of the ground's"},
     {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, start),
-     .types = " summary average ",
+     .types = " summary average wall_map ",
      .standard = "the first row", .text = "rows from this time on count [s]"},
     {"stop", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, stop),
-     .types = " summary average ",
+     .types = " summary average wall_map ",
      .standard = "the last row", .text = "rows up to this time count [s]"},
     {"plot", SE3DI_KIND_FILE, .types = " plot ", .words = plot_endings,
      .text = "SVG, PNG and the script .gp, as [se3d plot](../plots.md)"},
@@ -92,7 +105,8 @@ const se3di_object se3di_object_output = {
     output_keys, output_types,
     "\"oneOf\": [{\"required\": [\"file\"]}, {\"required\": [\"vtk\"]}, {\"required\": "
          "[\"summary\"]}, {\"required\": [\"average\", \"fields\"]}, {\"required\": "
-         "[\"plot\"]}, {\"required\": [\"scene\"]}, {\"required\": [\"video\"]}]"};
+         "[\"wall_map\", \"shape\"]}, {\"required\": [\"plot\"]}, {\"required\": "
+         "[\"scene\"]}, {\"required\": [\"video\"]}]"};
 /* clang-format on */
 
 /* {name: expression} */
@@ -344,7 +358,7 @@ static bool find_kind(se3di_reader *reader, const se3di_node *node, size_t *kind
     if (found == KIND_COUNT) {
         return se3di_reader_fail_key(reader, node, "file",
                                      "is missing, such as results.csv (or one of vtk, summary, "
-                                     "average, plot, scene, video)");
+                                     "average, wall_map, plot, scene, video)");
     }
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (!se3di_object_find(&se3di_object_output, output_types[found], child->key)) {
@@ -367,11 +381,40 @@ static bool check_window(se3di_reader *reader, const se3di_node *node,
                                  output->stop, output->start);
 }
 
+/* Whose triangles a map of a wall is of. */
+static bool read_wall(se3di_reader *reader, const se3di_node *node, se3d_shape *wall)
+{
+    const se3di_node *name = se3di_node_get(node, "shape");
+    int32_t type = SE3D_SHAPE_MESH;
+    if (!reader->model->particles) {
+        return se3di_reader_fail(reader, node, "needs `particles`, which the model does not have");
+    }
+    if (!name) {
+        return se3di_reader_fail_key(reader, node, "shape",
+                                     "is missing: the name of the mesh to map");
+    }
+    return se3di_read_shape_name(reader, name, wall) &&
+           ((se3d_shape_get_type(reader->system, *wall, &type) >= 0 && type == SE3D_SHAPE_MESH) ||
+            se3di_reader_fail(reader, name, "`%.60s` must be a mesh that is not `convex`",
+                              name->text));
+}
+
 static bool check_average(se3di_reader *reader, const se3di_node *node,
                           const se3di_output_entry *output)
 {
     return !output->average || output->grid ||
            se3di_reader_fail_key(reader, node, "fields", "is missing: what to average");
+}
+
+/* What rows are of that have no channels. */
+static bool read_particle_rows(se3di_reader *reader, const se3di_node *node, size_t kind,
+                               se3di_output_entry *output)
+{
+    return read_snapshots(reader, node, output) && read_contacts(reader, node, output) &&
+           se3di_read_field_grid(reader, node, &output->grid) &&
+           (kind == KIND_WALL_MAP ? read_wall(reader, node, &output->wall)
+                                  : check_average(reader, node, output)) &&
+           check_kind_of_rows(reader, node, output);
 }
 
 static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
@@ -381,17 +424,14 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     const se3di_node *file = se3di_node_get(node, output_types[kind]);
     output->vtk = kind == KIND_VTK;
     output->summary = kind == KIND_SUMMARY;
-    output->average = kind == KIND_AVERAGE;
+    output->average = kind == KIND_AVERAGE || kind == KIND_WALL_MAP;
     output->start = -HUGE_VAL;
     output->stop = HUGE_VAL;
     output->node = node;
     if (!read_file_name(reader, file, kind, &output->file) ||
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
                            output) ||
-        !check_window(reader, node, output) || !read_snapshots(reader, node, output) ||
-        !read_contacts(reader, node, output) ||
-        !se3di_read_field_grid(reader, node, &output->grid) ||
-        !check_average(reader, node, output) || !check_kind_of_rows(reader, node, output) ||
+        !check_window(reader, node, output) || !read_particle_rows(reader, node, kind, output) ||
         (!output->particles && !output->contacts && !output->vtk && !output->average &&
          !read_channels(reader, node, output))) {
         return false;
@@ -527,7 +567,7 @@ static bool read_entries(se3di_reader *reader, const se3di_node *list, bool pict
         if (!find_kind(reader, node, &kind)) {
             return false;
         }
-        if ((kind > KIND_AVERAGE) == pictures &&
+        if ((kind > KIND_WALL_MAP) == pictures &&
             !(pictures ? read_picture(reader, node, kind) : read_output(reader, node, kind))) {
             return false;
         }

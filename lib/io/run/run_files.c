@@ -101,16 +101,17 @@ static bool open_sums(const se3di_runner *r, const se3di_output_entry *entry,
 
 static size_t count_sums(const se3di_output_file *file)
 {
-    return file->summary ? SE3DI_SUMMARY_COLUMNS : SE3DI_AVERAGE_COLUMNS;
+    return file->summary ? SE3DI_SUMMARY_COLUMNS : se3di_average_count_columns(file->average);
 }
 
 static void put_sums_head(se3di_output_file *file)
 {
     const size_t count = count_sums(file);
     for (size_t k = 0; k < count; ++k) {
-        se3di_csv_put_name(
-            &file->csv, file->summary ? se3di_summary_get_column(k) : se3di_average_get_column(k),
-            k + 1 == count);
+        se3di_csv_put_name(&file->csv,
+                           file->summary ? se3di_summary_get_column(k)
+                                         : se3di_average_get_column(file->average, k),
+                           k + 1 == count);
     }
 }
 

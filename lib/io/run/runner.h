@@ -20,7 +20,7 @@ typedef struct se3di_output_file {
     se3di_csv csv;
     se3di_vtk *vtk;             /* NULL: it is a CSV file */
     se3di_summary *summary;     /* NULL: it has rows, */
-    se3di_average_sum *average; /* unless it is one of fields */
+    se3di_average_sum *average; /* unless it is one of fields or a wall */
     double *row;
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
