@@ -39,6 +39,10 @@ for pair in pendulum:bar spatial_slider_crank:rod tsda_mass:block; do
     [ "$model" = pendulum ] || opens $brief "$dir/$model/scene.html" "$dir/$model/$model.csv" "${pair#*:}"
     [ "$model" = pendulum ] || [ -n "${SE3D_LONG:-}" ] || brief=brief # keys and mouse once
 done
+# Events are no results, though their file comes first.
+"$program" run -q "$source/examples/models/pendulum_events.yaml" -o "$dir/events"
+expect 'beside a file of events' 0 "$program" view -q "$dir/events"
+has "$dir/events/scene.html" '"names":["time","pin.angle"'
 # 20 bodies over 10 s, more rows than a scene has samples: still exact, still small.
 {
     printf 'se3d: 1\ntitle: <script>alert("x")</script> & \047twenty\047\nbodies:\n'

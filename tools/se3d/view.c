@@ -25,6 +25,7 @@ enum { RESULTS_SIZE = 120 * 1024, PATH_SIZE = 4096, MODES_MAX = 60 };
 enum { CHANNELS, PARTICLES, MODES };
 
 static const char modes_head[] = "mode,real,imag,frequency,damping,";
+static const char events_head[] = "time,event,";
 
 /* True if a file begins with these columns. */
 static int has_head(const char *path, const char *columns)
@@ -40,8 +41,8 @@ static int has_head(const char *path, const char *columns)
     return has;
 }
 
-/* The first results file of a folder, by name: of channels over time (spectra of plots left out),
- * of particles, or of modes. */
+/* The first results file of a folder, by name: of channels over time (events and spectra of plots
+ * left out), of particles, or of modes. */
 static int find_results(const char *folder, int kind, char *path, size_t size)
 {
     char best[300] = "";
@@ -53,9 +54,10 @@ static int find_results(const char *folder, int kind, char *path, size_t size)
             continue;
         }
         snprintf(path, size, "%s/%s", folder, d->d_name);
-        const int is_kind =
-            kind == MODES ? has_head(path, modes_head)
-                          : has_head(path, "time,") && snapshots_is(path) == (kind == PARTICLES);
+        const int is_kind = kind == MODES
+                                ? has_head(path, modes_head)
+                                : has_head(path, "time,") && !has_head(path, events_head) &&
+                                      snapshots_is(path) == (kind == PARTICLES);
         if (is_kind) {
             strcpy(best, d->d_name);
         }
