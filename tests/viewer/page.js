@@ -157,6 +157,9 @@ const checkPicks = async () => {
   check(picked === (await evaluate("JSON.stringify(se3d.state.picked)")), "and what was picked");
   await evaluate("se3d.set({colour: '', labels: false, picked: null})");
 };
+// As WCAG 2 says.
+const luminance = (c) => [0.2126, 0.7152, 0.0722].reduce((sum, part, k) => sum + part * (c[k] / 255 <= 0.04045 ? c[k] / 255 / 12.92 : ((c[k] / 255 + 0.055) / 1.055) ** 2.4), 0);
+const contrast = (a, b) => { const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y); return (high + 0.05) / (low + 0.05); };
 const checkJoints = async () => {
   // Where things meet it is darker, and below what is close to the floor.
   await evaluate("se3d.show(se3d.start)");
@@ -180,6 +183,19 @@ const checkJoints = async () => {
     const wide = await evaluate("document.documentElement.scrollWidth");
     check(wide <= width, `nothing is wider than the screen: ${wide}`);
   }
+  // Curves stand out in either theme, and their marks are as they are.
+  for (const dark of [true, false]) {
+    await evaluate(`se3d.set({dark: ${dark}})`);
+    for (const { name, colours, marks } of await evaluate("se3d.plots.state()")) {
+      const light = colours.map((c) => [1, 3, 5].map((k) => parseInt(c.slice(k, k + 2), 16)));
+      check(light.every((c) => `rgb(${c.join(", ")})` === marks[light.indexOf(c)]), `marks of ${name}: ${marks}`);
+      if (dark) check(light.every((c) => contrast(c, [32, 39, 46]) > 4.5), `on dark: ${name} ${colours}`);
+    }
+  }
+  await call("Emulation.setDeviceMetricsOverride", { width: 1280, height: 720, deviceScaleFactor: 1, mobile: false });
+  await wait(100);
+  const bar = await evaluate("document.getElementById('bar').offsetHeight");
+  check(bar < 45, `the bar has one row: ${bar}`);
 };
 const checkBeads = async () => {
   for (const part of brief ? [0.2] : [0, 0.2, 0.7]) {

@@ -3,7 +3,10 @@
 "use strict";
 // `names`, `units` of the columns, the first is the time; `rows()` of them, `at(row, column)`; `seek(t)` is called by a click.
 const se3dPlots = (box, { names, units, rows, at, seek }) => {
-  const { uPlot } = THREE, colours = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]; // Okabe and Ito
+  const { uPlot } = THREE;
+  // Okabe and Ito; lighter where the page is dark.
+  const strong = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"], light = ["#4a9fe8", "#f5833c", "#1fc795", "#e08cbb", "#f0b429", "#a5dbf7"];
+  const hue = (i) => (document.body.classList.contains("dark") ? light : strong)[i % strong.length];
   const quantities = [];
   names.forEach((name, k) => {
     if (k === 0) return;
@@ -34,7 +37,7 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     frame.append(head);
     box.append(frame);
     const series = quantity.columns.map((k, i) => ({
-      label: names[k].slice(quantity.name.length + 1) || "value", stroke: colours[i % colours.length], width: 1.6, points: { show: false },
+      label: names[k].slice(quantity.name.length + 1) || "value", stroke: () => hue(i), width: 1.6, points: { show: false },
       value: (u, v) => `${digits(v)} ${quantity.unit}`,
     }));
     const u = new uPlot({
@@ -125,13 +128,16 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     quantities, add, replace, time, refresh, resize, suggest,
     choose: (list) => { while (shown.length) remove(shown[0]); list.forEach(add); },
     names: () => shown.map((p) => p.quantity.name),
-    theme: () => shown.forEach(({ u }) => u.redraw(false)),
+    theme: () => shown.forEach(({ u }) => {
+      u.redraw(false);
+      Array.from(u.root.querySelectorAll(".u-marker")).slice(1 - u.series.length).forEach((mark, k) => { mark.style.borderColor = hue(k); });
+    }),
     close: () => { while (shown.length) remove(shown[0]); },
     // For films: title, picture, and where its line is (parts of its width), none: it is out of it.
     pictures: () => shown.map(({ quantity, u }) => ({ title: quantity.name + (quantity.unit ? ` [${quantity.unit}]` : ""), canvas: u.ctx.canvas, frame: u.bbox,
       line: (u.valToPos(moment, "x", true) - u.bbox.left) / u.bbox.width })),
     // For tests.
-    state: () => shown.map(({ quantity, u, now }) => ({ name: quantity.name, unit: quantity.unit, columns: quantity.columns.length, rows: u.data[0].length,
+    state: () => shown.map(({ quantity, u, now }) => ({ name: quantity.name, unit: quantity.unit, columns: quantity.columns.length, rows: u.data[0].length, colours: u.series.slice(1).map((_, i) => hue(i)), marks: Array.from(u.root.querySelectorAll(".u-marker"), (e) => getComputedStyle(e).borderTopColor).slice(1 - u.series.length),
       min: u.scales.x.min, max: u.scales.x.max, now: u.posToVal(new DOMMatrix(getComputedStyle(now).transform).e + 0.5, "x"), legend: Array.from(u.root.querySelectorAll(".u-value"), (e) => e.textContent),
       over: (({ x, y, width, height }) => [x, y, width, height])(u.over.getBoundingClientRect()) })),
   };
