@@ -74,7 +74,7 @@ awk -v many=$many 'BEGIN {
     print "time,id,radius,x,y,z,vx,vy,vz,wx,wy,wz"
     for (s = 0; s < 5; ++s) for (k = 0; k < many; ++k)
         if (!(s == 1 && k < 3) && !(s == 4 && k > many - 10))
-            printf "%.17g,%d,0.006,%.17g,%.17g,%.17g,0,0,0,0,0,0\n", 0.15 * s, k + 7, 0.012 * (k % 25) + 0.01 * s, 0.012 * (int(k / 25) % 20), 0.012 * int(k / 500) - 0.002 * s
+            printf "%.17g,%d,0.006,%.17g,%.17g,%.17g,0,0,0,0,0,0\n", 0.15 * s, k + 7, 0.012 * (k % 25) + 0.01 * s, 0.012 * (int(k / 25) % 20), 0.012 * int(k / 500) - 0.2 - 0.002 * s
 }' >"$dir/grains/grains.csv"
 opens_grains many
 # Shapes of modes are in the page, and move in it.

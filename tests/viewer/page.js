@@ -297,6 +297,8 @@ const checkGrains = async ({ names, rows, texts }) => {
     const grain = await evaluate(`se3d.grain(${row[1] - first})`);
     check(apart(grain.slice(0, 3), row.slice(3, 6)) < 1e-4 && Math.abs(grain[3] - row[2]) < 1e-6, `at t = ${row[0]} grain ${row[1]} is at ${grain}, not ${row.slice(2, 6)}`);
   }
+  const floor = await evaluate("se3d.floor()"), lowest = rows.reduce((a, row) => Math.min(a, row[5] - row[2]), 1e9);
+  check(floor < lowest, `grains are above the floor: ${lowest} and ${floor}`);
   // Forces and sets come along in files that tell them.
   const { hues, legend } = await colours("force");
   if (names.includes("force")) check(hues.includes("force") && /^force \[N\] 0\.00.*[1-9]/.test(legend), `colours by force: ${hues}, ${legend}`);

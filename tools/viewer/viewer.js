@@ -209,17 +209,21 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   }
   // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
   const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
-  const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 4 * largest0;
+  const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 3 * largest0;
   if (isFar) { pose(start); low.copy(own[0]).add(bodies[heaviest].position); high.copy(own[1]).add(bodies[heaviest].position); }
+  let hasRoad = false;
   if (grid) { // a floor under a road lies just below it
     let least = Infinity;
     pose(start); root.updateMatrixWorld(true);
     root.traverse((o) => { if (o.name === "road" && o.isMesh) { o.geometry.computeBoundingBox(); least = Math.min(least, o.geometry.boundingBox.clone().applyMatrix4(o.matrixWorld).min.z); } });
-    if (least < Infinity) grid.position.z = least - 0.004 * high.distanceTo(low);
+    hasRoad = least < Infinity;
+    if (hasRoad) grid.position.z = least - 0.004 * high.distanceTo(low);
   }
   if (packed && packed.box) { if (packed.box[0] !== null) { low.min(va.fromArray(packed.box)); high.max(va.fromArray(packed.box, 3)); } }
   else if (packed) { const wide = grains.sizes()[1]; low.min(va.fromArray(packed.low).subScalar(wide)); high.max(va.fromArray(packed.high).addScalar(wide)); }
   if (!(high.x >= low.x)) { low.set(-1, -1, -1); high.set(1, 1, 1); }
+  // What nothing holds stands or lies on the floor; grains never hang through it.
+  if (grid && !live && low.z > -1e8 && (packed ? low.z < grid.position.z : !isHeld && !hasRoad)) grid.position.z = low.z - 0.001 * high.distanceTo(low);
   const center = low.clone().add(high).multiplyScalar(0.5), edge = high.clone();
   const size = Math.max(1e-6, high.distanceTo(low));
   // three.js's own controls move the camera; here in angles about what it looks at.
@@ -893,6 +897,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       const middle = ring.reduce((a, b) => a.add(b), new THREE.Vector3()).divideScalar(8), far = ring.map((p) => p.distanceTo(middle));
       return [Math.min(...far), Math.max(...far)];
     },
+    floor: () => floor.position.z,
     scale: (name) => nodes.find((o) => o.name === name).scale.toArray(),
     second: (name) => secondBodies.get(name).getWorldPosition(new THREE.Vector3()).toArray(),
     position: (name) => bodies.find((b) => b.name === name).position.toArray(),
