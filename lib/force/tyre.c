@@ -230,11 +230,11 @@ static void take_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *
     }
 }
 
+/* `slip`: of the instant; what lags takes its place in it. */
 static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
                         se3di_tyre_forces *forces)
 {
     memset(forces, 0, sizeof *forces);
-    take_slip(force, c, slip);
     take_lag(force, c, slip);
     if (!(slip->load.v > 0.0)) {
         return;
@@ -485,18 +485,15 @@ static double find_energy(const se3di_force *force, const patch *c)
     return 0.5 * force->k * deflection * deflection;
 }
 
+/* `slip`: as of find_forces. */
 static void eval_patch(const se3di_model *model, const se3di_force *force, const patch *c,
-                       se3di_effect *effect)
+                       se3di_tyre_slip *slip, se3di_effect *effect)
 {
     const se3di_frame *const frames[2] = {&model->frames[force->body_i],
                                           &model->frames[force->body_j]};
-    se3di_tyre_slip slip;
     se3di_tyre_forces forces;
     double of[6], u[12];
-    if (!c->touches) {
-        return;
-    }
-    find_forces(force, c, &slip, &forces);
+    find_forces(force, c, slip, &forces);
     for (int k = 0; k < 6; ++k) {
         of[k] = forces.of[k].v;
     }
@@ -520,7 +517,11 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
 {
     patch c;
     SE3DI_TRY(take_patch(model, force, t, &c));
-    eval_patch(model, force, &c, effect);
+    if (c.touches) {
+        se3di_tyre_slip slip;
+        take_slip(force, &c, &slip);
+        eval_patch(model, force, &c, &slip, effect);
+    }
     return SE3D_OK;
 }
 
@@ -535,34 +536,45 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
 
 /* ---- Slip that lags ------------------------------------------------------------------------*/
 
-/* sigma, at least a part of the radius. */
-static se3di_dual find_length(const se3di_force *force, const se3di_tyre_slip *slip, int direction)
+/* sigma of the slips that lag, at least a part of the radius. */
+static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip,
+                         se3di_dual length[2])
 {
-    const double given = force->tyre->relaxation[direction], least = SHORTEST * force->rest;
-    se3di_dual length[2];
-    if (given > 0.0) {
-        return se3di_dual_of(given);
+    const se3di_tyre *tyre = force->tyre;
+    const double least = SHORTEST * force->rest;
+    int by_law = 0;
+    for (int k = 0; k < 2; ++k) {
+        by_law |= tyre->lags[k] && !(tyre->relaxation[k] > 0.0);
+        length[k] = se3di_dual_of(least);
     }
-    if (!(slip->load.v > 0.0)) {
-        return se3di_dual_of(least);
+    if (by_law && slip->load.v > 0.0) {
+        se3di_tyre_magic_relaxation(force, slip, length);
     }
-    se3di_tyre_magic_relaxation(force, slip, length);
-    return length[direction].v > least ? length[direction] : se3di_dual_of(least);
+    for (int k = 0; k < 2; ++k) {
+        if (tyre->relaxation[k] > 0.0) {
+            length[k] = se3di_dual_of(tyre->relaxation[k]);
+        } else if (!(length[k].v > least)) {
+            length[k] = se3di_dual_of(least);
+        }
+    }
 }
 
-/* z' = V (slip - z) / sigma; off the road there is no slip, and z is forgotten as it went on. */
-static se3di_dual find_rate(const se3di_force *force, const patch *c, int direction)
+/* z' = V (slip - z) / sigma; off the road there is no slip, and z is forgotten as it went on.
+ * `slip`: of the instant. */
+static void find_rates(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                       se3di_dual rate[2])
 {
-    const int at = SE3DI_PATCH_LAGGED + direction;
-    const se3di_dual z = se3di_dual_seed(c->input[at], at, 1.0);
-    se3di_tyre_slip slip;
-    take_slip(force, c, &slip);
+    se3di_dual length[2];
     const se3di_dual speed = force->tyre->law == SE3D_TYRE_BRUSH
-                                 ? slip.roll
-                                 : se3di_tyre_regular(slip.speed, force->tyre->low_speed);
-    const se3di_dual goal = c->touches ? *find_slip(force, &slip, direction) : se3di_dual_of(0.0);
-    const se3di_dual rate = se3di_dual_div(speed, find_length(force, &slip, direction));
-    return se3di_dual_mul(rate, se3di_dual_sub(goal, z));
+                                 ? slip->roll
+                                 : se3di_tyre_regular(slip->speed, force->tyre->low_speed);
+    find_lengths(force, slip, length);
+    for (int k = 0; k < 2; ++k) {
+        const int at = SE3DI_PATCH_LAGGED + k;
+        const se3di_dual z = se3di_dual_seed(c->input[at], at, 1.0);
+        const se3di_dual goal = c->touches ? *find_slip(force, slip, k) : se3di_dual_of(0.0);
+        rate[k] = se3di_dual_mul(se3di_dual_div(speed, length[k]), se3di_dual_sub(goal, z));
+    }
 }
 
 static void find_gain(const se3di_force *force, const se3di_frame *const frames[2], const patch *c,
@@ -573,6 +585,7 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
     double of[6];
     memset(gain, 0, 12 * sizeof *gain);
     if (c->touches) {
+        take_slip(force, c, &slip);
         find_forces(force, c, &slip, &forces);
         for (int k = 0; k < 6; ++k) {
             of[k] = forces.of[k].d[SE3DI_PATCH_LAGGED + direction];
@@ -585,11 +598,22 @@ se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyr
                                 se3di_effect *effect, double rate[2])
 {
     patch c;
+    se3di_tyre_slip slip;
+    se3di_dual rates[2];
     memset(effect, 0, offsetof(se3di_effect, K));
     SE3DI_TRY(take_patch(model, tyre, t, &c));
-    eval_patch(model, tyre, &c, effect);
+    const int lags = tyre->tyre->lags[0] || tyre->tyre->lags[1];
+    if (c.touches || lags) {
+        take_slip(tyre, &c, &slip);
+    }
+    if (lags) {
+        find_rates(tyre, &c, &slip, rates);
+    }
     for (int k = 0; k < 2; ++k) {
-        rate[k] = tyre->tyre->lags[k] ? find_rate(tyre, &c, k).v : 0.0;
+        rate[k] = tyre->tyre->lags[k] ? rates[k].v : 0.0;
+    }
+    if (c.touches) {
+        eval_patch(model, tyre, &c, &slip, effect);
     }
     return SE3D_OK;
 }
@@ -600,8 +624,12 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
     const se3di_frame *const frames[2] = {&model->frames[tyre->body_i],
                                           &model->frames[tyre->body_j]};
     patch c, out = {.cosine = 0.0};
+    se3di_tyre_slip slip;
+    se3di_dual rates[2];
     SE3DI_TRY(take_patch(model, tyre, t, &c));
-    const se3di_dual rate = find_rate(tyre, &c, direction);
+    take_slip(tyre, &c, &slip);
+    find_rates(tyre, &c, &slip, rates);
+    const se3di_dual rate = rates[direction];
     lag->rate = rate.v;
     if (!lag->wants_derivative) {
         return SE3D_OK;
@@ -641,8 +669,9 @@ se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
     SE3DI_TRY(take_patch(model, force, model->time, &c));
     if (c.touches) {
-        find_forces(force, &c, &slip, &forces);
         take_slip(force, &c, &slip);
+        se3di_tyre_slip followed = slip;
+        find_forces(force, &c, &followed, &forces);
     }
     for (int k = 0; k < 6; ++k) {
         values[SE3D_TYRE_FX + k] = forces.of[k].v;
