@@ -28,7 +28,20 @@ static se3d_status eval_state(const se3di_model *model, const se3di_force *force
     return SE3D_OK;
 }
 
+/* None; the law of a user may fail all the same. */
+static se3d_status find_potential(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential)
+{
+    double jet[3];
+    *potential = 0.0;
+    if (force->tyre_index < 0 && force->function[0] >= 0) {
+        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
+    }
+    return SE3D_OK;
+}
+
 const se3di_force_class se3di_force_class_state = {
     .name = "state",
     .eval = eval_state,
+    .find_potential = find_potential,
 };

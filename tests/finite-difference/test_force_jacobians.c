@@ -588,6 +588,12 @@ static void lag_errors(world *w, int direction, const se3di_tyre_lag *exact, dou
     double plus, minus;
     se3di_effect far = {.wants_derivative = 0}, near = {.wants_derivative = 0};
     worst[0] = worst[1] = 0.0;
+    for (size_t k = 0; k < w->model->force_slots.count; ++k) { /* states, too */
+        double alone = NAN;
+        CHECK(!se3di_force_eval(w->model, &w->model->forces[k], 0.3, &far));
+        CHECK(!se3di_force_potential(w->model, &w->model->forces[k], 0.3, &alone));
+        CHECK(alone == far.potential);
+    }
     memcpy(kept, w->model->frames, sizeof kept);
     for (int k = 0; k < 24; ++k) {
         displace(w, k, h);
