@@ -189,6 +189,11 @@ END { exit !(head == "x,y,z,area,pressure,shear.x,shear.y,shear.z,sliding" && li
 END_OF_AWK
 holds "is not the mean of its contacts: $(cat "$dir/wall/wall.csv")" \
     awk -F, -f "$dir/wall.awk" "$dir/wall/contacts.csv" "$dir/wall/wall.csv"
+expect 'the chute' 0 "$program" run -q "$source/examples/models/chute.yaml" -o "$dir/chute"
+holds 'the stream does not gain speed' awk -F, 'NR > 1 && $4 > 40 && $3 < 0.06 && $6 < 0.5 {++slow}
+    NR > 1 && $4 > 40 && $6 > 0.95 && $1 > 0.05 {++fast} END {exit !(slow == 1 && fast >= 1)}' "$dir/chute/flow.csv"
+holds 'the floor does not wear below the source' awk -F, 'NR > 1 {sum[$1 < -0.05 && $1 > -0.1] += $9 * ($1 > 0.075 || $1 < -0.05 && $1 > -0.1)}
+    END {exit !(NR == 41 && sum[1] > 5 * sum[0] && sum[0] > 0)}' "$dir/chute/wear.csv"
 mkdir "$dir/blocked"
 : >"$dir/blocked/motion"
 expect 'a folder of a series that cannot be made' 1 "$program" run "$dir/vtk.yaml" -o "$dir/blocked"
