@@ -108,43 +108,43 @@ void se3di_average_pack(se3di_average_sum *average, se3di_coder *coder)
 }
 
 /* Of a cell: its middle, then SE3D_FIELD_VALUES. */
-static const char *const field_columns[] = {"x",
-                                            "y",
-                                            "z",
-                                            "density",
-                                            "solid_fraction",
-                                            "velocity.x",
-                                            "velocity.y",
-                                            "velocity.z",
-                                            "temperature",
-                                            "kinetic_stress.xx",
-                                            "kinetic_stress.yy",
-                                            "kinetic_stress.zz",
-                                            "kinetic_stress.xy",
-                                            "kinetic_stress.yz",
-                                            "kinetic_stress.xz",
-                                            "contact_stress.xx",
-                                            "contact_stress.yy",
-                                            "contact_stress.zz",
-                                            "contact_stress.xy",
-                                            "contact_stress.yz",
-                                            "contact_stress.xz"};
+static const char *const cell_columns[] = {"x",
+                                           "y",
+                                           "z",
+                                           "density",
+                                           "solid_fraction",
+                                           "velocity.x",
+                                           "velocity.y",
+                                           "velocity.z",
+                                           "temperature",
+                                           "kinetic_stress.xx",
+                                           "kinetic_stress.yy",
+                                           "kinetic_stress.zz",
+                                           "kinetic_stress.xy",
+                                           "kinetic_stress.yz",
+                                           "kinetic_stress.xz",
+                                           "contact_stress.xx",
+                                           "contact_stress.yy",
+                                           "contact_stress.zz",
+                                           "contact_stress.xy",
+                                           "contact_stress.yz",
+                                           "contact_stress.xz"};
 /* Of a triangle: SE3D_WALL_VALUES. */
-static const char *const wall_columns[] = {"x",       "y",       "z",       "area",   "pressure",
-                                           "shear.x", "shear.y", "shear.z", "sliding"};
+static const char *const triangle_columns[] = {
+    "x", "y", "z", "area", "pressure", "shear.x", "shear.y", "shear.z", "sliding"};
 enum {
-    FIELD_COLUMNS = sizeof field_columns / sizeof *field_columns,
-    WALL_COLUMNS = sizeof wall_columns / sizeof *wall_columns
+    CELL_COLUMNS = sizeof cell_columns / sizeof *cell_columns,
+    TRIANGLE_COLUMNS = sizeof triangle_columns / sizeof *triangle_columns
 };
 
 size_t se3di_average_count_columns(const se3di_average_sum *average)
 {
-    return average->grid ? FIELD_COLUMNS : WALL_COLUMNS;
+    return average->grid ? CELL_COLUMNS : TRIANGLE_COLUMNS;
 }
 
 const char *se3di_average_get_column(const se3di_average_sum *average, size_t k)
 {
-    return average->grid ? field_columns[k] : wall_columns[k];
+    return average->grid ? cell_columns[k] : triangle_columns[k];
 }
 
 /* The means of a cell from its sums. */
@@ -181,7 +181,7 @@ void se3di_average_write(se3di_average_sum *average, se3di_csv *csv)
 {
     const size_t count = se3di_average_count_columns(average), first = count - average->width;
     for (size_t cell = 0; cell < average->cells && average->rows > 0; ++cell) {
-        se3di_csv_cell cells[FIELD_COLUMNS] = {{NULL, 0.0}};
+        se3di_csv_cell cells[CELL_COLUMNS] = {{NULL, 0.0}};
         double values[SE3D_FIELD_VALUES];
         if (average->grid) {
             get_middle(average->grid, cell, cells);
