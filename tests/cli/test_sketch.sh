@@ -9,6 +9,12 @@ expect 'a view in words' 2 "$program" sketch "$models/fourbar.yaml" --view above
 says 'must be AZIMUTH,ELEVATION'
 expect 'no folder' 1 "$program" sketch "$models/fourbar.yaml" -o "$dir/none/a.svg"
 says 'cannot be written'
+expect 'a file' 0 "$program" sketch -q "$models/fourbar.yaml" -o "$dir/fourbar.svg"
+"$program" sketch "$models/fourbar.yaml" -o - >"$dir/printed.svg" || holds 'printed' false
+holds 'another picture on standard output' cmp -s "$dir/fourbar.svg" "$dir/printed.svg"
+(cd "$dir" && "$program" sketch - <"$models/fourbar.yaml" >piped.svg)
+holds 'no picture through a pipe' grep -q '^</svg>' "$dir/piped.svg"
+holds 'a file of that name' [ ! -e "$dir/-.svg" ]
 cat >"$dir/look.py" <<'END_OF_PYTHON'
 import subprocess, sys, xml.dom.minidom as xml
 program, models, folder = sys.argv[1:]

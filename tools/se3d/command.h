@@ -53,8 +53,10 @@ typedef struct command_entry {
     const command_option *options;
     const command_example *examples;
     const char *exits; /* what the exit codes mean */
-    int prints;        /* without -o it writes to standard output */
+    int prints;        /* 1: without -o it writes to standard output; COMMAND_PRINTS_GIVEN */
 } command_entry;
+
+enum { COMMAND_PRINTS_GIVEN = 2 }; /* with -o - it writes to standard output */
 
 extern const command_entry new_entry, fmt_entry, channels_entry, run_entry, check_entry,
     evaluate_entry, plot_entry, report_entry, sketch_entry, view_entry, live_entry, video_entry,

@@ -187,7 +187,7 @@ static int report_no_operand(const command_entry *c)
 /* `-o -` is what a command prints without -o; it makes no file or folder of that name (-o ./-). */
 static int check_output(options *o, const command_entry *c)
 {
-    if (!o->directory || strcmp(o->directory, "-") != 0) {
+    if (!o->directory || strcmp(o->directory, "-") != 0 || c->prints == COMMAND_PRINTS_GIVEN) {
         return EXIT_DONE;
     }
     o->directory = NULL;

@@ -15,11 +15,15 @@ enum { PATH_SIZE = 4096 };
 
 #define RADIAN 0.017453292519943295 /* of a degree */
 
-/* The folder is the one that is worked in: "dir/arm.yaml" becomes "arm.svg". */
+/* The folder is the one that is worked in: "dir/arm.yaml" becomes "arm.svg"; what comes from
+ * standard input goes to standard output. */
 static int make_path(const options *o, char *path, size_t size)
 {
     if (o->directory) {
         return snprintf(path, size, "%s", o->directory) < (int)size;
+    }
+    if (strcmp(o->model, "-") == 0) {
+        return snprintf(path, size, "-") > 0;
     }
     const char *name = path_get_name(o->model);
     const char *dot = strrchr(name, '.');
@@ -29,11 +33,13 @@ static int make_path(const options *o, char *path, size_t size)
 
 static int write_sketch(const options *o, se3d_model *model, const double *view, const char *path)
 {
-    FILE *file = se3di_partial_open(path);
+    const int prints = strcmp(path, "-") == 0;
+    FILE *file = prints ? stdout : se3di_partial_open(path);
     const se3d_status status = file ? se3di_sketch_put(model, view, file) : SE3D_ERR_IO;
     errno = file && SE3D_FAILED(status) ? EINVAL : errno;
-    if (file && file_end(file, path, !SE3D_FAILED(status) && !ferror(file))) {
-        if (!o->quiet) {
+    const int good = file && !SE3D_FAILED(status) && !ferror(file);
+    if (prints ? good && fflush(stdout) == 0 : file && file_end(file, path, good)) {
+        if (!o->quiet && !prints) {
             printf("wrote %s\n", path);
         }
         return EXIT_DONE;
@@ -85,7 +91,8 @@ const command_entry sketch_entry = {
             "mechanism is seen along its pins, another one from where its joints are seen apart.",
     .options =
         (const command_option[]){
-            {"--output", "-o", "FILE.svg", "where to (default: MODEL.svg, here)"},
+            {"--output", "-o", "FILE.svg",
+             "where to (default: MODEL.svg, here), - for standard output"},
             {"--view", NULL, "A,E", "azimuth and elevation of the eye [degrees]"},
             COMMAND_OPTION_SET,
             COMMAND_OPTION_QUIET,
@@ -93,6 +100,8 @@ const command_entry sketch_entry = {
     .examples =
         (const command_example[]){{"sketch fourbar.yaml", "fourbar.svg"},
                                   {"sketch car.yaml --view 30,20 -o car.svg", "from another side"},
+                                  {"sketch - <arm.yaml >arm.svg", "within a pipe"},
                                   {0}},
     .exits = "0 done; 1 the file cannot be written; 2 bad usage or model.",
+    .prints = COMMAND_PRINTS_GIVEN,
 };
