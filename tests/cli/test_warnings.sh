@@ -63,11 +63,13 @@ particles:
   - {material: sand, radius: 0.1, lower: [2, 2, 2], upper: [2.5, 2.5, 2.5]}
   - {material: sand, radius: 0.1, jitter: 0.01, lower: [4, 2, 2], upper: [4.21, 2.5, 2.5]}
 analysis: {type: dynamics, duration: 0.01}" ''
-sed 's/^output: \[/&{summary: s.csv, start: 3, stop: 4, channels: [a.position]}, /' "$dir/grains.yaml" >"$dir/empty.yaml"
+sed 's/^output: \[/&{summary: s.csv, start: 3, stop: 4, channels: [a.position]}, {summary: t.csv, start: 3, channels: [a.position]}, /' \
+    "$dir/grains.yaml" >"$dir/empty.yaml"
 expect 'particles beside what is locked' 0 "$program" run "$dir/empty.yaml" -o "$dir/r"
 is "$(lines 'nothing can move')" 0
 has "$dir/err" 'particles[1]: holds no particle: none of radius 0.1 m, displaced by up to 0.01 m, fits'
 has "$dir/err" 's.csv is empty: no row is from `start`, 3 s, to `stop`, 4 s'
+has "$dir/err" 't.csv is empty: no row is from `start`, 3 s, on'
 sed '/^particles/,/4.21/d' "$dir/grains.yaml" >"$dir/locked.yaml"
 expect 'locked' 0 "$program" run "$dir/locked.yaml" -o "$dir/r"
 is "$(lines 'nothing can move')" 1

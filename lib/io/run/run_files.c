@@ -356,11 +356,16 @@ static se3d_status close_csv(se3di_runner *r, se3di_csv *csv, se3d_run_file *abo
 static void warn_of_no_rows(const se3di_runner *r, const se3di_output_file *file)
 {
     const se3di_output_entry *entry = file->entry;
-    char text[500];
+    char text[500], from[40] = "", to[40] = "";
     if (r->model->log) {
-        snprintf(text, sizeof text,
-                 "%.200s is empty: no row is from `start`, %g s, to `stop`, %g s", entry->file,
-                 entry->start, entry->stop);
+        if (isfinite(entry->start)) {
+            snprintf(from, sizeof from, " from `start`, %g s,", entry->start);
+        }
+        if (isfinite(entry->stop)) {
+            snprintf(to, sizeof to, " to `stop`, %g s", entry->stop);
+        }
+        snprintf(text, sizeof text, "%.200s is empty: no row is%s%s", entry->file, from,
+                 *to ? to : " on");
         r->model->log(r->model->log_ctx, SE3D_LOG_WARNING, SE3D_LOG_FILE, text);
     }
 }
