@@ -339,11 +339,16 @@ static int must_switch(const se3di_run *run)
            integration->method->is_held(integration);
 }
 
-/* From the present state by a method for stiff motions, or for many bodies at each other. */
+/* From the present state by a method for stiff motions, or for many bodies at each other; by the
+ * same one if rounding alone brought them together. */
 static se3d_status switch_method(se3di_run *run)
 {
     if (se3di_run_is_crowded(run)) {
         return se3di_run_prepare(run);
+    }
+    run->integration.settings.leaves_crowd = 0; /* for the rest of this run */
+    if (!must_switch(run)) {
+        return SE3D_OK;
     }
     run->left = run->integration.method;
     run->left_at = run->model->time;
@@ -448,7 +453,8 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         return se3di_friction_start(&run->equations);
     }
     se3d_status status = run_method(run, t_end);
-    if (status >= 0 && status != SE3D_INFO_EVENT && run->model->time < t_end && must_switch(run)) {
+    while (status >= 0 && status != SE3D_INFO_EVENT && run->model->time < t_end &&
+           must_switch(run)) {
         SE3DI_TRY(switch_method(run));
         status = run_method(run, t_end);
     }
