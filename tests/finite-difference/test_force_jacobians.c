@@ -589,7 +589,7 @@ static void lag_errors(world *w, int direction, const se3di_tyre_lag *exact, dou
     se3di_effect far = {.wants_derivative = 0}, near = {.wants_derivative = 0};
     worst[0] = worst[1] = 0.0;
     for (size_t k = 0; k < w->model->force_slots.count; ++k) { /* states, too */
-        double alone = NAN;
+        double alone = (double)NAN;
         CHECK(!se3di_force_eval(w->model, &w->model->forces[k], 0.3, &far));
         CHECK(!se3di_force_potential(w->model, &w->model->forces[k], 0.3, &alone));
         CHECK(alone == far.potential);
@@ -777,7 +777,7 @@ static void power_balances_for_every_element(void)
             create[k](&w);
             se3di_effect e = {.wants_derivative = 0};
             CHECK(se3di_force_eval(w.model, w.force, 0.3, &e) == SE3D_OK);
-            double power = 0.0, alone = NAN;
+            double power = 0.0, alone = (double)NAN;
             double potential_rate = 0.0;
             CHECK(se3di_force_potential(w.model, w.force, 0.3, &alone) == SE3D_OK);
             CHECK(alone == e.potential);
