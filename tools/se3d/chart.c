@@ -120,7 +120,7 @@ static void put_legend(const chart *c, FILE *file)
 {
     const double width = (double)(WIDTH - LEFT - RIGHT) / (double)c->curves;
     for (size_t k = 0; k < c->curves; ++k) {
-        char kind[16];
+        char kind[32];
         char name[LABEL_SIZE];
         const double left = LEFT + width * (double)k;
         const int letters = (int)((width - 30.0) / 6.5);
