@@ -101,7 +101,7 @@ class Code:
     """Which statuses the functions of lib/ can return, by the names that stand in their bodies."""
 
     def __init__(self, root):
-        self.shared, self.local, self.made = {}, {}, {}
+        self.shared, self.local, self.made, self.found = {}, {}, {}, {}
         for path in [p for kind in ("c", "h", "inc") for p in sorted(root.glob(f"lib/**/*.{kind}"))]:
             text = path.read_text()
             lines, outside = text.split("\n"), []
@@ -147,14 +147,28 @@ class Code:
 
     def reach(self, name):
         """All statuses that the function can return, and more: every path counts."""
-        seen, todo, found = set(), [(self.shared[name][0], name)], set()
+        if not self.found:
+            self.follow_calls()
+        return self.found[id(self.shared[name])]
+
+    def follow_calls(self):
+        """Add to what each function names what those that it calls can return, until no more comes."""
+        entries, todo = {}, list(self.shared.values())
         while todo:
-            entry = self.look(*todo.pop())
-            if entry and id(entry) not in seen:
-                seen.add(id(entry))
-                found |= entry[2]
-                todo += [(entry[0], call) for call in entry[1]]
-        return found
+            entry = todo.pop()
+            if id(entry) in entries:
+                continue
+            called = [self.look(entry[0], name) for name in entry[1]]
+            entries[id(entry)] = {id(each) for each in called if each} - {id(entry)}
+            self.found[id(entry)] = set(entry[2])
+            todo += [each for each in called if each]
+        grown = True
+        while grown:
+            grown = False
+            for key, called in entries.items():
+                before = len(self.found[key])
+                self.found[key].update(*(self.found[each] for each in called))
+                grown |= len(self.found[key]) > before
 
 
 def status_problems(name, comment, docs, code, known):
