@@ -8,6 +8,7 @@
 //     node page.js PAGE modes CSV                 shapes of the modes in CSV, of two bodies on springs
 //     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
 //     node page.js PAGE playground                the playground: edits, runs, plots, asks nobody
+//     node page.js PAGE shots PREFIX              pictures to look at: PREFIX-light.png, -dark.png, -narrow.png
 //     node page.js PAGE second CSV BODY           two runs: BODY of the other one is where CSV says, as a ghost and beside
 // Several of these, with `--` between them, are opened one after the other in one browser. With the word `brief` before
 // PAGE without keys and mouse.
@@ -374,9 +375,11 @@ const checkLive = async (model) => {
   const camera = await evaluate("se3d.orbit.azimuth = 0.77");
   const version = await evaluate("se3dLive.version"), begin = Date.now();
   fs.writeFileSync(model, text.replace("[0.3, 0, 0]", "[0.2, 0, 0]").replace(/title: .*/, "title: Saved <b>"));
-  await until(`se3dLive.version > ${version} && document.title === "Saved <b>" && (se3d.picture(se3d.start), true)`);
-  const passed = (await until("se3dLive.drawn > " + begin + " && se3dLive.drawn")) - begin; // one clock for both
-  console.log(`${passed.toFixed(0)} ms from saving to the new picture`);
+  const passed = (await until(`document.title === "Saved <b>" && se3dLive.drawn > ${begin} && se3dLive.drawn`)) - begin; // one clock for both
+  check((await evaluate("se3dLive.version")) > version, "it is another scene");
+  const parts = await evaluate(`performance.getEntriesByType("mark").filter((m) => m.name.startsWith("se3d-") && performance.timeOrigin + m.startTime > ${begin} && performance.timeOrigin + m.startTime < ${begin + passed} + 1).map((m) => m.name.slice(5) + " " + Math.round(performance.timeOrigin + m.startTime - ${begin})).join(", ")`);
+  console.log(`${passed.toFixed(0)} ms from saving to the new picture (${parts})`);
+  check(passed < 3000, `a saved file is shown soon: ${passed} ms`);
   check(Math.abs((await evaluate("se3d.orbit.azimuth")) - camera) < 1e-5, "the camera stays");
   fs.writeFileSync(model, text.replace("type: prismatic", "type: prismatik"));
   const trouble = await until("document.getElementById('trouble').textContent");
@@ -446,11 +449,26 @@ const checkSecond = async ({ names, rows }, name) => {
   }
   check(pictures.size === 3, "as a ghost, beside and without it are three pictures");
 };
+// What one sees who opens the page: in both themes, and on a telephone.
+const takeShots = async (prefix) => {
+  for (const [name, width, height, dark] of [["light", 1280, 720, false], ["dark", 1280, 720, true], ["narrow", 480, 800, false]]) {
+    await call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
+    await evaluate(`se3d.set({dark: ${dark}}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))`);
+    await evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    check((await evaluate("se3d.state.follow > 0 || !se3d.clipped()")), `${name}: all is in the picture`);
+    check((await evaluate("document.documentElement.scrollWidth")) <= width, `${name}: nothing is wider than the screen`);
+    const shot = await call("Page.captureScreenshot", { format: "png" });
+    fs.writeFileSync(`${prefix}-${name}.png`, Buffer.from(shot.data, "base64"));
+  }
+};
 const run = async () => {
   await call("Page.navigate", { url: page.startsWith("http:") ? page : "file://" + path.resolve(page) });
   await start();
   if (csv === "joints") {
     await checkJoints();
+  } else if (csv === "shots") {
+    await takeShots(body);
+    return;
   } else if (csv === "modes") {
     await checkModes(read(body));
   } else if (csv === "live") {
