@@ -29,6 +29,11 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     return [low - 0.06 * width, high + 0.06 * width];
   };
   const size = () => ({ width: Math.max(120, box.clientWidth - 10), height: box.clientWidth < 300 ? 100 : 150 });
+  // Whether each is but rounding beside the largest: it is left out, as of `se3d plot`.
+  const areZero = (columns) => {
+    const most = columns.map((k) => { let v = 0; for (let r = 0; r < rows(); ++r) v = Math.max(v, Math.abs(at(r, k)) || 0); return v; });
+    return most.map((v) => v < 1e-9 * Math.max(...most));
+  };
   const small = { font: "11px sans-serif", stroke: colour("fg"), grid: { stroke: colour("--line"), width: 1 }, ticks: { stroke: colour("--line"), size: 4 } };
   const make = (quantity) => {
     const frame = document.createElement("div"), head = document.createElement("div"), away = document.createElement("button");
@@ -36,8 +41,9 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     head.append(quantity.name + (quantity.unit ? ` [${quantity.unit}]` : ""), away);
     frame.append(head);
     box.append(frame);
+    const zero = areZero(quantity.columns);
     const series = quantity.columns.map((k, i) => ({
-      label: names[k].slice(quantity.name.length + 1) || "value", stroke: () => hue(i), width: 1.6, points: { show: false },
+      label: (names[k].slice(quantity.name.length + 1) || "value") + (zero[i] ? ", zero" : ""), show: !zero[i], stroke: () => hue(i), width: 1.6, points: { show: false },
       value: (u, v) => `${digits(v)} ${quantity.unit}`,
     }));
     const u = new uPlot({
@@ -54,7 +60,7 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     u.over.addEventListener("mousedown", (e) => { from = e.clientX; });
     u.over.addEventListener("click", (e) => { if (from !== null && Math.abs(e.clientX - from) < 4) seek(u.posToVal(e.offsetX, "x")); });
     u.over.addEventListener("dblclick", () => { zoomed = false; });
-    const made = { quantity, frame, u, now };
+    const made = { quantity, frame, u, now, zero };
     head.onclick = () => { active = made; };
     away.onclick = (e) => { e.stopPropagation(); remove(made); };
     if (shown.length && zoomed) u.setScale("x", { min: shown[0].u.scales.x.min, max: shown[0].u.scales.x.max });
@@ -111,7 +117,17 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     const next = `${rows()} ${rows() ? at(0, 0) : 0} ${rows() ? at(rows() - 1, 0) : 0}`;
     if (next === span) return;
     span = next;
-    shown.forEach(({ quantity, u }) => { u.setData(data(quantity), !zoomed); if (zoomed) u.redraw(); });
+    shown.forEach(({ quantity, u, zero }) => {
+      u.setData(data(quantity), !zoomed);
+      if (zoomed) u.redraw();
+      if (zero.includes(true)) areZero(quantity.columns).forEach((is, i) => { // what is more than that now comes back
+        if (is || !zero[i]) return;
+        zero[i] = false;
+        const label = u.root.querySelectorAll(".u-series")[i + 1].querySelector(".u-label");
+        label.textContent = label.textContent.replace(", zero", "");
+        u.setSeries(i + 1, { show: true });
+      });
+    });
   };
   // The first quantities that change.
   const varies = ({ columns, name }) => !name.endsWith(".orientation") && columns.some((k) => {
@@ -137,7 +153,7 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
     pictures: () => shown.map(({ quantity, u }) => ({ title: quantity.name + (quantity.unit ? ` [${quantity.unit}]` : ""), canvas: u.ctx.canvas, frame: u.bbox,
       line: (u.valToPos(moment, "x", true) - u.bbox.left) / u.bbox.width })),
     // For tests.
-    state: () => shown.map(({ quantity, u, now }) => ({ name: quantity.name, unit: quantity.unit, columns: quantity.columns.length, rows: u.data[0].length, colours: u.series.slice(1).map((_, i) => hue(i)), marks: Array.from(u.root.querySelectorAll(".u-marker"), (e) => getComputedStyle(e).borderTopColor).slice(1 - u.series.length),
+    state: () => shown.map(({ quantity, u, now }) => ({ name: quantity.name, unit: quantity.unit, columns: quantity.columns.length, zero: u.series.slice(1).map((v) => !v.show), rows: u.data[0].length, colours: u.series.slice(1).map((_, i) => hue(i)), marks: Array.from(u.root.querySelectorAll(".u-marker"), (e) => getComputedStyle(e).borderTopColor).slice(1 - u.series.length),
       min: u.scales.x.min, max: u.scales.x.max, now: u.posToVal(new DOMMatrix(getComputedStyle(now).transform).e + 0.5, "x"), legend: Array.from(u.root.querySelectorAll(".u-value"), (e) => e.textContent),
       over: (({ x, y, width, height }) => [x, y, width, height])(u.over.getBoundingClientRect()) })),
   };
