@@ -65,16 +65,20 @@
 
   const open = async () => {
     await window.se3dReady;
+    performance.mark("se3d-told");
     if (viewer) viewer.hold(true);
     const scene = await (await ask("scene")).json();
+    performance.mark("se3d-scene");
     if (viewer) viewer.share();
     if (viewer) graves.push(viewer.close());
     viewer = await se3dView({ glb: se3dDecode(scene.glb), results: { ...scene.results, values: [] }, packed: scene.box ? { box: scene.box } : null, modes: null, live });
+    performance.mark("se3d-built");
     if (scene.list !== list) makeSliders(scene.sliders); // those that stay are not taken from the user's hand
     list = scene.list;
     version = scene.version;
     live.painted = () => { // the first picture
       live.painted = null;
+      performance.mark("se3d-painted");
       window.se3dLive.drawn = Date.now();
       graves.splice(0).forEach((bury) => bury());
     };

@@ -4,6 +4,7 @@
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
 const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 let se3dRenderer = null, se3dSlow = 0; // one for all that is shown in this page; how slow pictures are
+let se3dSun = null, se3dClear = null; // live, until the next file: light with its shadows; what was seen through
 // Shows a scene: `glb` with its motion, `other` (null: none) that of another run, `results` {names, units, values} beside
 // it, `packed` grains or null, `modes` of a file {names, rows} or null. With `live` ({post}, see live.js) there is no
 // motion: what `feed` gets is shown. `close` takes all away again.
@@ -14,10 +15,12 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   for (const id of ["follow", "colour", "channel", "mode", "labels"]) $(id).replaceChildren();
   $("follow").add(new Option("nothing", "-1"));
   const gltf = await new THREE.GLTFLoader().parseAsync(glb, ""), { json } = gltf.parser;
+  performance.mark("se3d-parsed");
   // Dark lines where a surface bends: given shapes stand out, also those that are seen through.
   const edges = new Map(), lineworks = [];
   const outline = (o) => {
     if (!edges.has(o.geometry)) edges.set(o.geometry, new THREE.EdgesGeometry(o.geometry, 30));
+    if (!edges.get(o.geometry).attributes.position.count && !o.userData.wire) return;
     const lines = new THREE.LineSegments(edges.get(o.geometry), new THREE.LineBasicMaterial({ color: 0x10161c, transparent: true, opacity: o.userData.wire ? 0.9 : 0.35 }));
     if (o.userData.wire) { o.material.colorWrite = o.material.depthWrite = false; lines.material.color.copy(o.material.color); }
     o.add(lines);
@@ -162,8 +165,10 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   });
   const shown = elements.filter((e) => e.place);
   const scene = new THREE.Scene();
-  scene.add(root, new THREE.HemisphereLight(0xffffff, 0x777788, 1.6));
-  const sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  const sky = new THREE.HemisphereLight(0xffffff, 0x777788, 1.6);
+  scene.add(root, sky);
+  const sun = (live && se3dSun) || new THREE.DirectionalLight(0xffffff, 2.2);
+  if (live) se3dSun = sun;
   scene.add(sun, sun.target);
   if (secondRoot) scene.add(secondRoot);
   const camera = new THREE.PerspectiveCamera(40, 1, 0.001, 1000);
@@ -180,14 +185,17 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const low = new THREE.Vector3(1, 1, 1).multiplyScalar(1e9), high = low.clone().negate();
   const heaviest = bodies.reduce((best, o, k) => (k > 0 && (best < 0 || o.userData.mass > bodies[best].userData.mass) ? k : best), -1);
   let largest0 = 0, own = null; // of what is not the ground, at one time
-  for (let k = 0; k < 24; ++k) {
+  const planes = [], boxes = [];
+  for (let k = 0; k < (end > start ? 24 : 1); ++k) {
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
+    low.setScalar(1e9); high.setScalar(-1e9);
     const least = new THREE.Vector3(1e9, 1e9, 1e9), most = least.clone().negate();
     const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
     const reckon = (o) => {
       if (!o.isMesh || !o.visible) return;
-      if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands or is a lid is hardly seen
+      if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
+        if (!o.userData.isPlane) planes.push(o);
         o.userData.isPlane = true;
         if (va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z < 0.5) o.material.opacity = 0.08;
         return;
@@ -202,11 +210,15 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     };
     root.traverse(reckon);
     if (secondRoot) { secondRoot.updateMatrixWorld(true); secondRoot.traverse(reckon); }
+    boxes.push({ low: low.clone(), high: high.clone(), size: high.distanceTo(low) });
     if (heaviest > 0 && most.x >= least.x && most.distanceTo(least) > largest0) {
       largest0 = most.distanceTo(least);
       own = [least.sub(bodies[heaviest].position), most.sub(bodies[heaviest].position)];
     }
   }
+  // What parts and falls far away at last does not make all else small.
+  const usual = [...boxes].sort((a, b) => a.size - b.size)[boxes.length >> 1].size;
+  boxes.filter((b) => b.size <= 2.5 * usual).forEach((b) => { low.min(b.low); high.max(b.high); });
   // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
   const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
   const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 3 * largest0;
@@ -329,7 +341,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const clear = new Set();
   const glaze = () => solids.forEach((o) => {
     if (!clear.has(o)) return;
-    Object.assign(o.material, state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.22, transparent: true, depthWrite: false });
+    Object.assign(o.material, state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
     o.castShadow = state.solid;
     o.material.needsUpdate = true;
   });
@@ -431,6 +443,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     }
     root.updateMatrixWorld(true);
     camera.lookAt(orbit.target);
+    planes.forEach((o) => { o.visible = va.setFromMatrixPosition(o.matrixWorld).sub(camera.position).dot(vb.set(0, 0, 1).transformDirection(o.matrixWorld)) < 0; }); // not from behind
     coils.forEach((bend) => bend());
     for (const { arrow, joint, column } of arrows) {
       va.set(value(column, state.time), value(column + 1, state.time), value(column + 2, state.time));
@@ -537,7 +550,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const pick = (x, y) => {
     ray.near = 0; ray.far = Infinity;
     ray.setFromCamera(new THREE.Vector2(2 * x / innerWidth - 1, 1 - 2 * y / innerHeight), camera);
-    const hits = ray.intersectObjects(solids, false), hit = hits.find((h) => h.object.userData.element !== undefined) || hits.find((h) => h.object.material.opacity === 1) || hits[0];
+    const hits = ray.intersectObjects(solids, false).filter((h) => h.object.visible), hit = hits.find((h) => h.object.userData.element !== undefined) || hits.find((h) => h.object.material.opacity === 1) || hits[0];
     let o = hit && hit.object;
     // A joint is picked through what is seen through, not through what is solid.
     if (hit && o.userData.element !== undefined) { const first = hits.find((h) => h.object.material.opacity === 1); if (first && first.distance < hit.distance - 3 * pin) o = first.object; }
@@ -562,7 +575,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if ("dark" in change) plots.theme();
     if (grid) { grid.material.color.set(state.dark ? 0x4a5560 : 0xb4bcc6); }
     lineworks.forEach((o) => { if (!o.parent.userData.wire) o.material.color.set(state.dark ? 0xaab4be : 0x10161c); });
-    scene.background = new THREE.Color(state.dark ? 0x161b20 : 0xf4f6f8);
+    scene.background = new THREE.Color(state.dark ? 0x1d242b : 0xf4f6f8);
+    if ("dark" in change) { // dark steel stands out from what is dark, too
+      sky.intensity = state.dark ? 2.2 : 1.6;
+      nodes.forEach((o) => { if (o.isMesh && o.material.emissive) o.material.emissive.set(state.dark && Math.max(...o.material.color) < 0.15 ? 0x39424b : 0); });
+    }
     $("speed").value = String(state.speed); $("follow").value = String(state.follow); $("colour").value = state.colour || "";
     if ("colour" in change) range = state.colour ? null : range;
     if ("solid" in change) { glaze(); see(); }
@@ -713,7 +730,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   }
   set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost", follow: isFar ? heaviest : -1 });
   set(recall());
-  see();
+  // Of a file that is saved again the same things are seen through at first: the first picture does not wait for rays.
+  const isAlike = !!live && se3dClear !== null && se3dClear.count === solids.length;
+  let isLate = isAlike && !state.solid;
+  if (isAlike) { se3dClear.list.forEach((k) => clear.add(solids[k])); glaze(); }
+  if (!isLate) see();
   // Whether there is another picture than the last one.
   let fresh = true, last = "";
   const isOther = () => {
@@ -735,15 +756,19 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     idle = live && took > 70 ? performance.now() + 0.7 * took : 0; // for what else the page has to do
     se3dSlow = took > 70 ? Math.min(6, se3dSlow + 1) : Math.max(0, se3dSlow - 0.2);
     if (live && live.painted) live.painted();
+    if (isLate) { isLate = false; see(); fresh = true; }
     return true;
   };
   const paint = () => {
-    const ratio = live && se3dSlow >= 3 && (state.playing || pull) ? 0.5 * fine : fine;
+    const isFirst = live && live.painted; // of a file that was saved
+    const ratio = live && se3dSlow >= 3 && (state.playing || pull || isFirst) ? 0.5 * fine : fine;
     if (live && renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
     began = performance.now();
-    const isMoving = state.playing || pull || performance.now() - moved < 150;
+    const isMoving = state.playing || pull || isFirst || performance.now() - moved < 150;
     isRough = isMoving && se3dSlow > 0; // the fine picture comes when all rests
+    renderer.shadowMap.autoUpdate = !(isFirst && sun.shadow.map); // until then those of the file before
     draw(isRough);
+    renderer.shadowMap.autoUpdate = true;
     fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
   };
@@ -788,8 +813,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     closing.abort();
     controls.dispose();
     plots.close();
-    light.close();
-    return () => scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
+    se3dClear = { count: solids.length, list: solids.flatMap((o, k) => (clear.has(o) ? [k] : [])) };
+    return () => {
+      light.close();
+      scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
+    };
   };
   // For tests and films.
   const written = { title: null, hide: [], captions: [] };

@@ -218,8 +218,9 @@ static void add_shape(se3di_lister *l, const se3di_shape_entry *entry)
 {
     const se3d_model_shape *s = &entry->shape;
     double color[3];
-    for (int i = 0; i < 3; ++i) {
-        color[i] = s->color[0] < 0.0 ? l->usual[i] : to_light(s->color[i]);
+    for (int i = 0; i < 3; ++i) { /* a plane is large: it has no colour of a body */
+        const double usual = s->type == SE3D_SHAPE_PLANE ? to_light(ground_color[i]) : l->usual[i];
+        color[i] = s->color[0] < 0.0 ? usual : to_light(s->color[i]);
     }
     se3di_part part = se3di_part_make("shape", SE3DI_UNIT_BOX, color);
     memcpy(part.position, s->position, sizeof part.position);
@@ -238,8 +239,12 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, const se3di_sizes *si
                         const se3di_poses *poses, se3di_iopool *pool, se3di_parts *parts)
 {
     se3di_lister l = {model, pool, parts, sizes, poses, k, {0.0, 0.0, 0.0}, false};
-    const double *color = k > 0 ? palette[(k - 1) % 7] : ground_color;
     bool bare = k > 0;
+    int32_t fixed = k == 0;
+    if (k > 0) {
+        (void)se3d_body_get_fixed(model->system, model->bodies[k].body, &fixed);
+    }
+    const double *color = fixed ? ground_color : palette[(k - 1) % 7];
     for (int i = 0; i < 3; ++i) {
         l.usual[i] = to_light(color[i]);
     }

@@ -86,7 +86,11 @@ void se3di_lister_add(se3di_lister *l, const se3di_part *part)
         return;
     }
     parts->list = grown;
-    parts->list[parts->count++] = *part;
+    parts->list[parts->count] = *part;
+    if (part->unit == SE3DI_UNIT_SPHERE && part->scale[0] < 3.0 * l->sizes->radius) {
+        parts->list[parts->count].unit = SE3DI_UNIT_BALL;
+    }
+    ++parts->count;
 }
 
 /* The box in which a bar may end within a shape, in the shape's frame: on the axis of what is

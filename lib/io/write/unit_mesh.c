@@ -7,7 +7,15 @@
 
 #include "io/base/elementary.h"
 
-enum { AROUND = 32, RINGS = 16, TURNS = 8, STEPS = 16, WIRE = 6 };
+enum {
+    AROUND = 32,
+    RINGS = 16,
+    BALL_AROUND = 20,
+    BALL_RINGS = 10,
+    TURNS = 8,
+    STEPS = 16,
+    WIRE = 6
+};
 
 static const double pi = 3.14159265358979323846;
 
@@ -49,30 +57,40 @@ static void make_box(se3di_unit_mesh *m)
     }
 }
 
-static void put_quads(se3di_unit_mesh *m, size_t first, size_t rings)
+static void put_quads(se3di_unit_mesh *m, size_t first, size_t rings, size_t around)
 {
     for (size_t i = 0; i < rings; ++i) {
-        for (size_t k = 0; k < AROUND; ++k) {
-            const size_t a = first + i * (AROUND + 1) + k;
-            const size_t b = a + AROUND + 1;
+        for (size_t k = 0; k < around; ++k) {
+            const size_t a = first + i * (around + 1) + k;
+            const size_t b = a + around + 1;
             put_triangle(m, a, a + 1, b + 1);
             put_triangle(m, a, b + 1, b);
         }
     }
 }
 
-static void make_sphere(se3di_unit_mesh *m)
+static void put_sphere(se3di_unit_mesh *m, int rings, int around)
 {
-    for (int i = 0; i <= RINGS; ++i) {
-        for (int k = 0; k <= AROUND; ++k) {
-            const double polar = pi - pi * i / RINGS;
-            const double turn = 2.0 * pi * k / AROUND;
+    for (int i = 0; i <= rings; ++i) {
+        for (int k = 0; k <= around; ++k) {
+            const double polar = pi - pi * i / rings;
+            const double turn = 2.0 * pi * k / around;
             const double n[3] = {io_sin(polar) * io_cos(turn), io_sin(polar) * io_sin(turn),
                                  io_cos(polar)};
             put_vertex(m, n[0], n[1], n[2], n);
         }
     }
-    put_quads(m, 0, RINGS);
+    put_quads(m, 0, (size_t)rings, (size_t)around);
+}
+
+static void make_sphere(se3di_unit_mesh *m)
+{
+    put_sphere(m, RINGS, AROUND);
+}
+
+static void make_ball(se3di_unit_mesh *m)
+{
+    put_sphere(m, BALL_RINGS, BALL_AROUND);
 }
 
 static void make_cylinder(se3di_unit_mesh *m)
@@ -84,7 +102,7 @@ static void make_cylinder(se3di_unit_mesh *m)
             put_vertex(m, n[0], n[1], i - 0.5, n);
         }
     }
-    put_quads(m, 0, 1);
+    put_quads(m, 0, 1, AROUND);
     for (int i = 0; i < 2; ++i) {
         const size_t first = m->points_count;
         const double n[3] = {0.0, 0.0, i == 0 ? -1.0 : 1.0};
@@ -109,7 +127,7 @@ static void make_cone(se3di_unit_mesh *m)
             put_vertex(m, (1 - i) * io_cos(turn), (1 - i) * io_sin(turn), i - 0.5, n);
         }
     }
-    put_quads(m, 0, 1);
+    put_quads(m, 0, 1, AROUND);
     const size_t first = m->points_count;
     for (int k = 0; k < AROUND; ++k) {
         const double turn = 2.0 * pi * k / AROUND;
@@ -163,7 +181,7 @@ static void make_grid(se3di_unit_mesh *m)
 
 void se3di_unit_mesh_make(se3di_unit_mesh *mesh, se3di_unit_shape unit)
 {
-    static void (*const make[])(se3di_unit_mesh *) = {make_box,    make_sphere, make_cylinder,
-                                                      make_spring, make_grid,   make_cone};
+    static void (*const make[])(se3di_unit_mesh *) = {
+        make_box, make_sphere, make_cylinder, make_spring, make_grid, make_cone, make_ball};
     make[unit](mesh);
 }

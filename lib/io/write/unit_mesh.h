@@ -13,7 +13,8 @@ typedef enum se3di_unit_shape {
     SE3DI_UNIT_SPRING = 3,   /* a coil of radius 1 and length 1 along z */
     SE3DI_UNIT_GRID = 4,     /* 20 x 20 squares of 1: lines of two points each */
     SE3DI_UNIT_CONE = 5,     /* of radius 1 at z = -1/2, its tip at z = 1/2 */
-    SE3DI_UNIT_COUNT = 6
+    SE3DI_UNIT_BALL = 6,     /* of radius 1, of fewer triangles: a sphere that is drawn small */
+    SE3DI_UNIT_COUNT = 7
 } se3di_unit_shape;
 
 enum { SE3DI_UNIT_VERTICES_MAX = 1024 };
