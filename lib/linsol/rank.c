@@ -277,6 +277,15 @@ static se3d_status select_and_name(const se3d_allocator *allocator, const double
     return status;
 }
 
+/* All rows are independent. */
+static void accept_all(se3di_rank *result)
+{
+    for (int32_t r = 0; r < result->row_count; ++r) {
+        result->independent[r] = r;
+    }
+    memset(result->combination_begin, 0, ((size_t)result->row_count + 1) * sizeof(int32_t));
+}
+
 static se3d_status analyse(const se3d_allocator *allocator, const double *C, double tolerance,
                            pivoted_qr *qr, se3di_rank *result)
 {
@@ -293,7 +302,11 @@ static se3d_status analyse(const se3d_allocator *allocator, const double *C, dou
     if (!result->independent || !result->redundant || !result->combination_begin) {
         return SE3D_ERR_NO_MEMORY;
     }
-    SE3DI_TRY(select_and_name(allocator, C, tolerance, result));
+    if ((size_t)rank == rows) {
+        accept_all(result);
+    } else {
+        SE3DI_TRY(select_and_name(allocator, C, tolerance, result));
+    }
     int32_t freedoms = result->column_count - rank;
     result->freedom = se3di_alloc(allocator, (size_t)freedoms * n, sizeof(double));
     if (!result->freedom) {
