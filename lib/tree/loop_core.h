@@ -6,7 +6,13 @@
 
 #include "tree/loop_system.h"
 
+struct se3di_loop_side;
+
 typedef struct se3di_loop_core {
+    /* What one side of a loop (tree/loop_points.c) has of rows along d [3][4], added to K [6][4],
+     * c and weight [4]. */
+    void (*load_side)(const se3di_tree *tree, const struct se3di_loop_side *side, double sign,
+                      const double *d, double *K, double *c, double *weight);
     /* Rows on the nodes of a path, K [nodes][6][4], down to the ground: their numbers at the
      * freedoms on the way into Y [freedoms][4], and c [4] less what accelerates without these. */
     void (*carry)(const se3di_tree *tree, const se3di_loop_path *path, double *K, double *c,

@@ -8,6 +8,7 @@
 #include "tree/loops.h"
 
 #include "math/vec3.h"
+#include "tree/loop_core.h"
 #include "tree/recursion.h"
 
 #include <string.h>
@@ -113,57 +114,30 @@ void se3di_tree_loops_take_points(se3di_tree_loops *loops)
 
 /* ---- at a state ---- */
 
-static double square_of(const double square[9], const double d[3])
-{
-    double x[3];
-    se3di_mul(square, d, x);
-    return se3di_dot(x, d);
-}
-
-/* What one side has of the rows. */
-static void add_side(const se3di_tree *tree, const se3di_loop_side *side, double sign,
-                     const double *directions, int32_t count, double *K, double *c, double *weight)
-{
-    const se3di_tree_link *link = &tree->links[side->node];
-    double arm[3], x[3], bias[3];
-    se3di_mul(link->W, side->arm, arm);
-    se3di_cross(link->w, arm, x);
-    se3di_cross(link->w, x, bias);
-    se3di_add(bias, tree->pull, bias);
-    for (int32_t r = 0; r < count; ++r) {
-        const double *d = directions + 3 * r;
-        double turn[3], local[3];
-        se3di_cross(arm, d, turn);
-        se3di_mul_transposed(link->W, d, local);
-        for (int k = 0; k < 3; ++k) {
-            K[SE3DI_STRIP * k + r] += sign * turn[k];
-            K[SE3DI_STRIP * (3 + k) + r] += sign * d[k];
-        }
-        c[r] -= sign * se3di_dot(d, bias);
-        weight[r] += square_of(side->square, local);
-    }
-}
-
 void se3di_tree_loops_load_point(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
                                  double *K, double *c, double *weight)
 {
     const se3di_tree *tree = loops->tree;
     const se3di_loop_point *point = &loops->points[strip->loop];
     const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
-    double directions[9];
+    double directions[3 * SE3DI_STRIP] = {0.0};
     for (int32_t r = 0; r < strip->count; ++r) {
         const double *own = point->direction + 3 * kept[r];
+        double d[3];
         if (point->turns_with >= 0) {
-            se3di_mul(tree->links[point->turns_with].W, own, directions + 3 * r);
+            se3di_mul(tree->links[point->turns_with].W, own, d);
         } else {
-            se3di_copy(own, directions + 3 * r);
+            se3di_copy(own, d);
+        }
+        for (int k = 0; k < 3; ++k) {
+            directions[SE3DI_STRIP * k + r] = d[k];
         }
     }
     for (int k = 0; k < 2; ++k) {
         const se3di_loop_side *side = &point->side[k];
         if (side->node >= 0) {
-            add_side(tree, side, k == 0 ? -1.0 : 1.0, directions, strip->count,
-                     K + 6 * SE3DI_STRIP * (size_t)side->place, c, weight);
+            loops->system.core->load_side(tree, side, k == 0 ? -1.0 : 1.0, directions,
+                                          K + 6 * SE3DI_STRIP * (size_t)side->place, c, weight);
         }
     }
 }

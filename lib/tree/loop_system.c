@@ -100,6 +100,12 @@ static int32_t strips_of(int32_t rows)
     return (rows + SE3DI_STRIP - 1) / SE3DI_STRIP;
 }
 
+/* Strips of freedoms are no wider than those of rows: columns that are not used cost as much. */
+static int32_t strips_of_freedoms(const se3di_loop_system *s, int32_t freedoms)
+{
+    return (freedoms + s->width - 1) / s->width;
+}
+
 /* Bodies of a constraint at each node or beyond it, added to `beyond`. */
 static void add_bodies(const se3di_tree_loops *loops, uint32_t constraint, int32_t *beyond)
 {
@@ -146,16 +152,19 @@ static void measure(builder *b)
     se3di_loop_system *s = b->system;
     const se3di_tree_loops *loops = b->loops;
     s->velocity_count = loops->tree->v_count;
+    s->width = 2;
     for (uint32_t k = 0; k < loops->count; ++k) {
         const int32_t strips = strips_of(loops->kept_count[k]);
+        const int32_t widest = strips > 1 ? SE3DI_STRIP : loops->kept_count[k];
         s->row_strips += strips;
+        s->width = widest > s->width ? widest : s->width;
         s->quad_count +=
             (size_t)strips * (size_t)(loops->member_begin[k + 1] - loops->member_begin[k]);
     }
     s->strip_count = s->row_strips;
     for (uint32_t i = 0; s->row_strips >= PASSES_MIN && i < loops->tree->count; ++i) {
         if (keeps_freedoms(b, i)) {
-            s->strip_count += strips_of(loops->tree->nodes[i].v_count);
+            s->strip_count += strips_of_freedoms(s, loops->tree->nodes[i].v_count);
         }
     }
     b->strips = (size_t)s->strip_count;
@@ -180,23 +189,12 @@ static void make_strips(builder *b)
     const int keeps = s->strip_count > s->row_strips;
     for (uint32_t i = 0; keeps && i < loops->tree->count; ++i) {
         const se3di_tree_node *n = &loops->tree->nodes[i];
-        for (int32_t j = 0; keeps_freedoms(b, i) && j < n->v_count; j += SE3DI_STRIP) {
-            const int32_t rest = n->v_count - j;
-            const int32_t count = rest < SE3DI_STRIP ? rest : SE3DI_STRIP;
+        for (int32_t j = 0; keeps_freedoms(b, i) && j < n->v_count; j += s->width) {
+            const int32_t rest = n->v_count - j, count = rest < s->width ? rest : s->width;
             *strip++ = (se3di_loop_strip){.loop = -1, .first = (int32_t)n->v + j, .count = count};
             memset(s->is_passed + n->v + j, 1, (size_t)count);
         }
     }
-}
-
-/* The rows or freedoms of every strip, 0: they differ. */
-static int32_t find_even(const se3di_loop_system *s)
-{
-    int32_t even = s->strips[0].count;
-    for (int32_t k = 1; k < s->strip_count; ++k) {
-        even = s->strips[k].count == even ? even : 0;
-    }
-    return even;
 }
 
 static void list_uses(builder *b)
@@ -465,7 +463,6 @@ static se3d_status build(builder *b, const se3d_allocator *allocator)
     list_uses(b);
     SE3DI_TRY(make_blocks(b, allocator));
     se3di_loop_system_forget(s);
-    s->even = find_even(s);
     s->is_there = 1;
     return SE3D_OK;
 }

@@ -46,7 +46,7 @@ typedef struct se3di_loop_system {
     int32_t is_fine;     /* not 0: the factors serve, */
     int32_t is_refined;  /* and solutions are refined once */
     int32_t is_near;     /* some pivot is much smaller than usual */
-    int32_t even;        /* rows or freedoms of every strip, 0: they differ */
+    int32_t width;       /* the most rows or freedoms of a strip */
     int32_t is_dull;     /* some row has next to nothing at every pose */
     se3di_loop_strip *strips;
     const int32_t *member_begin, *member; /* of loops: velocities, see tree/loops.h */
