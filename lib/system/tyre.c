@@ -12,8 +12,8 @@
 
 #define LARGE    1e40
 #define POSITIVE 1e-40
-#define ENVELOPE 0.4  /* of tyres on meshes, over the radius */
-#define SLIP     1e-2 /* that errors of a slip that lags are measured by, at least */
+#define ENVELOPE 0.4 /* of tyres on meshes, over the radius */
+#define SLIP     0.1 /* that errors of a slip that lags are measured by, at least: tyres slide */
 
 void se3d_tyre_def_init(se3d_tyre_def *def, size_t size)
 {
