@@ -142,9 +142,13 @@ def rename(text, number):
 
 
 def plain_header(path):
-    """A header without the includes of ours."""
-    text = path.read_text()
-    return INCLUDE.sub(lambda m: m.group(0) if path_of(m.group(1), path.parent) is None else "", text)
+    """A header without the headers of ours, its .inc files in place."""
+    def replace(match):
+        found = path_of(match.group(1), path.parent)
+        if found is None:
+            return match.group(0)
+        return found.read_text() if found.suffix == ".inc" else ""
+    return INCLUDE.sub(replace, path.read_text())
 
 
 def write(folder, name, sources, title):

@@ -230,9 +230,10 @@ static void take_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *
     }
 }
 
-/* `slip`: of the instant; what lags takes its place in it. */
-static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
-                        se3di_tyre_forces *forces)
+/* `slip`: of the instant; what lags takes its place in it. Without `derivatives` those are 0 or
+ * those of a part. */
+static void find_forces(const se3di_force *force, const patch *c, int derivatives,
+                        se3di_tyre_slip *slip, se3di_tyre_forces *forces)
 {
     memset(forces, 0, sizeof *forces);
     take_lag(force, c, slip);
@@ -240,7 +241,9 @@ static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_sli
         return;
     }
     forces->of[2] = slip->load;
-    if (is_magic(force)) {
+    if (is_magic(force) && !derivatives) {
+        se3di_tyre_magic_values(force, slip, forces);
+    } else if (is_magic(force)) {
         se3di_tyre_magic(force, slip, forces);
     } else if (force->tyre->law == SE3D_TYRE_FIALA) {
         se3di_tyre_fiala(force, slip, forces);
@@ -493,7 +496,7 @@ static void eval_patch(const se3di_model *model, const se3di_force *force, const
                                           &model->frames[force->body_j]};
     se3di_tyre_forces forces;
     double of[6], u[12];
-    find_forces(force, c, slip, &forces);
+    find_forces(force, c, effect->wants_derivative, slip, &forces);
     for (int k = 0; k < 6; ++k) {
         of[k] = forces.of[k].v;
     }
@@ -537,7 +540,7 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
 /* ---- Slip that lags ------------------------------------------------------------------------*/
 
 /* sigma of the slips that lag, at least a part of the radius. */
-static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip,
+static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip, int derivatives,
                          se3di_dual length[2])
 {
     const se3di_tyre *tyre = force->tyre;
@@ -547,8 +550,10 @@ static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip,
         by_law |= tyre->lags[k] && !(tyre->relaxation[k] > 0.0);
         length[k] = se3di_dual_of(least);
     }
-    if (by_law && slip->load.v > 0.0) {
+    if (by_law && slip->load.v > 0.0 && derivatives) {
         se3di_tyre_magic_relaxation(force, slip, length);
+    } else if (by_law && slip->load.v > 0.0) {
+        se3di_tyre_magic_relaxation_values(force, slip, length);
     }
     for (int k = 0; k < 2; ++k) {
         if (tyre->relaxation[k] > 0.0) {
@@ -561,14 +566,14 @@ static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip,
 
 /* z' = V (slip - z) / sigma; off the road there is no slip, and z is forgotten as it went on.
  * `slip`: of the instant. */
-static void find_rates(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
-                       se3di_dual rate[2])
+static void find_rates(const se3di_force *force, const patch *c, int derivatives,
+                       se3di_tyre_slip *slip, se3di_dual rate[2])
 {
     se3di_dual length[2];
     const se3di_dual speed = force->tyre->law == SE3D_TYRE_BRUSH
                                  ? slip->roll
                                  : se3di_tyre_regular(slip->speed, force->tyre->low_speed);
-    find_lengths(force, slip, length);
+    find_lengths(force, slip, derivatives, length);
     for (int k = 0; k < 2; ++k) {
         const int at = SE3DI_PATCH_LAGGED + k;
         const se3di_dual z = se3di_dual_seed(c->input[at], at, 1.0);
@@ -586,7 +591,7 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
     memset(gain, 0, 12 * sizeof *gain);
     if (c->touches) {
         take_slip(force, c, &slip);
-        find_forces(force, c, &slip, &forces);
+        find_forces(force, c, 1, &slip, &forces);
         for (int k = 0; k < 6; ++k) {
             of[k] = forces.of[k].d[SE3DI_PATCH_LAGGED + direction];
         }
@@ -607,7 +612,7 @@ se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyr
         take_slip(tyre, &c, &slip);
     }
     if (lags) {
-        find_rates(tyre, &c, &slip, rates);
+        find_rates(tyre, &c, 0, &slip, rates);
     }
     for (int k = 0; k < 2; ++k) {
         rate[k] = tyre->tyre->lags[k] ? rates[k].v : 0.0;
@@ -628,7 +633,7 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
     se3di_dual rates[2];
     SE3DI_TRY(take_patch(model, tyre, t, &c));
     take_slip(tyre, &c, &slip);
-    find_rates(tyre, &c, &slip, rates);
+    find_rates(tyre, &c, lag->wants_derivative, &slip, rates);
     const se3di_dual rate = rates[direction];
     lag->rate = rate.v;
     if (!lag->wants_derivative) {
@@ -671,7 +676,7 @@ se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     if (c.touches) {
         take_slip(force, &c, &slip);
         se3di_tyre_slip followed = slip;
-        find_forces(force, &c, &followed, &forces);
+        find_forces(force, &c, 0, &followed, &forces);
     }
     for (int k = 0; k < 6; ++k) {
         values[SE3D_TYRE_FX + k] = forces.of[k].v;

@@ -48,6 +48,9 @@ void se3di_tyre_fiala(const se3di_force *force, const se3di_tyre_slip *slip,
 
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces);
+/* The same values; derivatives stay as they are. */
+void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip,
+                             se3di_tyre_forces *forces);
 /* The effective rolling radius of a Magic Formula. */
 se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflection,
                                    se3di_dual spin);
@@ -55,6 +58,8 @@ se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflecti
 /* Relaxation lengths of a Magic Formula, of kappa and of tan alpha. */
 void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip *slip,
                                  se3di_dual length[2]);
+void se3di_tyre_magic_relaxation_values(const se3di_force *force, const se3di_tyre_slip *slip,
+                                        se3di_dual length[2]);
 
 /* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
 typedef struct se3di_tyre_lag {

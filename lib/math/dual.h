@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Numbers with their derivatives by eight others: a formula that is written with them has exact
- * derivatives. */
+ * derivatives. And the same without: where values are all that is wanted, such a formula that is
+ * compiled once more gives them, to the bit. */
 #ifndef SE3DI_DUAL_H
 #define SE3DI_DUAL_H
 
 #include "math/elementary.h"
+#include "math/quick.h"
 
 #include <math.h>
 
@@ -14,6 +16,10 @@ typedef struct se3di_dual {
     double v;
     double d[SE3DI_DUALS];
 } se3di_dual;
+
+typedef struct se3di_value {
+    double v;
+} se3di_value;
 
 static inline se3di_dual se3di_dual_of(double value)
 {
@@ -49,80 +55,40 @@ static inline se3di_dual se3di_dual_chain2(double f, double f_x, se3di_dual x, d
     return x;
 }
 
-static inline se3di_dual se3di_dual_add(se3di_dual x, se3di_dual y)
+#define DUAL     se3di_dual
+#define OF(name) se3di_dual_##name
+#include "math/dual.inc"
+#undef DUAL
+#undef OF
+
+/* ---- values alone ---- */
+
+static inline se3di_value se3di_value_of(double value)
 {
-    return se3di_dual_chain2(x.v + y.v, 1.0, x, 1.0, y);
+    return (se3di_value){value};
 }
 
-static inline se3di_dual se3di_dual_sub(se3di_dual x, se3di_dual y)
+static inline se3di_value se3di_value_chain(double f, double slope, se3di_value x)
 {
-    return se3di_dual_chain2(x.v - y.v, 1.0, x, -1.0, y);
+    (void)slope;
+    x.v = f;
+    return x;
 }
 
-static inline se3di_dual se3di_dual_mul(se3di_dual x, se3di_dual y)
+static inline se3di_value se3di_value_chain2(double f, double f_x, se3di_value x, double f_y,
+                                             se3di_value y)
 {
-    return se3di_dual_chain2(x.v * y.v, y.v, x, x.v, y);
+    (void)f_x;
+    (void)f_y;
+    (void)y;
+    x.v = f;
+    return x;
 }
 
-static inline se3di_dual se3di_dual_div(se3di_dual x, se3di_dual y)
-{
-    const double f = x.v / y.v;
-    return se3di_dual_chain2(f, 1.0 / y.v, x, -f / y.v, y);
-}
-
-/* a + b x */
-static inline se3di_dual se3di_dual_line(double a, double b, se3di_dual x)
-{
-    return se3di_dual_chain(a + b * x.v, b, x);
-}
-
-static inline se3di_dual se3di_dual_scale(double b, se3di_dual x)
-{
-    return se3di_dual_chain(b * x.v, b, x);
-}
-
-/* a + b x + c x^2 */
-static inline se3di_dual se3di_dual_square(double a, double b, double c, se3di_dual x)
-{
-    return se3di_dual_chain(a + (b + c * x.v) * x.v, b + 2.0 * c * x.v, x);
-}
-
-/* |x|, at 0 without a slope */
-static inline se3di_dual se3di_dual_abs(se3di_dual x)
-{
-    return se3di_dual_chain(fabs(x.v), x.v > 0.0 ? 1.0 : x.v < 0.0 ? -1.0 : 0.0, x);
-}
-
-/* At 0 without a slope. */
-static inline se3di_dual se3di_dual_sqrt(se3di_dual x)
-{
-    const double root = sqrt(x.v);
-    return se3di_dual_chain(root, root > 0.0 ? 0.5 / root : 0.0, x);
-}
-
-static inline se3di_dual se3di_dual_sin(se3di_dual x)
-{
-    double sine, cosine;
-    se3di_sincos(x.v, &sine, &cosine);
-    return se3di_dual_chain(sine, cosine, x);
-}
-
-static inline se3di_dual se3di_dual_cos(se3di_dual x)
-{
-    double sine, cosine;
-    se3di_sincos(x.v, &sine, &cosine);
-    return se3di_dual_chain(cosine, -sine, x);
-}
-
-static inline se3di_dual se3di_dual_atan(se3di_dual x)
-{
-    return se3di_dual_chain(se3di_atan(x.v), 1.0 / (1.0 + x.v * x.v), x);
-}
-
-static inline se3di_dual se3di_dual_exp(se3di_dual x)
-{
-    const double f = se3di_exp(x.v);
-    return se3di_dual_chain(f, f, x);
-}
+#define DUAL     se3di_value
+#define OF(name) se3di_value_##name
+#include "math/dual.inc"
+#undef DUAL
+#undef OF
 
 #endif

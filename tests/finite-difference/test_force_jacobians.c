@@ -538,6 +538,20 @@ static double largest(const se3di_effect *effect)
     return size;
 }
 
+/* What is computed without derivatives is the same to the bit. */
+static void check_values(const world *w, const se3di_effect *exact)
+{
+    static se3di_effect plain;
+    memset(&plain, 0, sizeof plain);
+    CHECK(se3di_force_eval(w->model, w->force, 0.3, &plain) == SE3D_OK);
+    for (int k = 0; k < 12; ++k) {
+        CHECK(!(fabs(plain.wrench[k] - exact->wrench[k]) > 0.0));
+    }
+    CHECK(!(fabs(plain.potential - exact->potential) > 0.0));
+    CHECK(!(fabs(plain.power[0] - exact->power[0]) > 0.0));
+    CHECK(!(fabs(plain.power[1] - exact->power[1]) > 0.0));
+}
+
 static void jacobians_agree_with_differences(void (*create)(world *), double floor_error)
 {
     for (int trial = 0; trial < 20; ++trial) {
@@ -547,6 +561,7 @@ static void jacobians_agree_with_differences(void (*create)(world *), double flo
         create(&w);
         exact.wants_derivative = 1;
         CHECK(se3di_force_eval(w.model, w.force, 0.3, &exact) == SE3D_OK);
+        check_values(&w, &exact);
         double size = fmax(1.0, largest(&exact));
         double coarse = jacobian_error(&w, &exact, 1e-3);
         double fine = jacobian_error(&w, &exact, 2.5e-4);
@@ -644,6 +659,7 @@ static void slips_that_lag_agree_with_differences(void)
             se3di_tyre_lag exact = {.wants_derivative = 1};
             double coarse[2], fine[2];
             CHECK(!se3di_tyre_lag_eval(w.model, w.force, 0.3, direction, &exact));
+            CHECK(!(fabs(lag_rate(&w, direction) - exact.rate) > 0.0));
             lag_errors(&w, direction, &exact, 1e-3, coarse);
             lag_errors(&w, direction, &exact, 2.5e-4, fine);
             for (int k = 0; k < 2; ++k) {

@@ -7,6 +7,7 @@
 #include "check.h"
 #include "math/elementary.h"
 #include "math/elementary_fast.h"
+#include "math/quick.h"
 
 #if defined(SE3D_HAS_MPFR)
 #include <mpfr.h>
@@ -460,6 +461,48 @@ static void all_agree_with_mpfr(void)
 }
 #endif
 
+/* |a - exact| in units of the last place of the exact value, or 2^-53 if that is larger. */
+static double units(double a, double exact)
+{
+    const double unit = fmax(nextafter(fabs(exact), 1e300) - fabs(exact), 0x1p-53);
+    return fabs(a - exact) / unit;
+}
+
+static void quick_ones_are_within_a_unit(void)
+{
+    uint64_t seed = 5;
+    for (int n = 0; n < 20000; ++n) {
+        const double x = check_random(&seed) * exp2(between(&seed, -30.0, 60.0));
+        const double exact = se3di_atan(x), angle = se3di_quick_atan(x);
+        const double last = nextafter(fabs(exact), 4.0) - fabs(exact);
+        CHECK(fabs(angle - exact) <= last);
+        const double turn = (n % 2 ? 25.0 : 1.0) * check_random(&seed);
+        double sine, cosine, exact_sine, exact_cosine;
+        se3di_sincos(turn, &exact_sine, &exact_cosine);
+        se3di_quick_sincos(turn, &sine, &cosine);
+        CHECK(units(sine, exact_sine) <= 1.0);
+        CHECK(units(cosine, exact_cosine) <= 1.0);
+    }
+}
+
+static void quick_ones_know_special_cases(void)
+{
+    double sine, cosine;
+    CHECK(isnan(se3di_quick_atan((double)NAN)));
+    CHECK_NEAR(se3di_quick_atan(HUGE_VAL), se3di_atan(HUGE_VAL), 0.0);
+    CHECK_NEAR(se3di_quick_atan(-1e300), se3di_atan(-1e300), 0.0);
+    CHECK_NEAR(se3di_quick_atan(0x1p-1060), 0x1p-1060, 0.0);
+    CHECK_NEAR(se3di_quick_atan(0.0), 0.0, 0.0);
+    se3di_quick_sincos((double)NAN, &sine, &cosine);
+    CHECK(isnan(sine) && isnan(cosine));
+    se3di_quick_sincos(1e6, &sine, &cosine);
+    CHECK_NEAR(sine, se3di_sin(1e6), 0.0);
+    CHECK_NEAR(cosine, se3di_cos(1e6), 0.0);
+    se3di_quick_sincos(0.0, &sine, &cosine);
+    CHECK_NEAR(sine, 0.0, 0.0);
+    CHECK_NEAR(cosine, 1.0, 0.0);
+}
+
 int main(void)
 {
     RUN(hard_cases_have_the_bits_of_the_exact_value);
@@ -471,5 +514,7 @@ int main(void)
     RUN(a_first_phase_knows_its_ends);
     RUN(the_second_phase_takes_what_needs_none);
     RUN(all_agree_with_mpfr);
+    RUN(quick_ones_are_within_a_unit);
+    RUN(quick_ones_know_special_cases);
     return check_finish();
 }
