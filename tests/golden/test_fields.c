@@ -244,11 +244,67 @@ static void triangles_know_who_slides_on_them(void)
     se3d_system_destroy(system);
 }
 
+/* A ball at rest in a tube whose axis is level: all its weight is on one patch, which has its
+ * place, and the patches together are the tube. */
+static void patches_of_a_funnel_know_who_rests_on_them(void)
+{
+    const double R = 0.01, tube = 0.1, mass = 2500.0 * 4.0 / 3.0 * PI * R * R * R;
+    const double weight = 9.81 * mass, radius[1] = {R};
+    const double r[3] = {0.037, 0.0, R - tube - weight / 2e4};
+    enum { PATCHES = 24 * 13, NUMBERS = PATCHES * SE3D_WALL_VALUES };
+    static double values[NUMBERS], corners[PATCHES * SE3D_WALL_CORNERS];
+    size_t count = 0, pressed = PATCHES;
+    se3d_system *system = NULL;
+    se3d_particles *set = NULL;
+    se3d_material material;
+    se3d_shape wall;
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_shape_def def = se3d_shape_def_default();
+    double area = 0.0;
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_particles_create(system, NULL, &set));
+    stuff.density = 2500.0;
+    stuff.stiffness = 2e4;
+    CHECK(!se3d_material_create(system, &stuff, &material));
+    def.bottom_radius = def.top_radius = tube;
+    def.length = 0.34;
+    def.material = material;
+    def.orientation[0] = def.orientation[2] = sqrt(0.5); /* its z is x of the ground */
+    CHECK(!se3d_shape_create_funnel(system, &def, &wall));
+    CHECK(!se3d_particles_add(set, material, 1, r, radius, NULL, NULL, NULL));
+    CHECK(se3d_particles_run(set, 0.02) >= 0);
+    CHECK(!se3d_particles_get_wall_map(set, wall, NUMBERS, values, &count) && count == NUMBERS);
+    CHECK(
+        !se3d_particles_get_wall_corners(set, wall, PATCHES * SE3D_WALL_CORNERS, corners, &count) &&
+        count == PATCHES * SE3D_WALL_CORNERS);
+    for (size_t k = 0; k < PATCHES; ++k) {
+        const double *f = values + k * SE3D_WALL_VALUES, *c = corners + k * SE3D_WALL_CORNERS;
+        area += f[SE3D_WALL_AREA];
+        pressed = f[SE3D_WALL_PRESSURE] > 0.0 ? (CHECK(pressed == PATCHES), k) : pressed;
+        for (int a = 0; a < 4; ++a) { /* on the tube, and around the middle */
+            double way[3] = {c[3 * a] - f[0], c[3 * a + 1] - f[1], c[3 * a + 2] - f[2]};
+            CHECK_NEAR(c[3 * a + 1] * c[3 * a + 1] + c[3 * a + 2] * c[3 * a + 2], tube * tube,
+                       1e-15);
+            CHECK_NEAR(fabs(way[0]), 0.17 / 13.0, 1e-12);
+            CHECK_NEAR(way[1] * way[1] + way[2] * way[2], pow(2.0 * tube * sin(PI / 48.0), 2.0),
+                       1e-12);
+        }
+    }
+    CHECK_NEAR(area, 2.0 * PI * tube * 0.34, 1e-12);
+    CHECK(pressed < PATCHES);
+    const double *f = values + pressed * SE3D_WALL_VALUES;
+    CHECK_NEAR(f[SE3D_WALL_PRESSURE] * f[SE3D_WALL_AREA] / weight, 1.0, 1e-3);
+    CHECK(fabs(f[0] - r[0]) < 0.17 / 13.0 && fabs(f[1]) <= 0.14 * tube && f[2] < 0.0);
+    se3d_particles_destroy(set);
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(sums_are_what_there_is);
     RUN(uniform_beds_are_uniform);
     RUN(triangles_know_who_slides_on_them);
+    RUN(patches_of_a_funnel_know_who_rests_on_them);
     RUN(fields_do_not_depend_on_threads);
     return check_finish();
 }

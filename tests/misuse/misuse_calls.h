@@ -890,6 +890,7 @@ static const row rows[] = {
     {"se3d_field_grid_init", fields_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_fields", fields_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_wall_map", wall_maps_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_get_wall_corners", wall_maps_reject_misuse, "", NULL, NULL},
     {"se3d_bond_def_init", definitions_are_never_overrun, "", NULL, NULL},
     {"se3d_particles_bond", bonds_reject_misuse, "", NULL, NULL},
     {"se3d_particles_bond_near", bonds_reject_misuse, "", NULL, NULL},

@@ -487,7 +487,7 @@ static se3d_status wall_maps_reject_misuse(arguments *a)
 {
     static const double corners[9] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
     static const uint32_t triangle[3] = {0, 1, 2};
-    double values[SE3D_WALL_VALUES];
+    double values[SE3D_WALL_VALUES], places[SE3D_WALL_CORNERS];
     size_t count = 9;
     se3d_material material;
     se3d_particles *p = particles_open(a, &material);
@@ -507,8 +507,21 @@ static se3d_status wall_maps_reject_misuse(arguments *a)
     CHECK(!se3d_particles_get_wall_map(p, mesh, 0, NULL, &count) && count == SE3D_WALL_VALUES);
     CHECK(!se3d_particles_get_wall_map(p, mesh, SE3D_WALL_VALUES, values, &count) &&
           values[SE3D_WALL_AREA] == 0.5);
+    CHECK(se3d_particles_get_wall_corners(NULL, mesh, SE3D_WALL_CORNERS, places, &count) ==
+          SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_corners(p, mesh, 1, NULL, &count) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_corners(p, mesh, 1, places, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_particles_get_wall_corners(p, plane, 1, places, &count) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    places[0] = 7.0;
+    CHECK(!se3d_particles_get_wall_corners(p, mesh, SE3D_WALL_CORNERS - 1, places, &count) &&
+          count == SE3D_WALL_CORNERS && places[0] == 7.0);
+    CHECK(!se3d_particles_get_wall_corners(p, mesh, SE3D_WALL_CORNERS, places, &count) &&
+          places[3] == 1.0 && places[7] == 1.0 && places[10] == 1.0);
     CHECK(!se3d_shape_destroy(a->system, mesh));
     CHECK(se3d_particles_get_wall_map(p, mesh, SE3D_WALL_VALUES, values, &count) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_particles_get_wall_corners(p, mesh, SE3D_WALL_CORNERS, places, &count) ==
           SE3D_ERR_STALE_HANDLE);
     se3d_particles_destroy(p);
     return SE3D_OK;
