@@ -57,6 +57,9 @@ output:
   - {average: m.csv, every: 0.01, start: 0.05, fields: {lower: [-0.1, -0.1, 0], upper: [0.1, 0.1, 0.2], cells: [2, 3, 4],
      width: 0.02}}
   - {wall_map: w.csv, every: 0.01, start: 0.05, shape: side}
+  - {wall_map: w.vtp, every: 0.01, start: 0.05, shape: side}
+  - {file: q.h5, every: 0.05, particles: true}
+  - {vtk: h.vtkhdf, every: 0.2}
 END
 
 sed 's/samples: 70/samples: 200/' "$source/examples/study/damper.yaml" >"$dir/sweep.yaml"

@@ -66,6 +66,15 @@ static const char *const texts[] = {
     "[0.5, 0.5, 0.5]}]\nbodies: [{name: ground, shapes: [{type: plane, material: m}]}]\n"
     "analysis: {type: dynamics, duration: 0.01}\noutput: [{file: s.csv, every: 0.01, channels: "
     "[contacts.count]}, {file: g.csv, every: 0.01, particles: true}]\n",
+    /* HDF5, and what particles do to a wall, for VTK. */
+    "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1e3}]\ncontact: {}\n"
+    "particles: [{material: m, radius: 0.1, lower: [0, 0, 0], upper: [0.3, 0.3, 0.3]}]\n"
+    "bodies: [{name: ground, shapes: [{name: tube, type: funnel, bottom_radius: 1, top_radius: 2,\n"
+    "  length: 0.5, material: m}]}]\nanalysis: {type: dynamics, duration: 0.01}\noutput:\n"
+    "  - {file: g.h5, every: 0.01, particles: true}\n  - {vtk: motion.vtkhdf, every: 0.01}\n"
+    "  - {wall_map: w.vtp, shape: tube, every: 0.01}\n"
+    "  - {average: a.vtkhdf, every: 0.01, fields: {lower: [0, 0, 0], upper: [1, 1, 1],\n"
+    "     cells: [2, 1, 1], width: 1}}\n",
     /* Bars and plates with their joints, mirrored; a table that repeats. */
     "se3d: 1\nmaterials: [{name: steel, density: 7850}]\nparts:\n  side:\n    bodies:\n"
     "      - {name: bar, from: [0, 0, 0], to: [1, 0, 0], radius: 0.1, material: steel, body_from: "

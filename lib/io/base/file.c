@@ -58,6 +58,11 @@ static bool cut(FILE *file, uint64_t size)
     return _chsize_s(_fileno(file), (long long)size) == 0;
 }
 
+bool se3di_file_seek(FILE *file, uint64_t place)
+{
+    return _fseeki64(file, (long long)place, SEEK_SET) == 0;
+}
+
 FILE *se3di_file_continue(const char *path)
 {
     FILE *file = fopen(path, "r+b");
@@ -196,6 +201,11 @@ FILE *se3di_file_continue(const char *path)
 static bool cut(FILE *file, uint64_t size)
 {
     return ftruncate(fileno(file), (off_t)size) == 0;
+}
+
+bool se3di_file_seek(FILE *file, uint64_t place)
+{
+    return fseeko(file, (off_t)place, SEEK_SET) == 0;
 }
 
 bool se3di_file_sync(FILE *file)

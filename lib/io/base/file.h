@@ -28,6 +28,8 @@ bool se3di_file_is_same(const char *a, const char *b);
 /* The whole path of a folder ("": the present one), without links, that ends with '/'. @return
  * false: errno says why. */
 bool se3di_file_find_folder(const char *folder, char *path, size_t size);
+/* Go on at a byte of an open file. @return false: errno says why. */
+bool se3di_file_seek(FILE *file, uint64_t place);
 /* Cut an open file to its first `size` bytes and go on there. */
 bool se3di_file_cut(FILE *file, uint64_t size);
 /* Open a file under a temporary name; complete it and give it its name, which a regular file may

@@ -3,6 +3,7 @@
 #include "io/channel/output.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
@@ -70,4 +71,18 @@ se3d_status se3d_model_get_channel_value(const se3d_model *model, size_t output,
     const se3d_status status = se3di_channel_eval(channel, &sample, value);
     se3di_sample_destroy(&sample);
     return status;
+}
+
+se3di_output_format se3di_output_get_format(const se3di_output_entry *output)
+{
+    const char *ending = strrchr(output->file, '.');
+    if (!ending || output->vtk) {
+        return SE3DI_OUTPUT_CSV;
+    }
+    if (strcmp(ending, ".h5") == 0 || strcmp(ending, ".hdf5") == 0) {
+        return SE3DI_OUTPUT_HDF5;
+    }
+    const bool vtk = strcmp(ending, ".vtp") == 0 || strcmp(ending, ".vti") == 0 ||
+                     strcmp(ending, ".vtkhdf") == 0;
+    return output->average && vtk ? SE3DI_OUTPUT_VTK : SE3DI_OUTPUT_CSV;
 }

@@ -17,12 +17,22 @@ typedef struct se3di_output_entry {
     bool average;                /* of `grid`, or else of `wall`, over the run, no channels, */
     double start, stop;          /* between these times [s] */
     const se3d_field_grid *grid; /* of a series or average: fields of the particles; NULL: none */
-    se3d_shape wall;             /* the mesh whose triangles are averaged */
+    se3d_shape wall;             /* the surface whose patches are averaged */
     double every;                /* 0: the analysis's step */
     se3di_channel *channels;
     size_t count;
     const se3di_node *node; /* NULL: the default output */
 } se3di_output_entry;
+
+/* What a file that has rows becomes when they are all there, by the ending of its name: HDF5 of .h5
+ * or .hdf5; averages VTK of .vtp, .vti, .vtkhdf; else it stays CSV. */
+typedef enum se3di_output_format {
+    SE3DI_OUTPUT_CSV = 0,
+    SE3DI_OUTPUT_HDF5 = 1,
+    SE3DI_OUTPUT_VTK = 2
+} se3di_output_format;
+
+se3di_output_format se3di_output_get_format(const se3di_output_entry *output);
 
 /* How many rows an output has in an analysis beside the first, *every [s] apart: its own `every`,
  * else the step, else a 500th of the duration. */

@@ -41,14 +41,15 @@ static const char *const output_types[KIND_COUNT + 1] = {[KIND_FILE] = "file",
 static const char *const examples[KIND_COUNT] = {"results.csv", "motion.pvd", "summary.csv",
                                                  "average.csv", "wall.csv",   "results.svg",
                                                  "motion.html", "motion.mp4"};
-static const char *const vtk_endings[] = {".pvd", NULL};
+static const char *const vtk_endings[] = {".pvd", ".vtkhdf", NULL};
 static const char *const plot_endings[] = {".svg", ".png", ".pdf", NULL};
 static const char *const scene_endings[] = {".html", ".glb", NULL};
 static const char *const video_endings[] = {".mp4", NULL};
 
 /* clang-format off */
 static const se3di_key output_keys[] = {
-    {"file", SE3DI_KIND_FILE, .types = " file ", .text = "results as CSV"},
+    {"file", SE3DI_KIND_FILE, .types = " file ",
+     .text = "results as CSV, or, if it ends with .h5, as [HDF5](../hdf5.md)"},
     {"every", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3di_output_entry, every),
      .types = " file vtk summary average wall_map ",
      .standard = "the step; without one a 500th of the duration",
@@ -64,19 +65,22 @@ static const se3di_key output_keys[] = {
     {"contacts", SE3DI_KIND_BOOL, .types = " file ", .standard = "false",
      .text = "all contacts, in place of channels"},
     {"vtk", SE3DI_KIND_FILE, .types = " vtk ", .words = vtk_endings,
-     .text = "surfaces of the bodies and points of the particles for ParaView, see "
-         "[VTK](../scene.md#vtk)"},
+     .text = "surfaces of the bodies and points of the particles for ParaView: motion.pvd, or "
+         "motion.vtkhdf for HDF5, see [VTK](../scene.md#vtk)"},
     {"fields", SE3DI_KIND_OBJECT, .object = "fields", .types = " vtk average ",
      .text = "density, velocity, temperature and stress of the particles on a grid: beside the "
          "rest, or what is averaged"},
     {"summary", SE3DI_KIND_FILE, .types = " summary ",
-     .text = "minimum, maximum, mean, rms and integral of each channel over the rows, as CSV"},
+     .text = "minimum, maximum, mean, rms and integral of each channel over the rows, as CSV or "
+         ".h5"},
     {"average", SE3DI_KIND_FILE, .types = " average ",
-     .text = "means of `fields` over the rows, a line for each cell, as CSV"},
+     .text = "means of `fields` over the rows, a line for each cell, as CSV or .h5, or as an "
+         "image, .vti or .vtkhdf"},
     {"wall_map", SE3DI_KIND_FILE, .types = " wall_map ",
-     .text = "means of what particles do to each triangle of a mesh over the rows, as CSV"},
+     .text = "means of what particles do to each patch of a wall over the rows, as CSV or .h5, or "
+             "as a surface, .vtp or .vtkhdf"},
     {"shape", SE3DI_KIND_TEXT, .types = " wall_map ",
-     .text = "the name of that mesh, also of the ground's"},
+     .text = "the name of that wall, a mesh, heightfield or funnel, also of the ground's"},
     {"start", SE3DI_KIND_NUMBER, SE3DI_INTO(se3di_output_entry, start),
      .types = " summary average wall_map ",
      .standard = "the first row", .text = "rows from this time on count [s]"},
@@ -273,11 +277,20 @@ static bool ends_with(const char *text, const char *ending)
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/* What an entry writes beside its file: a plot has a picture of each kind and a script. */
+/* What an entry writes beside its file: a plot has a picture of each kind and a script, rows of
+ * what is not CSV stand in a file beside it while the model runs. */
 static bool writes(const char *type, const char *file, const char *name)
 {
     static const char *const endings[] = {".svg", ".png", ".pdf", ".gp"};
     const char *dot = strrchr(file, '.');
+    static const char *const made[] = {".h5", ".hdf5", ".vtp", ".vti", ".vtkhdf"};
+    const size_t length = strlen(file);
+    const bool beside = strncmp(file, name, length) == 0 && strcmp(name + length, ".csv") == 0;
+    for (size_t k = 0; beside && k < sizeof made / sizeof *made; ++k) {
+        if (ends_with(file, made[k])) {
+            return true;
+        }
+    }
     if (strcmp(type, "plot") != 0 || !dot) {
         return strcmp(file, name) == 0;
     }
@@ -385,17 +398,21 @@ static bool check_window(se3di_reader *reader, const se3di_node *node,
 static bool read_wall(se3di_reader *reader, const se3di_node *node, se3d_shape *wall)
 {
     const se3di_node *name = se3di_node_get(node, "shape");
-    int32_t type = SE3D_SHAPE_MESH;
+    int32_t type = SE3D_SHAPE_PLANE;
     if (!reader->model->particles) {
         return se3di_reader_fail(reader, node, "needs `particles`, which the model does not have");
     }
     if (!name) {
         return se3di_reader_fail_key(reader, node, "shape",
-                                     "is missing: the name of the mesh to map");
+                                     "is missing: the name of the wall to map");
     }
     return se3di_read_shape_name(reader, name, wall) &&
-           ((se3d_shape_get_type(reader->system, *wall, &type) >= 0 && type == SE3D_SHAPE_MESH) ||
-            se3di_reader_fail(reader, name, "`%.60s` must be a mesh that is not `convex`",
+           ((se3d_shape_get_type(reader->system, *wall, &type) >= 0 &&
+             (type == SE3D_SHAPE_MESH || type == SE3D_SHAPE_HEIGHTFIELD ||
+              type == SE3D_SHAPE_FUNNEL)) ||
+            se3di_reader_fail(reader, name,
+                              "`%.60s` must be a heightfield, a funnel, or a mesh that is not "
+                              "`convex`",
                               name->text));
 }
 
@@ -417,6 +434,15 @@ static bool read_particle_rows(se3di_reader *reader, const se3di_node *node, siz
            check_kind_of_rows(reader, node, output);
 }
 
+/* Surfaces are .vtp, images .vti. */
+static bool check_picture_of_average(se3di_reader *reader, const se3di_node *file, size_t kind)
+{
+    const char *other = kind == KIND_WALL_MAP ? ".vti" : kind == KIND_AVERAGE ? ".vtp" : NULL;
+    return !other || !ends_with(file->text, other) ||
+           se3di_reader_fail(reader, file, "`%.60s` must end with %s, .vtkhdf, .h5 or .csv",
+                             file->text, kind == KIND_WALL_MAP ? ".vtp" : ".vti");
+}
+
 static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
 {
     se3d_model *model = reader->model;
@@ -429,6 +455,7 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
     output->stop = HUGE_VAL;
     output->node = node;
     if (!read_file_name(reader, file, kind, &output->file) ||
+        !check_picture_of_average(reader, file, kind) ||
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
                            output) ||
         !check_window(reader, node, output) || !read_particle_rows(reader, node, kind, output) ||
@@ -475,9 +502,12 @@ static bool find_results(se3di_reader *reader, const se3di_node *node,
     }
     for (size_t k = 0; k < model->output_count; ++k) {
         const se3di_output_entry *output = &model->outputs[k];
-        if (output->channels && !output->summary && (!name || strcmp(output->file, name) == 0)) {
+        const bool csv = se3di_output_get_format(output) == SE3DI_OUTPUT_CSV;
+        const bool named = name && strcmp(output->file, name) == 0;
+        if (output->channels && !output->summary && (named || (!name && csv))) {
             *from = output;
-            return true;
+            return csv || se3di_reader_fail(reader, child,
+                                            "`%.60s` is HDF5: plots are made of CSV files", name);
         }
     }
     return se3di_reader_fail(reader, child ? child : node,

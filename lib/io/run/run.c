@@ -474,8 +474,12 @@ static se3d_status run_all(se3di_runner *r)
         status = se3di_files_fail(r, summed, "out of memory");
     }
     status = se3di_files_close_all(r, status);
-    if (status >= 0 && !r->stopped) {
+    const bool ended = status >= 0 && !r->stopped;
+    if (ended) {
         se3di_checkpoint_remove(r);
+    }
+    if (ended || !(r->options->checkpoint > 0.0 || r->options->resume)) {
+        se3di_files_tidy(r);
     }
     return status;
 }

@@ -20,8 +20,10 @@
 #include "io/run/runner.h"
 #include "io/write/contact_list.h"
 #include "io/write/particle_list.h"
+#include "io/write/table_hdf5.h"
 
 #define FLUSH_EVERY 1.0 /* s */
+#define ROWS_ENDING ".csv"
 
 se3d_status se3di_files_fail(se3di_runner *r, se3d_status status, const char *text)
 {
@@ -133,11 +135,55 @@ void se3di_files_give_up(const se3di_runner *r, se3di_csv *csv)
     }
 }
 
+/* The rows of what is not to be CSV stand beside it until they are all there: results.h5.csv. */
+static bool name_rows(se3di_runner *r, se3di_output_file *file, char *path, size_t size)
+{
+    if (se3di_output_get_format(file->entry) == SE3DI_OUTPUT_CSV) {
+        return true;
+    }
+    const size_t length = strlen(path);
+    file->made = se3di_iopool_copy(&r->run->pool, path, length);
+    if (!file->made || length + sizeof ROWS_ENDING > size) {
+        errno = file->made ? ENAMETOOLONG : ENOMEM;
+        return false;
+    }
+    memcpy(path + length, ROWS_ENDING, sizeof ROWS_ENDING);
+    return true;
+}
+
+/* The names of the columns. */
+static void put_head(se3di_output_file *file, size_t columns)
+{
+    const se3di_output_entry *entry = file->entry;
+    char name[400];
+    size_t column = 1;
+    if (entry->summary || entry->average) {
+        put_sums_head(file);
+        return;
+    }
+    if (entry->particles || entry->contacts) {
+        for (size_t k = 0; k < columns; ++k) {
+            se3di_csv_put_name(&file->csv,
+                               entry->particles ? se3di_tagged_get_column(k)
+                                                : se3di_contacts_get_column(k),
+                               k + 1 == columns);
+        }
+        return;
+    }
+    se3di_csv_put_name(&file->csv, "time", columns == 1);
+    for (size_t k = 0; k < entry->count; ++k) {
+        const size_t width = se3di_channel_get_width(&entry->channels[k]);
+        for (size_t i = 0; i < width; ++i) {
+            se3di_channel_format_column(&entry->channels[k], i, name, sizeof name);
+            se3di_csv_put_name(&file->csv, name, ++column == columns);
+        }
+    }
+}
+
 static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
 {
     se3di_output_file *file = &r->files[r->file_count];
     char path[4096];
-    char name[400];
     size_t columns = 1;
     const se3d_status joined = join(r, entry->file, path, sizeof path);
     if (joined < 0) {
@@ -145,6 +191,10 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     }
     if (entry->vtk) {
         return open_vtk(r, entry, path);
+    }
+    file->entry = entry;
+    if (!name_rows(r, file, path, sizeof path)) {
+        return fail_path(r, entry->file, errno);
     }
     columns = entry->particles  ? se3di_tagged_count_columns(r->model)
               : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS
@@ -155,7 +205,6 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     if (!open_sums(r, entry, file)) {
         return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    file->entry = entry;
     file->row = se3di_iopool_array(&r->run->pool, columns, sizeof *file->row);
     const se3d_status status = open_csv(r, &file->csv, path, columns);
     if (status < 0 || !file->row) {
@@ -164,30 +213,8 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
         return result;
     }
     ++r->file_count;
-    if (r->resume) {
-        return SE3D_OK; /* its first line is there */
-    }
-    if (entry->summary || entry->average) {
-        put_sums_head(file);
-        return SE3D_OK;
-    }
-    for (size_t k = 0; k < columns && (entry->particles || entry->contacts); ++k) {
-        se3di_csv_put_name(&file->csv,
-                           entry->particles ? se3di_tagged_get_column(k)
-                                            : se3di_contacts_get_column(k),
-                           k + 1 == columns);
-    }
-    if (entry->particles || entry->contacts) {
-        return SE3D_OK;
-    }
-    se3di_csv_put_name(&file->csv, "time", columns == 1);
-    size_t column = 1;
-    for (size_t k = 0; k < entry->count; ++k) {
-        const size_t width = se3di_channel_get_width(&entry->channels[k]);
-        for (size_t i = 0; i < width; ++i) {
-            se3di_channel_format_column(&entry->channels[k], i, name, sizeof name);
-            se3di_csv_put_name(&file->csv, name, ++column == columns);
-        }
+    if (!r->resume) { /* else its first line is there */
+        put_head(file, columns);
     }
     return SE3D_OK;
 }
@@ -404,6 +431,48 @@ static se3d_status close_sums(se3di_runner *r, se3di_output_file *file)
     return status;
 }
 
+/* Columns of a table that are texts, or whole numbers. */
+static se3di_table_columns columns_of(const se3di_output_entry *entry)
+{
+    se3di_table_columns columns = {0, 0};
+    if (entry->summary) {
+        columns.texts = 1;
+    } else if (entry->particles) {
+        columns = se3di_tagged_get_kinds();
+    } else if (entry->contacts) {
+        columns = se3di_contacts_get_kinds();
+    }
+    return columns;
+}
+
+/* What the rows become; they stay as CSV if that fails. */
+static se3d_status make_file(se3di_runner *r, const se3di_output_file *file, se3d_run_file *about)
+{
+    char text[1600];
+    const se3di_table_columns columns = columns_of(file->entry);
+    const bool made =
+        se3di_output_get_format(file->entry) == SE3DI_OUTPUT_VTK
+            ? se3di_average_write_vtk(file->average, file->made)
+            : se3di_table_convert(file->csv.path, file->made, &columns, &r->model->pool.allocator);
+    if (made) {
+        about->path = file->made;
+        return SE3D_OK;
+    }
+    const int why = errno;
+    snprintf(text, sizeof text, "%.700s: cannot be written: %s; its rows are in %.700s", file->made,
+             why == ENOMEM ? "out of memory" : se3di_file_get_text(why), file->csv.path);
+    return se3di_files_fail(r, why == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO, text);
+}
+
+void se3di_files_tidy(const se3di_runner *r)
+{
+    for (size_t k = 0; k < r->file_count; ++k) {
+        if (r->files[k].is_made) {
+            se3di_file_remove(r->files[k].csv.path);
+        }
+    }
+}
+
 /* Complete one file. */
 static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run_file *about)
 {
@@ -421,7 +490,13 @@ static se3d_status close_file(se3di_runner *r, se3di_output_file *file, se3d_run
             return status;
         }
     }
-    return close_csv(r, &file->csv, about);
+    const se3d_status status = close_csv(r, &file->csv, about);
+    if (status < 0 || !file->made) {
+        return status;
+    }
+    const se3d_status made = make_file(r, file, about);
+    file->is_made = made >= 0;
+    return made;
 }
 
 /* One more file of the results, which `closed` says is complete, or which has rows that were kept;

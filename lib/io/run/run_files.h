@@ -23,6 +23,8 @@ void se3di_files_flush(se3di_runner *r);
 /* Complete every file, also after a failure: the rows so far are kept. The first failure is
  * reported. */
 se3d_status se3di_files_close_all(se3di_runner *r, se3d_status status);
+/* Take rows away that other files were made of; only who goes on with a run needs them. */
+void se3di_files_tidy(const se3di_runner *r);
 /* What is there of a run that is gone on with, and the files. */
 se3d_status se3di_files_begin(se3di_runner *r);
 

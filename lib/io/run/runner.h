@@ -18,13 +18,15 @@
 typedef struct se3di_output_file {
     const se3di_output_entry *entry;
     se3di_csv csv;
-    se3di_vtk *vtk;             /* NULL: it is a CSV file */
+    const char *made; /* what the CSV file becomes, which is then taken away; NULL: it stays */
+    se3di_vtk *vtk;   /* NULL: it is a CSV file */
     se3di_summary *summary;     /* NULL: it has rows, */
     se3di_average_sum *average; /* unless it is one of fields or a wall */
     double *row;
     double every; /* in this analysis */
     double count; /* number of the last row, the one at the end */
     double next;  /* number of the next row */
+    bool is_made; /* `made` is there, whole */
     bool solves;  /* its rows need accelerations or multipliers */
 } se3di_output_file;
 

@@ -147,8 +147,7 @@ const char *se3di_average_get_column(const se3di_average_sum *average, size_t k)
     return average->grid ? cell_columns[k] : triangle_columns[k];
 }
 
-/* The means of a cell from its sums. */
-static void take_means(const se3di_average_sum *average, size_t cell, double *values)
+void se3di_average_get_means(const se3di_average_sum *average, size_t cell, double *values)
 {
     for (size_t k = 0; k < average->width; ++k) {
         values[k] = average->sums[cell * average->width + k] / (double)average->rows;
@@ -186,7 +185,7 @@ void se3di_average_write(se3di_average_sum *average, se3di_csv *csv)
         if (average->grid) {
             get_middle(average->grid, cell, cells);
         }
-        take_means(average, cell, values);
+        se3di_average_get_means(average, cell, values);
         for (size_t k = 0; k < average->width; ++k) {
             cells[first + k].number = values[k];
         }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Fields of the particles on a grid, or what they do to the triangles of a mesh, averaged over the
+/* Fields of the particles on a grid, or what they do to the patches of a wall, averaged over the
  * rows of a window of time. */
 #ifndef SE3D_IO_AVERAGE_H
 #define SE3D_IO_AVERAGE_H
@@ -10,11 +10,11 @@
 
 typedef struct se3di_average_sum {
     se3d_model *model;
-    const se3d_field_grid *grid; /* NULL: of the triangles of `wall` */
+    const se3d_field_grid *grid; /* NULL: of the patches of `wall` */
     se3d_shape wall;
     double *values; /* [cells * width] of one time, */
     double *sums;   /* and of all so far: of fields with momentum and its flux for the means */
-    size_t cells;   /* or triangles */
+    size_t cells;   /* or patches */
     size_t width;   /* SE3D_FIELD_VALUES or SE3D_WALL_VALUES */
     double time;    /* of the last row */
     uint64_t rows;
@@ -30,7 +30,12 @@ void se3di_average_pack(se3di_average_sum *average, se3di_coder *coder);
 /* The columns of the file. */
 size_t se3di_average_count_columns(const se3di_average_sum *average);
 const char *se3di_average_get_column(const se3di_average_sum *average, size_t k);
-/* Write a row for each cell, x fastest, or for each triangle; none if nothing was added. */
+/* Write a row for each cell, x fastest, or for each patch; none if nothing was added. */
 void se3di_average_write(se3di_average_sum *average, se3di_csv *csv);
+/* The means of a cell or patch, of which there are rows. */
+void se3di_average_get_means(const se3di_average_sum *average, size_t cell, double *values);
+/* Write them as .vtp (of a wall), .vti (of fields) or .vtkhdf; zeros if nothing was added.
+ * @return false: errno says why. */
+bool se3di_average_write_vtk(const se3di_average_sum *average, const char *path);
 
 #endif

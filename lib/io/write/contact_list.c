@@ -106,6 +106,12 @@ se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sampl
     return status < 0 || particles.count == 0 ? status : add_particles(model, &particles, out);
 }
 
+se3di_table_columns se3di_contacts_get_kinds(void)
+{
+    const se3di_table_columns kinds = {1u << 1 | 1u << 2 | 1u << 3, 0};
+    return kinds;
+}
+
 const char *se3di_contacts_get_column(size_t k)
 {
     static const char *const names[SE3DI_CONTACT_COLUMNS] = {

@@ -6,6 +6,7 @@
 #include "io/channel/sample.h"
 #include "io/model/model.h"
 #include "io/write/csv.h"
+#include "io/write/table_hdf5.h"
 
 enum { SE3DI_CONTACT_COLUMNS = 15, SE3DI_CONTACT_NUMBERS = 12 };
 
@@ -21,6 +22,8 @@ typedef struct se3di_contact_rows {
 se3d_status se3di_contacts_get_rows(const se3d_model *model, se3di_sample *sample,
                                     se3di_iopool *pool, se3di_contact_rows *rows);
 const char *se3di_contacts_get_column(size_t k);
+/* Which of them are texts. */
+se3di_table_columns se3di_contacts_get_kinds(void);
 se3d_status se3di_contacts_write(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
                                  se3di_csv *csv);
 

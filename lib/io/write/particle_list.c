@@ -13,6 +13,7 @@
 #include "se3d/clump.h"
 
 enum {
+    ID = 1,
     MATERIAL = 12, /* columns: numbers before it */
     SET,
     FORCE,
@@ -26,6 +27,12 @@ const char *se3di_tagged_get_column(size_t k)
                                                "vx",       "vy",  "vz",     "wx",   "wy", "wz",
                                                "material", "set", "force",  "clump"};
     return names[k];
+}
+
+se3di_table_columns se3di_tagged_get_kinds(void)
+{
+    const se3di_table_columns kinds = {1u << MATERIAL | 1u << SET, 1u << ID | 1u << CLUMP};
+    return kinds;
 }
 
 size_t se3di_tagged_count_columns(const se3d_model *model)

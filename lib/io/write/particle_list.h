@@ -5,6 +5,7 @@
 
 #include "io/model/model.h"
 #include "io/write/csv.h"
+#include "io/write/table_hdf5.h"
 
 enum { SE3DI_PARTICLE_COLUMNS = 14 };
 
@@ -21,6 +22,8 @@ typedef struct se3di_particle_rows {
  * contacts in the last step, and if the model has clumps, of which one a sphere is. */
 size_t se3di_tagged_count_columns(const se3d_model *model);
 const char *se3di_tagged_get_column(size_t k);
+/* Which of them are texts or whole numbers. */
+se3di_table_columns se3di_tagged_get_kinds(void);
 /* Copy all particles. */
 se3d_status se3di_tagged_get_rows(const se3d_model *model, se3di_iopool *pool,
                                   se3di_particle_rows *rows);

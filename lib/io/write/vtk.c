@@ -18,7 +18,7 @@
 #include "io/write/vtk_file.h"
 #include "se3d/bond.h"
 
-enum { PATH_SIZE = 4096, EXTENSION = 4, PARTS = 5 };
+enum { PATH_SIZE = 4096, PARTS = 5 };
 static const char *const part_names[PARTS] = {"bodies", "grains", "contacts", "fields", "bonds"};
 
 typedef struct surface {
@@ -37,7 +37,9 @@ typedef struct piece {
 struct se3di_vtk {
     se3d_model *model;
     se3di_iopool *pool;
-    const char *path;
+    const char *path;            /* of the list: ends with .pvd, or with .vtkhdf */
+    bool is_hdf5;                /* the latter: each part has a list of its own */
+    const char *listed;          /* the list, or the first of them */
     const se3d_field_grid *grid; /* NULL: no fields */
     se3di_sizes sizes;
     piece *pieces;
@@ -148,6 +150,23 @@ static bool prepare(se3di_vtk *vtk)
     return true;
 }
 
+/* "DIR/motion_bodies.vtkhdf.series". */
+static bool name_part_list(const se3di_vtk *vtk, int part, char *path)
+{
+    const int length =
+        snprintf(path, PATH_SIZE, "%.*s_%s.vtkhdf.series",
+                 (int)(strrchr(vtk->path, '.') - vtk->path), vtk->path, part_names[part]);
+    return length > 0 && length < PATH_SIZE;
+}
+
+static bool find_listed(se3di_vtk *vtk)
+{
+    char path[PATH_SIZE];
+    vtk->listed =
+        name_part_list(vtk, 0, path) ? se3di_iopool_copy(vtk->pool, path, strlen(path)) : NULL;
+    return vtk->listed;
+}
+
 se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path,
                           const se3d_field_grid *grid)
 {
@@ -159,12 +178,14 @@ se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *pat
     vtk->pool = pool;
     vtk->grid = grid;
     vtk->path = se3di_iopool_copy(pool, path, strlen(path));
-    return vtk->path && prepare(vtk) ? vtk : NULL;
+    vtk->listed = vtk->path;
+    vtk->is_hdf5 = strcmp(strrchr(path, '.'), ".vtkhdf") == 0;
+    return vtk->path && (!vtk->is_hdf5 || find_listed(vtk)) && prepare(vtk) ? vtk : NULL;
 }
 
 const char *se3di_vtk_get_path(const se3di_vtk *vtk)
 {
-    return vtk->path;
+    return vtk->listed;
 }
 
 size_t se3di_vtk_count(const se3di_vtk *vtk)
@@ -243,9 +264,11 @@ static bool name_file(const se3di_vtk *vtk, int part, size_t number, bool whole,
     for (const char *c = vtk->path; *c && !whole; ++c) {
         start = *c == '/' || *c == '\\' ? c + 1 : start;
     }
-    const int length =
-        snprintf(path, PATH_SIZE, "%.*s/%s_%05zu.%s", (int)(strlen(start) - EXTENSION), start,
-                 part_names[part], number, part == 3 ? "vti" : "vtp");
+    const int length = snprintf(path, PATH_SIZE, "%.*s/%s_%05zu.%s",
+                                (int)(strrchr(start, '.') - start), start, part_names[part], number,
+                                vtk->is_hdf5 ? "vtkhdf"
+                                : part == 3  ? "vti"
+                                             : "vtp");
     return length > 0 && length < PATH_SIZE;
 }
 
@@ -262,7 +285,7 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays, 0, NULL};
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     move_points(vtk);
-    return se3di_vtk_file_write(&file, path);
+    return se3di_vtk_file_write(&file, &vtk->model->pool.allocator, path);
 }
 
 /* A part of each row of a table of points. */
@@ -275,8 +298,8 @@ typedef struct column {
 enum { COLUMNS_MOST = 6 }; /* a name NULL: there are fewer */
 
 /* The rows of a table as points with what their columns say; the place is at `place`. */
-static bool write_rows(const char *path, const double *rows, size_t n, size_t width, size_t place,
-                       const column columns[COLUMNS_MOST])
+static bool write_rows(const se3d_allocator *allocator, const char *path, const double *rows,
+                       size_t n, size_t width, size_t place, const column columns[COLUMNS_MOST])
 {
     se3di_vtk_array arrays[COLUMNS_MOST + 3];
     size_t count = 0;
@@ -292,7 +315,7 @@ static bool write_rows(const char *path, const double *rows, size_t n, size_t wi
     points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
     points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
     const se3di_vtk_file file = {n, n, 0, arrays, count + 3, 0, NULL};
-    return se3di_vtk_file_write(&file, path);
+    return se3di_vtk_file_write(&file, allocator, path);
 }
 
 static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
@@ -310,7 +333,8 @@ static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di
     se3di_particle_rows list;
     (void)sample;
     return se3di_tagged_get_rows(model, pool, &list) >= 0 &&
-           write_rows(path, list.rows, list.count, SE3DI_PARTICLE_COLUMNS, 3, columns);
+           write_rows(&pool->allocator, path, list.rows, list.count, SE3DI_PARTICLE_COLUMNS, 3,
+                      columns);
 }
 
 static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
@@ -322,7 +346,8 @@ static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_
                                                  {"tangential_force", 9, 3, false}};
     se3di_contact_rows list;
     return se3di_contacts_get_rows(model, sample, pool, &list) >= 0 &&
-           write_rows(path, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1, columns);
+           write_rows(&pool->allocator, path, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1,
+                      columns);
 }
 
 /* Of bond k: tension, shear, energy, group, ids of both, then the places of its ends. */
@@ -389,7 +414,7 @@ static bool write_bonds(const se3d_model *model, se3di_sample *sample, se3di_iop
     arrays[BOND_NUMBERS + 2] =
         (se3di_vtk_array){SE3DI_VTK_LINES, "offsets", NULL, n, 1, 1, 2.0, 2.0, true};
     const se3di_vtk_file file = {2 * n, 0, 0, arrays, BOND_NUMBERS + 3, n, NULL};
-    return se3di_vtk_file_write(&file, path);
+    return se3di_vtk_file_write(&file, &pool->allocator, path);
 }
 
 /* Points with memory of their own. @return false: errno says why */
@@ -416,8 +441,8 @@ static const column field_columns[] = {{"density", SE3D_FIELD_DENSITY, 1, false}
                                        {"contact_stress", SE3D_FIELD_CONTACT_STRESS, 6, false}};
 enum { FIELD_COLUMNS = sizeof field_columns / sizeof *field_columns };
 
-static bool put_fields(const se3d_field_grid *grid, const double *values, size_t cells,
-                       const char *path)
+bool se3di_vtk_write_fields(const se3d_allocator *allocator, const se3d_field_grid *grid,
+                            const double *values, size_t cells, const char *path)
 {
     se3di_vtk_array arrays[FIELD_COLUMNS];
     se3di_vtk_grid image = {.cells = {grid->cells[0], grid->cells[1], grid->cells[2]}};
@@ -438,7 +463,7 @@ static bool put_fields(const se3d_field_grid *grid, const double *values, size_t
                                       false};
     }
     const se3di_vtk_file file = {.arrays = arrays, .array_count = FIELD_COLUMNS, .grid = &image};
-    return se3di_vtk_file_write(&file, path);
+    return se3di_vtk_file_write(&file, allocator, path);
 }
 
 static bool write_fields(const se3di_vtk *vtk, const char *path)
@@ -452,7 +477,7 @@ static bool write_fields(const se3di_vtk *vtk, const char *path)
     const bool good = values &&
                       se3d_particles_get_fields(vtk->model->particles->set, grid,
                                                 cells * SE3D_FIELD_VALUES, values) >= 0 &&
-                      put_fields(grid, values, cells, path);
+                      se3di_vtk_write_fields(&pool.allocator, grid, values, cells, path);
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;
@@ -557,6 +582,62 @@ static void put_path(FILE *file, const char *path)
     }
 }
 
+/* A text of JSON. */
+static void put_text(FILE *file, const char *text)
+{
+    fputc('"', file);
+    for (; *text; ++text) {
+        if (*text == '"' || *text == '\\' || (unsigned char)*text < 0x20) {
+            fprintf(file, "\\u%04x", (unsigned)(unsigned char)*text);
+        } else {
+            fputc(*text, file);
+        }
+    }
+    fputc('"', file);
+}
+
+/* The times of one part, as ParaView reads them. */
+static bool write_part_list(const se3di_vtk *vtk, int part)
+{
+    char path[PATH_SIZE];
+    char time[48];
+    errno = ENAMETOOLONG;
+    FILE *file = name_part_list(vtk, part, path) ? se3di_partial_open(path) : NULL;
+    if (!file) {
+        return false;
+    }
+    fputs("{\"file-series-version\": \"1.0\", \"files\": [", file);
+    for (size_t k = 0; k < vtk->count; ++k) {
+        char name[PATH_SIZE];
+        time[se3di_number_format(vtk->times[k], time)] = '\0';
+        name_file(vtk, part, k, false, name);
+        fputs(k > 0 ? ",\n{\"name\": " : "\n{\"name\": ", file);
+        put_text(file, name);
+        fprintf(file, ", \"time\": %s}", time);
+    }
+    fputs("\n]}\n", file);
+    return se3di_partial_close(file, path);
+}
+
+static bool write_part_lists(const se3di_vtk *vtk)
+{
+    bool good = true;
+    for (int part = 0; part < PARTS && good; ++part) {
+        good = !has_part(vtk, part) || write_part_list(vtk, part);
+    }
+    return good;
+}
+
+static void forget_lists(const se3di_vtk *vtk)
+{
+    char path[PATH_SIZE];
+    for (int part = 0; part < PARTS; ++part) {
+        if (has_part(vtk, part) && name_part_list(vtk, part, path)) {
+            se3di_file_remove(path);
+        }
+    }
+}
+
 static bool write_list(const se3di_vtk *vtk)
 {
     char path[PATH_SIZE];
@@ -589,7 +670,7 @@ static bool write_list(const se3di_vtk *vtk)
 se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why)
 {
     errno = 0;
-    while (vtk->count > 0 && !write_list(vtk)) {
+    while (vtk->count > 0 && !(vtk->is_hdf5 ? write_part_lists(vtk) : write_list(vtk))) {
         const int failed = errno ? errno : EIO;
         vtk->failure = vtk->failure ? vtk->failure : failed;
         if (failed != ENOSPC) {
@@ -597,6 +678,9 @@ se3d_status se3di_vtk_close(se3di_vtk *vtk, int *why)
             break;
         }
         forget_state(vtk, --vtk->count); /* on a full disk the last states make room */
+    }
+    if (vtk->is_hdf5 && vtk->count == 0) {
+        forget_lists(vtk);
     }
     *why = vtk->failure;
     return vtk->failure == 0 ? SE3D_OK : vtk->failure == ENOMEM ? SE3D_ERR_NO_MEMORY : SE3D_ERR_IO;

@@ -112,8 +112,13 @@ static void put_head(FILE *file, const se3di_vtk_file *f)
     fprintf(file, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type_of(f));
 }
 
-bool se3di_vtk_file_write(const se3di_vtk_file *f, const char *path)
+bool se3di_vtk_file_write(const se3di_vtk_file *f, const se3d_allocator *allocator,
+                          const char *path)
 {
+    const char *ending = strrchr(path, '.');
+    if (ending && strcmp(ending, ".vtkhdf") == 0) {
+        return se3di_vtk_file_write_hdf5(f, allocator, path);
+    }
     FILE *file = se3di_partial_open(path);
     if (!file) {
         return false;
