@@ -16,7 +16,7 @@ holds 'another picture on standard output' cmp -s "$dir/fourbar.svg" "$dir/print
 holds 'no picture through a pipe' grep -q '^</svg>' "$dir/piped.svg"
 holds 'a file of that name' [ ! -e "$dir/-.svg" ]
 cat >"$dir/look.py" <<'END_OF_PYTHON'
-import subprocess, sys, xml.dom.minidom as xml
+import re, subprocess, sys, xml.dom.minidom as xml
 program, models, folder = sys.argv[1:]
 checks = failures = 0
 
@@ -99,6 +99,24 @@ check(titles(groups(page, "joint")) and sorted(titles(groups(page, "joint"))) ==
 for kind in kinds:
     check(len(groups(page, kind)) == 1 and len(groups(page, kind)[0].childNodes) > 3, f"a symbol of {kind}")
 check(not page.getElementsByTagName("script") and page.getElementsByTagName("title")[0].firstChild.data.startswith("</title>"), "no script")
+# Nothing lies outside of the sheet or below its lists; shapes have outlines; long lists have columns.
+for name, shapes in [("models/pendulum_events", 1), ("models/heap", 12), ("models/hopper", 2), ("models/rotating_drum", 1), ("models/fourbar", 0), ("fsae/four_post", 20)]:
+    page = draw(models + "/../" + name + ".yaml")
+    sheet = page.documentElement
+    columns = {float(t.getAttribute("x")) for t in page.getElementsByTagName("text") if t.getAttribute("class") in ("head", "small")} - {
+        float(t.getAttribute("x")) for g in page.getElementsByTagName("g") for t in g.getElementsByTagName("text")}
+    width, height = float(sheet.getAttribute("width")), float(sheet.getAttribute("height"))
+    spots = []
+    for line in page.getElementsByTagName("line"):
+        spots += [(float(line.getAttribute("x" + k)), float(line.getAttribute("y" + k))) for k in "12"]
+    for path in page.getElementsByTagName("path"):
+        numbers = [float(x) for x in re.findall(r"-?[0-9.]+", path.getAttribute("d"))]
+        spots += list(zip(numbers[::2], numbers[1::2]))
+    check(len(spots) > 10 and all(0 < x < min(columns) and 0 < y < height for x, y in spots), f"{name}: {min(spots)} to {max(spots)}, {columns}")
+    lowest = max(float(t.getAttribute("y")) for t in page.getElementsByTagName("text"))
+    check(lowest < height and max(columns) + 300 < width, f"{name}: the lists end at {max(columns)}, {lowest}")
+    check(len(columns) == (3 if "fsae" in name else 1), f"{name}: columns {columns}")
+    check(len(groups(page, "shape")) >= shapes and bool(groups(page, "shape")) == (shapes > 0), f"{name}: {len(groups(page, 'shape'))} bodies with shapes")
 with open(folder + "/alone.yaml", "w") as file:
     file.write("se3d: 1\nbodies: [{name: alone, mass: 1, inertia: [1, 1, 1]}]\n")
 check("Degrees of freedom: 6" in texts(draw(folder + "/alone.yaml"), "head"), "a body alone")

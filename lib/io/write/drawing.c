@@ -214,7 +214,7 @@ static void add_looks(se3di_lister *l, const se3d_model_shape *s, se3di_part par
     }
 }
 
-static void add_shape(se3di_lister *l, const se3di_shape_entry *entry)
+void se3di_lister_add_shape(se3di_lister *l, const se3di_shape_entry *entry)
 {
     const se3d_model_shape *s = &entry->shape;
     double color[3];
@@ -238,7 +238,7 @@ static void add_shape(se3di_lister *l, const se3di_shape_entry *entry)
 bool se3di_drawing_list(const se3d_model *model, size_t k, const se3di_sizes *sizes,
                         const se3di_poses *poses, se3di_iopool *pool, se3di_parts *parts)
 {
-    se3di_lister l = {model, pool, parts, sizes, poses, k, {0.0, 0.0, 0.0}, false};
+    se3di_lister l = {model, pool, parts, sizes, poses, k, {0.0, 0.0, 0.0}, false, false};
     bool bare = k > 0;
     int32_t fixed = k == 0;
     if (k > 0) {
@@ -250,7 +250,7 @@ bool se3di_drawing_list(const se3d_model *model, size_t k, const se3di_sizes *si
     }
     for (size_t s = 0; s < model->shape_count; ++s) {
         if (se3di_drawing_is_body(model, k, model->shapes[s].shape.body)) {
-            add_shape(&l, &model->shapes[s]);
+            se3di_lister_add_shape(&l, &model->shapes[s]);
             bare = false;
         }
     }

@@ -69,7 +69,7 @@ static void find_places(web *w, bool bare)
             add_place(w, entry->point_j);
         }
     }
-    for (size_t m = 0; m < model->marker_count && bare; ++m) {
+    for (size_t m = 0; m < model->marker_count && bare && !w->l->unmarked; ++m) {
         if (model->markers[m].body == k) {
             add_place(w, model->markers[m].position);
         }

@@ -15,6 +15,7 @@ typedef struct se3di_lister {
     size_t body;
     double usual[3]; /* colour of the body */
     bool failed;     /* out of memory */
+    bool unmarked;   /* links leave markers out */
 } se3di_lister;
 
 /* What a joint looks like. */
@@ -49,6 +50,8 @@ double se3di_shape_reach(const se3di_shape_entry *entry, const double at[3], dou
 
 /* How a joint or constraint is drawn: by its type. */
 se3di_joint_look se3di_joint_get_look(const se3di_element_entry *entry);
+/* A given shape of l->body. */
+void se3di_lister_add_shape(se3di_lister *l, const se3di_shape_entry *entry);
 /* What body l->body has of its joints. */
 void se3di_lister_add_joints(se3di_lister *l);
 /* The roads on l->body, as far as wheels come over them. */

@@ -14,19 +14,30 @@
 #define WIDTH  760.0
 #define HEIGHT 560.0
 #define MARGIN 60.0
-#define LEGEND 330.0
+#define TITLE  24.0
+#define LEGEND 330.0 /* of a column */
 #define LINE   16.0
 
-enum { LINES_MAX = 120, TEXT_SIZE = 300, NAME_MAX_LENGTH = 28 };
+enum { LINES_MAX = 240, ROWS_USUAL = 48, COLUMNS_MAX = 4, TEXT_SIZE = 300, NAME_MAX_LENGTH = 28 };
+/* A body of more shapes is put together of them: its links say more. */
+enum { SHAPES_MAX = 40 };
+
+/* What is drawn of a body: links, and given shapes with ends. */
+typedef struct drawn {
+    se3di_parts links, shapes;
+} drawn;
 
 typedef struct sketch {
     const se3d_model *model;
     FILE *file;
     se3di_iopool pool;
     double *poses;
+    drawn *looks; /* [body_count] */
     se3di_sizes sizes;
     se3di_sketch_view view;
-    se3di_spot *joints; /* [joint_count] where letters stand */
+    double width, height; /* of the picture without its legend [px] */
+    size_t rows;          /* of a column of the legend */
+    se3di_spot *joints;   /* [joint_count] where letters stand */
     size_t joint_count;
     char (*lines)[TEXT_SIZE]; /* of the legend; one that begins with # is a heading */
     size_t line_count, lines_left_out;
@@ -106,16 +117,72 @@ static void widen(const sketch *s, const double r[3], double low[2], double high
     high[1] = fmax(high[1], p.y);
 }
 
-/* Let all that is drawn fill its part of the sheet. */
-static void fit(sketch *s)
+/* End 0 or 1 of a link, which is a cylinder. */
+static void get_link_end(const sketch *s, size_t body, const se3di_part *part, int end, double r[3])
 {
-    double low[2] = {HUGE_VAL, HUGE_VAL};
-    double high[2] = {-HUGE_VAL, -HUGE_VAL};
+    const double at[3] = {0.0, 0.0, (end - 0.5) * part->scale[2]};
+    double placed[SE3DI_POSE];
+    memcpy(placed, part->position, sizeof part->position);
+    memcpy(placed + 3, part->orientation, sizeof part->orientation);
+    se3di_drawing_to_ground(placed, at, r);
+    se3di_drawing_to_ground(s->poses + SE3DI_POSE * body, r, r);
+}
+
+/* Of a body with shapes no bars lead to markers, which may be anywhere. */
+static void list_looks(sketch *s)
+{
+    se3di_poses poses = {s->poses, s->model->body_count, 1, NULL};
+    for (size_t body = 0; body < s->model->body_count; ++body) {
+        drawn *of = &s->looks[body];
+        se3di_lister lister = {.model = s->model,
+                               .pool = &s->pool,
+                               .parts = &of->shapes,
+                               .sizes = &s->sizes,
+                               .poses = &poses,
+                               .body = body};
+        for (size_t k = 0; k < s->model->shape_count; ++k) {
+            const se3di_shape_entry *entry = &s->model->shapes[k];
+            const bool has_ends =
+                entry->shape.type != SE3D_SHAPE_PLANE && !(entry->mesh && entry->mesh->heights);
+            if (has_ends && se3di_drawing_is_body(s->model, body, entry->shape.body)) {
+                se3di_lister_add_shape(&lister, entry);
+            }
+        }
+        lister.unmarked = of->shapes.count > 0;
+        lister.parts = &of->links;
+        if (body > 0) {
+            se3di_lister_add_links(&lister, true);
+        }
+        of->shapes.count = of->shapes.count > SHAPES_MAX ? 0 : of->shapes.count;
+        s->failed = s->failed || lister.failed;
+    }
+}
+
+/* The outlines of the shapes of a body, which are drawn or only widen a box. */
+static void put_shapes(sketch *s, size_t body, FILE *file, double low[2], double high[2])
+{
+    const se3di_parts *shapes = &s->looks[body].shapes;
+    for (size_t k = 0; k < shapes->count; ++k) {
+        s->failed = !se3di_sketch_put_shape(file, &s->view, s->poses + SE3DI_POSE * body,
+                                            &shapes->list[k], &s->pool, low, high) ||
+                    s->failed;
+    }
+}
+
+/* The box around all that is drawn. */
+static void enclose(sketch *s, double low[2], double high[2])
+{
     double r[3];
-    s->view.scale = 1.0;
-    s->view.origin = (se3di_spot){0.0, 0.0};
     for (size_t k = 0; k < s->model->body_count; ++k) {
+        const se3di_parts *links = &s->looks[k].links;
         widen(s, s->poses + SE3DI_POSE * k, low, high);
+        put_shapes(s, k, NULL, low, high);
+        for (size_t p = 0; p < links->count; ++p) {
+            for (int end = 0; links->list[p].unit == SE3DI_UNIT_CYLINDER && end < 2; ++end) {
+                get_link_end(s, k, &links->list[p], end, r);
+                widen(s, r, low, high);
+            }
+        }
     }
     for (size_t e = 0; e < s->model->element_count; ++e) {
         for (int j = 0; s->model->elements[e].drawn > 0 && j < 2; ++j) {
@@ -123,14 +190,24 @@ static void fit(sketch *s)
             widen(s, r, low, high);
         }
     }
+}
+
+/* Let all that is drawn fill its part of the sheet. */
+static void fit(sketch *s)
+{
+    double low[2] = {HUGE_VAL, HUGE_VAL};
+    double high[2] = {-HUGE_VAL, -HUGE_VAL};
+    s->view.scale = 1.0;
+    s->view.origin = (se3di_spot){0.0, 0.0};
+    enclose(s, low, high);
     const double wide = high[0] - low[0];
     const double tall = high[1] - low[1];
     const double least = 1e-9 * s->sizes.extent;
-    const double x = wide > least ? (WIDTH - 2.0 * MARGIN) / wide : HUGE_VAL;
-    const double y = tall > least ? (HEIGHT - 2.0 * MARGIN) / tall : HUGE_VAL;
+    const double x = wide > least ? (s->width - 2.0 * MARGIN) / wide : HUGE_VAL;
+    const double y = tall > least ? (s->height - 2.0 * MARGIN - TITLE) / tall : HUGE_VAL;
     s->view.scale = fmin(x, y) < HUGE_VAL ? fmin(x, y) : 100.0;
-    s->view.origin.x = 0.5 * WIDTH - 0.5 * (low[0] + high[0]) * s->view.scale;
-    s->view.origin.y = 0.5 * HEIGHT - 0.5 * (low[1] + high[1]) * s->view.scale;
+    s->view.origin.x = 0.5 * s->width - 0.5 * (low[0] + high[0]) * s->view.scale;
+    s->view.origin.y = 0.5 * (s->height + TITLE) - 0.5 * (low[1] + high[1]) * s->view.scale;
 }
 
 /* ---- bodies ---------------------------------------------------------------------------------*/
@@ -167,33 +244,19 @@ static const char *kind_of(size_t body)
 }
 
 /* The links of a body. @return how many, and the middle of the longest one. */
-static size_t put_links(sketch *s, size_t body, se3di_spot *middle)
+static size_t put_links(const sketch *s, size_t body, se3di_spot *middle)
 {
-    se3di_parts parts = {NULL, 0, 0};
-    se3di_poses poses = {s->poses, s->model->body_count, 1, NULL};
-    se3di_lister lister = {.model = s->model,
-                           .pool = &s->pool,
-                           .parts = &parts,
-                           .sizes = &s->sizes,
-                           .poses = &poses,
-                           .body = body};
+    const se3di_parts *parts = &s->looks[body].links;
     size_t count = 0;
     double longest = 0.0;
-    se3di_lister_add_links(&lister, true);
-    s->failed = s->failed || lister.failed;
-    for (size_t k = 0; k < parts.count; ++k) {
-        const se3di_part *part = &parts.list[k];
-        double placed[SE3DI_POSE];
+    for (size_t k = 0; k < parts->count; ++k) {
         se3di_spot ends[2];
-        if (part->unit != SE3DI_UNIT_CYLINDER) {
+        if (parts->list[k].unit != SE3DI_UNIT_CYLINDER) {
             continue; /* the round end of a bar */
         }
-        memcpy(placed, part->position, sizeof part->position);
-        memcpy(placed + 3, part->orientation, sizeof part->orientation);
         for (int i = 0; i < 2; ++i) {
-            double at[3] = {0.0, 0.0, (i - 0.5) * part->scale[2]};
-            se3di_drawing_to_ground(placed, at, at);
-            se3di_drawing_to_ground(s->poses + SE3DI_POSE * body, at, at);
+            double at[3];
+            get_link_end(s, body, &parts->list[k], i, at);
             ends[i] = se3di_sketch_project(&s->view, at);
         }
         se3di_svg_line(s->file, kind_of(body), ends[0], ends[1]);
@@ -252,6 +315,15 @@ static void put_bodies(sketch *s)
 {
     add_line(s, "#Bodies");
     add_line(s, "0  ground");
+    double low[2] = {0.0, 0.0}; /* not used any more */
+    double high[2] = {0.0, 0.0};
+    for (size_t k = 0; k < s->model->body_count; ++k) {
+        if (s->looks[k].shapes.count > 0) { /* below all else */
+            se3di_svg_open(s->file, "shape", s->model->bodies[k].name);
+            put_shapes(s, k, s->file, low, high);
+            se3di_svg_close(s->file);
+        }
+    }
     se3di_svg_open(s->file, "ground", "ground");
     put_frame(s, 0);
     se3di_svg_close(s->file);
@@ -459,25 +531,40 @@ static se3d_status tell_freedoms(sketch *s)
 static void put_legend(const sketch *s)
 {
     double y = 28.0;
+    double x = s->width + 10.0;
     for (size_t k = 0; k < s->line_count; ++k) {
         const bool is_head = s->lines[k][0] == '#';
-        y += is_head && k > 0 ? 6.0 : 0.0;
-        se3di_svg_text(s->file, is_head ? "head" : "small", (se3di_spot){WIDTH + 10.0, y},
+        if (k > 0 && k % s->rows == 0) {
+            y = 28.0;
+            x += LEGEND;
+        }
+        y += is_head && k % s->rows > 0 ? 6.0 : 0.0;
+        se3di_svg_text(s->file, is_head ? "head" : "small", (se3di_spot){x, y},
                        s->lines[k] + is_head);
         y += LINE;
     }
     if (s->lines_left_out > 0) {
         char rest[60];
         snprintf(rest, sizeof rest, "and %zu more", s->lines_left_out);
-        se3di_svg_text(s->file, "small", (se3di_spot){WIDTH + 10.0, y}, rest);
+        se3di_svg_text(s->file, "small", (se3di_spot){x, y}, rest);
     }
 }
 
-/* The number of lines is known when all is listed: an upper bound of it is enough. */
-static double height_of(const sketch *s)
+/* How large the sheet is. The number of lines is known when all is listed: an upper bound of it
+ * is enough. @return its width with the legend, of which a long one has several columns. */
+static double lay_out(sketch *s)
 {
-    const size_t most = 16 + s->model->body_count + s->model->element_count;
-    return fmax(HEIGHT, 60.0 + (LINE + 2.0) * (double)(most < LINES_MAX ? most : LINES_MAX));
+    const size_t all = 16 + s->model->body_count + s->model->element_count;
+    const size_t most = all < LINES_MAX ? all : LINES_MAX;
+    size_t columns = 1;
+    while (columns < COLUMNS_MAX &&
+           columns * (columns > 1 ? columns * ROWS_USUAL / 2 : ROWS_USUAL) < most) {
+        ++columns;
+    }
+    s->rows = (most + columns - 1) / columns;
+    s->height = fmax(HEIGHT, 60.0 + (LINE + 2.0) * (double)s->rows);
+    s->width = round(WIDTH / HEIGHT * s->height);
+    return s->width + LEGEND * (double)columns;
 }
 
 static se3d_status prepare(sketch *s, const double view[2])
@@ -486,7 +573,8 @@ static se3d_status prepare(sketch *s, const double view[2])
     s->poses = se3di_iopool_array(&s->pool, model->body_count, SE3DI_POSE * sizeof *s->poses);
     s->joints = se3di_iopool_array(&s->pool, model->element_count + 1, sizeof *s->joints);
     s->lines = se3di_iopool_array(&s->pool, LINES_MAX, sizeof *s->lines);
-    if (!s->poses || !s->joints || !s->lines) {
+    s->looks = se3di_iopool_array(&s->pool, model->body_count, sizeof *s->looks);
+    if (!s->poses || !s->joints || !s->lines || !s->looks) {
         return SE3D_ERR_NO_MEMORY;
     }
     const se3d_status status = se3di_drawing_get_poses(model, s->poses);
@@ -494,6 +582,7 @@ static se3d_status prepare(sketch *s, const double view[2])
     if (status >= 0) {
         se3di_drawing_measure(model, &poses, &s->sizes);
         se3di_sketch_turn(&s->view, view, model, s->poses);
+        list_looks(s);
         fit(s);
     }
     return status;
@@ -504,10 +593,11 @@ se3d_status se3di_sketch_put(se3d_model *model, const double view[2], FILE *file
     sketch s = {.model = model, .file = file};
     const char *title = model->title[0] ? model->title : model->name;
     se3di_iopool_init(&s.pool, &model->pool.allocator);
+    const double width = lay_out(&s);
     se3d_status status = prepare(&s, view);
     status = status < 0 ? status : tell_freedoms(&s);
     if (status >= 0) {
-        se3di_svg_begin(file, WIDTH + LEGEND, height_of(&s), title);
+        se3di_svg_begin(file, width, s.height, title);
         se3di_svg_text(file, "title", (se3di_spot){16.0, 28.0}, title);
         put_bodies(&s);
         put_elements(&s);

@@ -29,6 +29,12 @@ void se3di_sketch_turn(se3di_sketch_view *view, const double angles[2], const se
                        const double *poses);
 se3di_spot se3di_sketch_project(const se3di_sketch_view *view, const double r[3]);
 
+/* The outline of a given shape on a body that is at `pose`; `file` NULL: nothing is drawn. Widens
+ * the box from `low` to `high` around it. @return false: out of memory. */
+bool se3di_sketch_put_shape(FILE *file, const se3di_sketch_view *view, const double *pose,
+                            const se3di_part *part, se3di_iopool *pool, double low[2],
+                            double high[2]);
+
 void se3di_symbol_put_joint(const se3di_symbol *s, se3di_joint_look look);
 void se3di_symbol_put_ground(FILE *file, se3di_spot at);
 void se3di_symbol_put_driver(FILE *file, se3di_spot at);

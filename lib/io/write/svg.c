@@ -49,6 +49,7 @@ void se3di_svg_begin(FILE *file, double width, double height, const char *title)
         ".thin,.thick,.axis,.link,.hatch{fill:none;stroke:#1c2730;stroke-linecap:round;"
         "stroke-linejoin:round}.thin{stroke-width:1.2}.thick{stroke-width:2}"
         ".spot{fill:none;stroke-width:1.2}"
+        ".outline{fill:none;stroke:#a8b4bf;stroke-width:1;stroke-linejoin:round}"
         ".grid{stroke:#d3dae0;stroke-width:1}"
         ".axis{stroke-width:.8;stroke-dasharray:8 3 2 3}.link{stroke-width:3.5}"
         ".hatch{stroke-width:1}.open{fill:#fff;stroke:#1c2730;stroke-width:1.4;"
