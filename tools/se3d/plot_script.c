@@ -413,9 +413,29 @@ static int count_digits(const double range[2])
     return more < 1 ? 4 : more < 11 ? 3 + more : 14;
 }
 
+/* How many letters a mark of an axis has. */
+static int count_letters(const double range[2])
+{
+    const double size = fmax(fabs(range[0]), fabs(range[1]));
+    const int has_exponent = size > 0.0 && (size < 2e-4 || size >= 1e4);
+    return 2 + count_digits(range) + (has_exponent ? 2 : 0);
+}
+
 static int is_constant(const double range[2])
 {
     return range[1] - range[0] <= 1e-14 * fabs(range[0]);
+}
+
+/* Whether what changes is rounding, or an error of the method, beside its size, and nobody has asked
+ * for just that. */
+static int is_nearly_constant(const plot_panel *panel)
+{
+    const double size = fmax(fabs(panel->range[0]), fabs(panel->range[1]));
+    int asked = 0;
+    for (size_t k = 0; k < panel->count; ++k) {
+        asked = asked || panel->asked[k];
+    }
+    return !asked && !is_constant(panel->range) && panel->range[1] - panel->range[0] < 1e-5 * size;
 }
 
 /* What is constant, or a single point, has no width of its own to draw. */
@@ -434,8 +454,16 @@ static void put_range(FILE *file, const char *axis, const double range[2])
 static void put_panel(const plot *p, FILE *file, const plot_panel *panel, size_t column, int last)
 {
     char title[300];
-    put_range(file, "y", panel->range);
-    fprintf(file, "    set format y '%%.%dg'\n", count_digits(panel->range));
+    const double middle = 0.5 * (panel->range[0] + panel->range[1]);
+    const double still[2] = {middle, middle};
+    const int is_still = is_nearly_constant(panel);
+    const double *range = is_still ? still : panel->range;
+    put_range(file, "y", range);
+    fprintf(file, "    set format y '%%.%dg'\n    unset label\n", count_digits(range));
+    if (is_still) { /* as it is seen beside its size; how much it changes in words */
+        fprintf(file, "    set label 'varies by %.2g' at graph 0.02, graph 0.92 noenhanced\n",
+                panel->range[1] - panel->range[0]);
+    }
     entitle(panel, title, sizeof title);
     put_title(file, "    set ylabel ", title, "\n");
     fputs(panel->count > 1 || p->file_count > 1 ? "    set key\n" : "    unset key\n", file);
@@ -456,13 +484,16 @@ static void put_panel(const plot *p, FILE *file, const plot_panel *panel, size_t
 /* What comes before every frame: margins that all share. */
 static void put_margins(const plot *p, FILE *file)
 {
-    int digits = 4;
+    int letters = 6;
     for (size_t k = 0; k < p->panel_count; ++k) {
-        const int needed = count_digits(p->panels[k].range);
-        digits = needed > digits ? needed : digits;
+        const double end = p->panels[k].range[1];
+        const double still[2] = {end, end};
+        const int needed =
+            count_letters(is_nearly_constant(&p->panels[k]) ? still : p->panels[k].range);
+        letters = needed > letters ? needed : letters;
     }
     put_range(file, "x", p->x_range);
-    fprintf(file, "    set lmargin %d\n    set rmargin 3\n%s", digits + 7,
+    fprintf(file, "    set lmargin %d\n    set rmargin 3\n%s", letters + 5,
             p->fft || p->bode ? "    set logscale x\n" : "");
 }
 

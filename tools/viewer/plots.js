@@ -25,7 +25,8 @@ const se3dPlots = (box, { names, units, rows, at, seek }) => {
   const range = (u, low, high) => {
     if (low === null || !Number.isFinite(low)) return [-1, 1];
     const width = high - low;
-    if (!(width > 1e-9 * Math.abs(high)) || width < 1e-12) return [low - 1, high + 1];
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    if (!(width > 1e-6 * size) || width < 1e-12) return size > 1e-9 ? [low - 0.1 * size, high + 0.1 * size] : [low - 1, high + 1];
     return [low - 0.06 * width, high + 0.06 * width];
   };
   const size = () => ({ width: Math.max(120, box.clientWidth - 10), height: box.clientWidth < 300 ? 100 : 150 });
