@@ -217,8 +217,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     }
   }
   // What parts and falls far away at last does not make all else small.
-  const usual = [...boxes].sort((a, b) => a.size - b.size)[boxes.length >> 1].size;
-  boxes.filter((b) => b.size <= 2.5 * usual).forEach((b) => { low.min(b.low); high.max(b.high); });
+  const usual = [...boxes].sort((a, b) => a.size - b.size)[boxes.length >> 1].size, most = boxes.filter((b) => b.size <= 1.6 * usual);
+  (most.length >= 0.75 * boxes.length ? most : boxes).forEach((b) => { low.min(b.low); high.max(b.high); });
   // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
   const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
   const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 3 * largest0;
