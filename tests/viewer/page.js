@@ -167,6 +167,13 @@ const checkJoints = async () => {
   const [darkest, lightest] = await evaluate("se3d.light.found()"), mark = await evaluate("se3d.light.mark()");
   check(darkest < 225 && lightest === 255, `ambient occlusion: ${darkest} to ${lightest}`);
   check(mark > 10, `the shadow of contact: ${mark}`);
+  // Names do not lie on each other.
+  await evaluate("se3d.set({labels: true}); se3d.show(se3d.start)");
+  const names = await evaluate(`[...document.querySelectorAll("#labels span")].map((e) => [e.textContent, ...(({ x, y, width, height }) => [x, y, width, height])(e.getBoundingClientRect())])`);
+  const written = names.filter(([, , , width]) => width > 0), meet = ([, a, b, w, h], [, c, d, v, g]) => a < c + v - 0.5 && c < a + w - 0.5 && b < d + g - 0.5 && d < b + h - 0.5;
+  check(2 * written.length > names.length, `${written.length} of ${names.length} names are written`);
+  written.forEach((a, k) => written.slice(k + 1).forEach((b) => check(!meet(a, b), `the names ${a} and ${b} meet`)));
+  await evaluate("se3d.set({labels: false})");
   const plain = await colours(""), loaded = await colours("force");
   check(loaded.hues.includes("force") && loaded.legend.startsWith("force [N] ") && loaded.picture !== plain.picture, `colours by force: ${loaded.legend}`);
   await choose("colour", "");

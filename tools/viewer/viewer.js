@@ -539,10 +539,18 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const write = () => {
     const [width, height] = film || [innerWidth, innerHeight];
     $("labels").style.display = state.labels ? "block" : "none";
-    if (state.labels) named.forEach(({ o, tag }) => {
-      va.setFromMatrixPosition(o.matrixWorld).project(camera);
-      tag.style.transform = `translate(${(va.x + 1) / 2 * width + 6}px,${(1 - va.y) / 2 * height - 8}px)`;
-      tag.style.display = va.z < 1 ? "block" : "none";
+    const taken = [];
+    if (state.labels) named.forEach((l) => {
+      va.setFromMatrixPosition(l.o.matrixWorld).project(camera);
+      const x = (va.x + 1) / 2 * width, y = (1 - va.y) / 2 * height;
+      l.tag.style.display = "block";
+      if (!l.size) l.size = [l.tag.offsetWidth, l.tag.offsetHeight];
+      // To the right, to the left, above, below: where no name is yet; else it is left out.
+      const [wide, high] = l.size, isFree = ([a, b]) => !taken.some(([c, d, w, h]) => a < c + w && c < a + wide && b < d + h && d < b + high);
+      const spot = va.z < 1 && [[6, -8], [-6 - wide, -8], [-wide / 2, -8 - high], [-wide / 2, 8]].map(([dx, dy]) => [x + dx, y + dy]).find(isFree);
+      if (!spot) { l.tag.style.display = "none"; return; }
+      taken.push([...spot, wide, high]);
+      l.tag.style.transform = `translate(${spot[0]}px,${spot[1]}px)`;
     });
     $("info").style.display = state.picked ? "block" : "none";
     if (state.picked) $("info").textContent = describe().join("\n");
