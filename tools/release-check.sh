@@ -14,7 +14,7 @@ cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 se3d_help "$@"
 smoke=
-stages="tests long memory gcc asan tsan fuzz unset analyzer tidy coverage mutation kills bits"
+stages="tests long memory gcc asan tsan fuzz unset analyzer tidy coverage mutation kills bits playground"
 if [ "${1:-}" = --smoke ]; then
     smoke=1
     shift
@@ -165,6 +165,14 @@ kills() {
 }
 bits() { sh tools/check_bits.sh all; }
 
+# As readers get it; emscripten is 840 MB, too much for every change.
+playground() {
+    se3d_install emscripten $SE3D_PICTURE_PACKAGES && configured dev &&
+        cmake --build --preset dev -j "$jobs" --target se3d_program &&
+        SE3D_LONG=1 ctest_sum --preset dev -R '^cli\.(view|playground)$' || return 1
+    ! grep SKIPPED build/dev/Testing/Temporary/LastTest.log
+}
+
 for each in $stages; do
     case $each in
     tests) stage tests 'ctest --preset dev' tests ;;
@@ -181,6 +189,7 @@ for each in $stages; do
     mutation) stage mutation 'python3 tools/mutate.py' mutation ;;
     kills) stage kills 'SE3D_KILLS=50 ctest -R cli.resume' kills ;;
     bits) stage bits 'sh tools/check_bits.sh all' bits ;;
+    playground) stage playground 'SE3D_LONG=1 ctest -R cli.playground' playground ;;
     *)
         echo "release-check.sh: no stage $each; there are: $stages" >&2
         exit 2
