@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
 # Make the pictures of the documents from results of the example models.
-# Needs: apt-get install --no-install-recommends gnuplot-nox chromium ffmpeg npm
+# Needs: apt-get install --no-install-recommends gnuplot-nox chromium ffmpeg nodejs npm
 #
 #     sh docs/pictures/make.sh [PROGRAM]      the se3d program, default build/release/bin/se3d
 set -eu
@@ -28,9 +28,7 @@ plot() {
 # look PICTURE MODEL PART [MORE]: what its page shows, from 0 at the start to 1 at the end; MORE of its address.
 look() {
     "$program" view --quiet "$results/$2"
-    "${SE3D_CHROMIUM:-chromium}" --headless --no-sandbox --disable-gpu --enable-unsafe-swiftshader --hide-scrollbars \
-        --window-size=1280,720 --virtual-time-budget=4000 --user-data-dir="$results/profile" \
-        --screenshot="$results/$1.png" "file://$results/$2/scene.html#bare&part=$3${4:+&$4}" 2>/dev/null
+    node tests/viewer/page.js "$results/$2/scene.html#bare&part=$3${4:+&$4}" still "$results/$1.png" >/dev/null
     ffmpeg -v error -y -i "$results/$1.png" -vf scale=960:-1:flags=lanczos -frames:v 1 -q:v 3 "docs/pictures/$1.jpg"
 }
 

@@ -9,6 +9,7 @@
 //     node page.js ADDRESS live MODEL             the page of `se3d live MODEL`, where it is; MODEL is changed
 //     node page.js PAGE playground                the playground: edits, runs, plots, asks nobody
 //     node page.js PAGE shots PREFIX              pictures to look at: PREFIX-light.png, -dark.png, -narrow.png
+//     node page.js PAGE#ADDRESS still PICTURE     a picture of 1280 x 720 of what the address shows
 //     node page.js PAGE second CSV BODY           two runs: BODY of the other one is where CSV says, as a ghost and beside
 // Several of these, with `--` between them, are opened one after the other in one browser. With the word `brief` before
 // PAGE without keys and mouse.
@@ -456,16 +457,19 @@ const checkSecond = async ({ names, rows }, name) => {
   }
   check(pictures.size === 3, "as a ghost, beside and without it are three pictures");
 };
+const shoot = async (path) => {
+  await evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+  const shot = await call("Page.captureScreenshot", { format: "png" });
+  fs.writeFileSync(path, Buffer.from(shot.data, "base64"));
+};
 // What one sees who opens the page: in both themes, and on a telephone.
 const takeShots = async (prefix) => {
   for (const [name, width, height, dark] of [["light", 1280, 720, false], ["dark", 1280, 720, true], ["narrow", 480, 800, false]]) {
     await call("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
     await evaluate(`se3d.set({dark: ${dark}}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))`);
-    await evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
     check((await evaluate("se3d.state.follow > 0 || !se3d.clipped()")), `${name}: all is in the picture`);
     check((await evaluate("document.documentElement.scrollWidth")) <= width, `${name}: nothing is wider than the screen`);
-    const shot = await call("Page.captureScreenshot", { format: "png" });
-    fs.writeFileSync(`${prefix}-${name}.png`, Buffer.from(shot.data, "base64"));
+    await shoot(`${prefix}-${name}.png`);
   }
 };
 const run = async () => {
@@ -475,6 +479,12 @@ const run = async () => {
     await checkJoints();
   } else if (csv === "shots") {
     await takeShots(body);
+    return;
+  } else if (csv === "still") {
+    await call("Emulation.setDeviceMetricsOverride", { width: 1280, height: 720, deviceScaleFactor: 1, mobile: false });
+    await wait(100);
+    await evaluate("se3d.show(se3d.state.time)");
+    await shoot(body);
     return;
   } else if (csv === "modes") {
     await checkModes(read(body));
@@ -508,10 +518,7 @@ const run = async () => {
     }
   }
   if (csv !== "live" && csv !== "playground") await evaluate("se3d.set({dark: false}); se3d.show(se3d.start + 0.3 * (se3d.end - se3d.start))");
-  if (picture) {
-    const shot = await call("Page.captureScreenshot", { format: "png" });
-    fs.writeFileSync(picture, Buffer.from(shot.data, "base64"));
-  }
+  if (picture) await shoot(picture);
   check(problems.length === 0, "no error on the console: " + problems.join("; "));
   if (!page.startsWith("http:")) check(asked.length === 0, `nothing is asked of a network: ${asked}`);
 };
