@@ -574,4 +574,11 @@ has "$dir/out" '6 equations, rank 6'
 expect 'check --json' 0 "$program" check "$models/fourbar.yaml" --json
 has "$dir/out" '"freedoms": 1'
 
+# Coordinates and loads have the units of what they turn or push.
+"$program" channels "$models/quarter_car.yaml" >"$dir/units"
+"$program" channels "$models/pendulum_rsda.yaml" >>"$dir/units"
+"$program" channels "$models/pendulum.yaml" >>"$dir/units"
+for row in 'bump.effort *\[N\]' 'spring.length *\[m\]' 'spring.rate *\[m/s\]' 'tyre.force *\[N\]' 'spring.torque *\[N m\]' 'drive.effort *\[N m\]'; do
+    holds "no unit: $row" grep -q "^$row" "$dir/units"
+done
 finish

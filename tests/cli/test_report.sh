@@ -57,6 +57,8 @@ if command -v python3 >/dev/null; then
     has "$dir/out" "|pin.rate|rad/s|"
     has "$dir/out" "|pin.force.x|N|"
 fi
+has "$dir/page/report.html" 'Zero all the time: '
+holds 'zeros in the table' sh -c '! grep -q "<td>0</td><td>0</td><td>0</td><td>0</td><td>0</td><td>0</td></tr>" "$1"' sh "$dir/page/report.html"
 holds 'results beside the page' [ -s "$dir/page/a b#.csv" ]
 
 # Two models: their results in folders of their own; kinematics over the first channel, with slopes.

@@ -28,7 +28,7 @@ static axis make_axis(double least, double most)
     if (!(least <= most)) {
         least = most = 0.0; /* no row is finite */
     }
-    if (!(most - least > 1e-9 * size)) { /* a constant, but for rounding */
+    if (!(most - least > 1e-5 * size)) { /* a constant, but for errors */
         const double half = size > 0.0 ? 0.5 * size : 1.0;
         least -= half;
         most += half;
@@ -125,7 +125,7 @@ static void put_legend(const chart *c, FILE *file)
         const double left = LEFT + width * (double)k;
         const int letters = (int)((width - 30.0) / 6.5);
         snprintf(kind, sizeof kind, "thick b%zu", k);
-        snprintf(name, sizeof name, "%.*s", letters, c->names[k]);
+        snprintf(name, sizeof name, "%.*s", letters, c->briefs[k] ? c->briefs[k] : c->names[k]);
         se3di_svg_line(file, kind, (se3di_spot){left, 20.0}, (se3di_spot){left + 18.0, 20.0});
         se3di_svg_text(file, "small", (se3di_spot){left + 22.0, 24.0}, name);
     }

@@ -13,6 +13,7 @@ typedef struct chart {
     const double *x; /* [count] */
     const double *y[CHART_CURVES_MAX];
     const char *names[CHART_CURVES_MAX];
+    const char *briefs[CHART_CURVES_MAX]; /* in the legend; NULL: the name */
     size_t curves, count;
     int is_spots; /* not 0: rows are spots, which nothing joins */
 } chart;

@@ -7,13 +7,18 @@
 #include "se3d/io.h"
 #include "table.h"
 
+enum { REPORT_LABEL_SIZE = 200 };
+
 /* The numbers of a table, column by column. */
 typedef struct sheet {
     table t;
     const se3d_model *model; /* whose channels were listed; NULL: none */
     size_t channels;
     double *columns; /* [t.count][rows] */
-    size_t rows, x;  /* x: the column on the horizontal axis */
+    /* of a run, each [t.count]: quantity and unit, and whether it is no more than rounding */
+    char (*labels)[REPORT_LABEL_SIZE];
+    char *zero;
+    size_t rows, x; /* x: the column on the horizontal axis */
 } sheet;
 
 /* Of more than `most` rows, every so many are read. @return false: out of memory */

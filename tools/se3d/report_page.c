@@ -196,34 +196,81 @@ static int has_numbers(const sheet *s, size_t k)
     return i < s->rows;
 }
 
+/* What stays below 1e-9 of the largest of its quantity is rounding. @return false: out of memory */
+static int look_at_columns(sheet *s)
+{
+    const size_t count = s->t.count;
+    double *most = calloc(count + 1, sizeof *most);
+    s->zero = calloc(count + 1, 1);
+    s->labels = calloc(count + 1, sizeof *s->labels);
+    const int good = most && s->zero && s->labels;
+    for (size_t k = 0; good && k < count; ++k) {
+        char quantity[400];
+        const double *y = sheet_get_column(s, k);
+        table_get_quantity(s->t.names[k], quantity, sizeof quantity);
+        make_label(s, quantity, s->t.names[k], s->labels[k], sizeof s->labels[k]);
+        for (size_t i = 0; i < s->rows; ++i) {
+            most[k] = isfinite(y[i]) ? fmax(most[k], fabs(y[i])) : most[k];
+        }
+    }
+    for (size_t k = 1; good && k < count; ++k) {
+        double largest = most[k];
+        for (size_t i = 1; i < count; ++i) {
+            largest = strcmp(s->labels[k], s->labels[i]) == 0 ? fmax(largest, most[i]) : largest;
+        }
+        s->zero[k] = k != s->x && most[k] <= 1e-9 * largest && has_numbers(s, k);
+    }
+    free(most);
+    return good;
+}
+
+/* "bar y" of bar.position.y: what the title of a frame does not say. */
+static void make_brief(const char *column, char *brief, size_t size)
+{
+    char quantity[400];
+    table_get_quantity(column, quantity, sizeof quantity);
+    const size_t length = strlen(quantity);
+    const char *at = column;
+    while ((at = strstr(at, quantity)) != NULL &&
+           !(at > column && at[-1] == '.' && (at[length] == '.' || !at[length]))) {
+        ++at;
+    }
+    if (at) {
+        snprintf(brief, size, "%.*s%s%.90s", (int)(at - column - 1 < 90 ? at - column - 1 : 90),
+                 column, at[length] ? " " : "", at + length + (at[length] == '.'));
+    } else {
+        snprintf(brief, size, "%.190s", column);
+    }
+}
+
 /* Curves of one quantity and unit share a frame, as far as it has room. */
 static int put_charts(FILE *page, const sheet *s)
 {
     char *done = calloc(s->t.count + 1, 1);
     int good = done != NULL;
+    fputs("<div>\n", page);
     for (size_t k = 1; k < s->t.count && good; ++k) {
-        char quantity[400];
+        char briefs[CHART_CURVES_MAX][200];
         chart c = {.x = sheet_get_column(s, s->x), .count = s->rows};
-        if (done[k] || k == s->x || !has_numbers(s, k)) {
+        if (done[k] || k == s->x || s->zero[k] || !has_numbers(s, k)) {
             continue;
         }
-        table_get_quantity(s->t.names[k], quantity, sizeof quantity);
-        make_label(s, quantity, s->t.names[k], c.y_label, sizeof c.y_label);
+        strcpy(c.y_label, s->labels[k]);
         make_label(s, s->t.names[s->x], s->t.names[s->x], c.x_label, sizeof c.x_label);
         c.title = c.y_label;
         for (size_t i = k; i < s->t.count && c.curves < CHART_CURVES_MAX; ++i) {
-            char other[400];
-            char label[200];
-            table_get_quantity(s->t.names[i], other, sizeof other);
-            make_label(s, other, s->t.names[i], label, sizeof label);
-            if (!done[i] && i != s->x && strcmp(label, c.y_label) == 0 && has_numbers(s, i)) {
+            if (!done[i] && i != s->x && !s->zero[i] && strcmp(s->labels[i], s->labels[k]) == 0 &&
+                has_numbers(s, i)) {
                 done[i] = 1;
+                make_brief(s->t.names[i], briefs[c.curves], sizeof briefs[0]);
                 c.names[c.curves] = s->t.names[i];
+                c.briefs[c.curves] = briefs[c.curves];
                 c.y[c.curves++] = sheet_get_column(s, i);
             }
         }
         good = report_put_chart(page, &c);
     }
+    fputs("</div>\n", page);
     free(done);
     return good;
 }
@@ -279,11 +326,19 @@ static void put_table(FILE *page, const sheet *s)
     }
     fputs("</tr>\n", page);
     for (size_t k = 1; k < s->t.count; ++k) {
-        if (k != s->x && has_numbers(s, k)) {
+        if (k != s->x && has_numbers(s, k) && !s->zero[k]) {
             put_row(page, s, k);
         }
     }
     fputs("</table>\n", page);
+    size_t zeros = 0;
+    for (size_t k = 1; k < s->t.count; ++k) {
+        if (s->zero[k]) {
+            fputs(zeros++ > 0 ? ", " : "<p class=\"small\">Zero all the time: ", page);
+            se3di_svg_put(page, s->t.names[k]);
+        }
+    }
+    fputs(zeros > 0 ? "</p>\n" : "", page);
 }
 
 /* A link to a file below the page: every other character as its number. */
@@ -338,12 +393,14 @@ static int put_file(report *r, se3d_model *model, const char *path)
         good = sheet_read(&s, SAMPLES_MAX) && report_put_samples(r->page, &s, r->x);
     } else {
         good = (!model || !SE3D_FAILED(se3d_model_list_channels(model, &s.channels))) &&
-               sheet_read(&s, ROWS_MAX);
+               sheet_read(&s, ROWS_MAX) && look_at_columns(&s);
         if (good && s.rows > 0) {
             put_table(r->page, &s);
             good = s.rows < 2 || put_charts(r->page, &s);
         }
     }
+    free(s.zero);
+    free(s.labels);
     free(s.columns);
     table_destroy(&s.t);
     return good;
@@ -601,6 +658,7 @@ static int write_page(report *r)
         "table{border-collapse:collapse;margin:1em 0}"
         "td,th{border:1px solid #c8d0d6;padding:.2em .6em;text-align:right}"
         "td:first-child,th:first-child{text-align:left}img{max-width:100%;margin:.3em}"
+        "div{display:flex;flex-wrap:wrap}div img{width:32em}.small{font-size:85%}"
         "</style></head><body>\n<h1>Report</h1>\n";
     char path[PATH_SIZE + 20];
     int code = EXIT_DONE;

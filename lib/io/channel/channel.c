@@ -543,6 +543,17 @@ static se3di_motion motion_of(const se3di_element_entry *entry)
     return entry->coordinate == SE3D_JOINT_COORDINATE_ANGLE ? SE3DI_ROTATION : SE3DI_TRANSLATION;
 }
 
+static void set_element(se3di_channel *channel, const se3di_element_entry *entry)
+{
+    channel->constraint = entry->constraint;
+    channel->force = entry->force;
+    channel->wheel = entry->wheel;
+    channel->state = entry->states ? entry->states[0] : (se3d_state){0, 0};
+    channel->body = entry->body;
+    channel->motion = motion_of(entry);
+    memcpy(channel->point, entry->point, sizeof channel->point);
+}
+
 static bool find_element(const se3d_model *model, const char *head, const char *tail,
                          se3di_channel *channel, offer *offered)
 {
@@ -552,13 +563,7 @@ static bool find_element(const se3d_model *model, const char *head, const char *
     }
     const se3di_element_entry *entry = &model->elements[index];
     offer_element(offered, model, entry);
-    channel->constraint = entry->constraint;
-    channel->force = entry->force;
-    channel->wheel = entry->wheel;
-    channel->state = entry->states ? entry->states[0] : (se3d_state){0, 0};
-    channel->body = entry->body;
-    channel->motion = motion_of(entry);
-    memcpy(channel->point, entry->point, sizeof channel->point);
+    set_element(channel, entry);
     return pick(offered, tail, &channel->quantity);
 }
 
@@ -765,13 +770,8 @@ static void list_elements(channel_list *c)
         offer_element(&o, model, entry);
         for (size_t i = 0; i < o.count && !c->failed; ++i) {
             const char *const parts[3] = {entry->name, o.list[i].name, NULL};
-            se3di_channel channel = {.quantity = o.list[i].quantity,
-                                     .constraint = entry->constraint,
-                                     .force = entry->force,
-                                     .wheel = entry->wheel,
-                                     .state = entry->states ? entry->states[0] : (se3d_state){0, 0},
-                                     .body = entry->body};
-            memcpy(channel.point, entry->point, sizeof channel.point);
+            se3di_channel channel = {.quantity = o.list[i].quantity};
+            set_element(&channel, entry);
             list_one(c, channel, parts);
         }
     }
