@@ -658,7 +658,8 @@ static int write_page(report *r)
         "table{border-collapse:collapse;margin:1em 0}"
         "td,th{border:1px solid #c8d0d6;padding:.2em .6em;text-align:right}"
         "td:first-child,th:first-child{text-align:left}img{max-width:100%;margin:.3em}"
-        "div{display:flex;flex-wrap:wrap}div img{width:32em}.small{font-size:85%}"
+        "div{display:flex;flex-wrap:wrap}div img{width:calc(50% - .6em)}.small{font-size:85%}"
+        "@media(max-width:50em){div img{width:100%}}"
         "</style></head><body>\n<h1>Report</h1>\n";
     char path[PATH_SIZE + 20];
     int code = EXIT_DONE;

@@ -342,7 +342,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const glaze = () => solids.forEach((o) => {
     if (!clear.has(o)) return;
     Object.assign(o.material, state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
-    o.castShadow = state.solid;
+    o.castShadow = state.solid || !packed; // else grains within it would be dark
     o.material.needsUpdate = true;
   });
   // Only given shapes are seen through, never a bar or another joint; nor tubes, of which little would be left.
