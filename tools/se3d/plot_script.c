@@ -426,7 +426,7 @@ static int is_constant(const double range[2])
     return range[1] - range[0] <= 1e-14 * fabs(range[0]);
 }
 
-/* Whether what changes is rounding, or an error of the method, beside its size, and nobody has asked
+/* Whether what changes is rounding, or an error of the method, beside its size, and nobody asked
  * for just that. */
 static int is_nearly_constant(const plot_panel *panel)
 {

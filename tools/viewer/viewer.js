@@ -190,6 +190,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     pose(start + (end - start) * k / 23);
     root.updateMatrixWorld(true);
     low.setScalar(1e9); high.setScalar(-1e9);
+    const points = [];
     const least = new THREE.Vector3(1e9, 1e9, 1e9), most = least.clone().negate();
     const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
     const reckon = (o) => {
@@ -205,12 +206,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       for (let k = 0; k < 8; ++k) {
         va.set(k & 1 ? min.x : max.x, k & 2 ? min.y : max.y, k & 4 ? min.z : max.z).applyMatrix4(o.matrixWorld);
         low.min(va); high.max(va);
+        points.push(va.x, va.y, va.z);
         if (!isOfGround(o)) { least.min(va); most.max(va); }
       }
     };
     root.traverse(reckon);
     if (secondRoot) { secondRoot.updateMatrixWorld(true); secondRoot.traverse(reckon); }
-    boxes.push({ low: low.clone(), high: high.clone(), size: high.distanceTo(low) });
+    boxes.push({ low: low.clone(), high: high.clone(), size: high.distanceTo(low), points });
     if (heaviest > 0 && most.x >= least.x && most.distanceTo(least) > largest0) {
       largest0 = most.distanceTo(least);
       own = [least.sub(bodies[heaviest].position), most.sub(bodies[heaviest].position)];
@@ -218,7 +220,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   }
   // What parts and falls far away at last does not make all else small.
   const usual = [...boxes].sort((a, b) => a.size - b.size)[boxes.length >> 1].size, most = boxes.filter((b) => b.size <= 1.6 * usual);
-  (most.length >= 0.75 * boxes.length ? most : boxes).forEach((b) => { low.min(b.low); high.max(b.high); });
+  const kept = most.length >= 0.75 * boxes.length ? most : boxes;
+  kept.forEach((b) => { low.min(b.low); high.max(b.high); });
   // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
   const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
   const isFar = !live && !packed && !second && !isHeld && own !== null && high.distanceTo(low) > 3 * largest0;
@@ -238,6 +241,12 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   if (grid && !live && low.z > -1e8 && (packed ? low.z < grid.position.z : !isHeld && !hasRoad)) grid.position.z = low.z - 0.001 * high.distanceTo(low);
   const center = low.clone().add(high).multiplyScalar(0.5), edge = high.clone();
   const size = Math.max(1e-6, high.distanceTo(low));
+  // What has to be in the picture: the corners of all that is seen at some times, or of the box around it.
+  const eachCorner = (f) => {
+    const corners = () => { for (let k = 0; k < 8; ++k) f(va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z)); };
+    if (isFar || packed || high.distanceTo(edge) > 0 || !kept[0].points.length) corners();
+    else for (const { points } of kept) for (let k = 0; k < points.length; k += 3) f(va.set(points[k], points[k + 1], points[k + 2]));
+  };
   // three.js's own controls move the camera; here in angles about what it looks at.
   const controls = new THREE.OrbitControls(camera, renderer.domElement);
   Object.assign(controls, { enableDamping: true, dampingFactor: 0.15, zoomToCursor: true, minDistance: size / 400, maxDistance: 20 * size });
@@ -285,12 +294,12 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const aspect = (width - side) / (height - bar - above);
     const back = direction(orbit.azimuth, orbit.height), right = new THREE.Vector3(-Math.sin(orbit.azimuth), Math.cos(orbit.azimuth), 0);
     const up = back.clone().cross(right), tan = Math.tan(camera.fov * Math.PI / 360) * (1 - (bar + above) / height);
-    let most = 0;
-    for (let k = 0; k < 8; ++k) {
-      va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z).sub(center);
-      most = Math.max(most, va.dot(back) + Math.max(Math.abs(va.dot(right)) / (tan * aspect), Math.abs(va.dot(up)) / tan));
-    }
-    orbit.distance = 1.06 * most;
+    let most = 1e-6 * size;
+    eachCorner((v) => {
+      v.sub(center);
+      most = Math.max(most, v.dot(back) + Math.max(Math.abs(v.dot(right)) / (tan * aspect), Math.abs(v.dot(up)) / tan));
+    });
+    orbit.distance = 1.08 * most;
   };
 
   const state = { time: start, playing: true, speed: 1, follow: -1, frames: false, reactions: false, traces: false, dark: false, solid: false, labels: false, cut: 0, picked: null, mode: 0, phase: 0, second: "ghost" };
@@ -898,14 +907,12 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     },
     // How many grains are there, and of how many at least a point is seen.
     seenGrains: (t) => { set({ time: t, playing: false }); draw(); return grains.seen(); },
-    // Whether a corner of the box around all is out of the picture.
+    // Whether some of it is out of the picture.
     clipped: () => {
       draw();
-      for (let k = 0; k < 8; ++k) {
-        va.set(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z).project(camera);
-        if (Math.max(Math.abs(va.x), Math.abs(va.y)) > 1) return true;
-      }
-      return false;
+      let most = 0;
+      eachCorner((v) => { v.project(camera); most = Math.max(most, Math.abs(v.x), Math.abs(v.y)); });
+      return most > 1;
     },
     // Milliseconds a picture takes, all of it drawn, over some times of the motion.
     light,
