@@ -101,7 +101,7 @@ static bool put_bounds(const shape *s, const double *points, size_t count, se3di
     return true;
 }
 
-/* Where its side meets its ends. */
+/* The circles in which its side ends. */
 static void put_rims(const shape *s, const se3di_unit_mesh *unit)
 {
     se3di_spot rim[SE3DI_UNIT_VERTICES_MAX];
