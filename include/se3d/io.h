@@ -348,7 +348,10 @@ typedef struct se3d_run_options {
     double checkpoint; /* > 0: at the first row so long after the last checkpoint, by the clock, the
                            file run.checkpoint is written to `directory` [s] */
     int32_t resume;    /* not 0: go on from run.checkpoint in `directory`, if it is there */
-    int32_t reserved;  /* 0 */
+    int32_t estimate;  /* not 0: a copy of the system follows dynamics with a given equal step, in
+                          steps twice as long, to estimate its error (se3d_run_analysis). That takes
+                          half as much time again; the log is told of errors above 1e-3. Not with
+                          convex, particles, `fmus`, nor with checkpoints */
     se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
     const char *temporary; /* folder in which packed units (`fmus`) are unpacked, into a private one
                               that is removed with the end of their analysis; NULL: /tmp */
@@ -417,6 +420,15 @@ typedef struct se3d_run_analysis {
     double tolerance;        /* that was asked for [relative]; 0: the analysis controls no errors */
     double reached;          /* as se3d_solver_get_tolerance [relative] */
     double step;             /* as se3d_solver_get_step [s] */
+    /* About what equal steps err by up to estimated_to, over the largest values, with `estimate` of
+     * the options; 0 if there is none. */
+    double error_position;         /* of centres, over the largest travel [relative] */
+    double error_velocity;         /* of centres [relative] */
+    double error_angular_velocity; /* [relative] */
+    double error_work;             /* of works, of which the largest counts [relative] */
+    double error_state;            /* of states, each over its own [relative] */
+    double estimated_to;           /* [s], NaN: nothing was estimated */
+    const char *unestimated;       /* why the estimate ends before the run, "": it does not */
 } se3d_run_analysis;
 
 /* Count the analyses that a run began. @return the number; 0 for NULL. @since 0.1 */

@@ -68,10 +68,12 @@ typedef struct se3d_solver_def {
     int32_t order;       /* bdf: 1..5, rattle: 2, 4, gauss: 8, 16, others: the one they have; 0: the
                             default, of gauss 16 for tolerances below 1e-6, else 8 */
     /* Of generalized_alpha, hht, rattle, verlet, convex: fixed; of the others: the largest one;
-     * >= 1e-15 [s]; 0: chosen by the error. rattle and verlet choose equal steps once, to the
-     * tolerance, by trial steps ahead (se3d_solver_get_step); contacts and stops shorten them, and
-     * where they turn out to be too long they are halved and the log is warned. Beside particles
-     * verlet takes at most 1 ms. convex: 1 ms, less if force elements are stiff. */
+     * >= 1e-15 [s]; 0: chosen by the error. What a fixed one errs by nobody knows before it is
+     * compared with one twice as long (se3d_run_options.estimate, docs/theory/estimates.md). rattle
+     * and verlet choose equal steps once, to the tolerance, by trial steps ahead
+     * (se3d_solver_get_step); contacts and stops shorten them, and where they turn out to be too
+     * long they are halved and the log is warned. Beside particles verlet takes at most 1 ms.
+     * convex: 1 ms, less if force elements are stiff. */
     double step;
     double tolerance;       /* relative error if steps are chosen, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that (se3d_solver_get_tolerance) */

@@ -98,7 +98,7 @@ go_on() {
 # try_model MODEL: killed as often as asked, it leaves the same files
 try_model() {
     rm -rf "$w"
-    expect "$1 as a whole" 0 "$program" run "$dir/$1" -o "$w" --json
+    expect "$1 as a whole" 0 "$program" run "$dir/$1" -o "$w" --json --no-estimate
     cp "$dir/out" "$dir/whole.json"
     report "$dir/whole.json" >"$dir/1"
     hit=0

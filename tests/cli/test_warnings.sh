@@ -35,6 +35,39 @@ is "$(cat "$dir/err")" ''
 expect 'nothing to warn of' 0 "$program" run "$models/pendulum.yaml" -o "$dir/r" --json --duration 0.1
 has "$dir/out" '"warnings": [], "more_warnings": 0'
 
+# What equal steps err by.
+coarse="run $models/incline.yaml -o $dir/r --method generalized_alpha --step 1e-3"
+# shellcheck disable=SC2086
+expect 'coarse steps' 0 "$program" $coarse
+has "$dir/err" 'incline.yaml: warning: t = 2 s: equal steps of 0.001 s err by about 0.0'
+has "$dir/out" 'equal steps of 0.001 s, by comparison with 0.002 s off by about 0.0'
+# shellcheck disable=SC2086
+expect 'coarse steps, strictly' 1 "$program" $coarse --strict -q
+# shellcheck disable=SC2086
+expect 'coarse steps as JSON' 0 "$program" $coarse --json
+has "$dir/out" '"estimated_to": 2'
+has "$dir/out" '"error_velocity": 0.0'
+# shellcheck disable=SC2086
+expect 'coarse steps, no estimate' 0 "$program" $coarse --no-estimate
+is "$(lines 'err by\|by comparison')" 0
+expect 'fine steps' 0 "$program" run "$models/fourbar.yaml" -o "$dir/r" --duration 1
+is "$(lines 'err by')" 0
+is "$(lines 'by comparison with 0.002 s off by about')" 1
+expect 'controlled steps' 0 "$program" run "$models/fourbar.yaml" -o "$dir/r" --duration 1 --method radau
+is "$(lines 'by comparison')" 0
+# A stop that steps of 10 ms can follow, but not those of 20 ms.
+cat >"$dir/stop.yaml" <<EOF
+se3d: 1
+bodies: [{name: a, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0, 0, 1]}]
+joints: [{name: s, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [0, 0, 1]}]
+forces: [{name: e, type: stop, joint: s, coordinate: displacement, lower: -0.8, k: 5e3}]
+gravity: [0, 0, -9.81]
+analysis: {type: dynamics, duration: 1, method: rattle, step: 0.01}
+output: [{file: o.csv, every: 0.05, channels: [a.position]}]
+EOF
+expect 'steps that cannot be twice as long' 0 "$program" run "$dir/stop.yaml" -o "$dir/r"
+has "$dir/out" '(to t = 0.3 s); then steps of 0.02 s fail: t = 0.38 s: a step of 0.02 s is too large for the impact on the stop e'
+
 model twice "analysis:
   - {type: dynamics, duration: 0.6, method: radau}
   - {type: dynamics, duration: 0.6, method: radau}

@@ -99,7 +99,7 @@ static const char *const texts[] = {
     "instances:\n"
     "  - {part: side, prefix: \"s{i}_\", repeat: n, when: i < 2, parameters: {a: p, m: 2}}\n"
     "  - {part: side, prefix: t_, mirror: y, position: q}\n"
-    "analysis: {type: dynamics, duration: 0.01, step: 0.005}\n"
+    "analysis: {type: dynamics, duration: 0.01, method: hht, step: 0.005}\n"
     "output: [{file: parts.csv, channels: [s1_b.position, t_pin.angle]}]\n",
 };
 
@@ -135,6 +135,7 @@ static attempt try_with(const char *text, support_counting counting)
     snprintf(folder, sizeof folder, "%s/out-of-memory", build ? build : fallback);
     options.allocator = &allocator;
     how.directory = folder;
+    how.estimate = 1;
     attempt a = {SE3D_OK, 0, 0};
     a.status = se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
     if (a.status >= 0) {

@@ -90,6 +90,7 @@ static int *flag_target(options *o, const char *name)
                  {"--free-base", &o->free_base},
                  {"--resume", &o->resume},
                  {"--strict", &o->strict},
+                 {"--no-estimate", &o->no_estimate},
                  {"--merge", &o->merge},
                  {"--list", &o->list},
                  {"--unchecked", &o->unchecked},

@@ -51,6 +51,7 @@ typedef struct options {
     int free_base;
     int resume;
     int strict;
+    int no_estimate;
     int merge;
     int server;
     int sensitivities;

@@ -73,6 +73,33 @@ static void print_start(const se3d_run_analysis *a)
     }
 }
 
+/* Equal steps, and what they err by. */
+static void print_step(const se3d_run_analysis *a)
+{
+    if (a->step > 0.0) {
+        printf("  equal steps of %.6g s", a->step);
+    }
+    if (a->estimated_to > a->start) {
+        printf(", by comparison with %.6g s off by about %.1g of the largest travel, %.1g of "
+               "velocities, %.1g of angular velocities, %.1g of works",
+               2.0 * a->step, a->error_position, a->error_velocity, a->error_angular_velocity,
+               a->error_work);
+        if (a->error_state > 0.0) {
+            printf(", %.1g of states", a->error_state);
+        }
+    }
+    if (a->estimated_to > a->start && a->estimated_to < a->end) {
+        printf(" (to t = %.6g s)", a->estimated_to);
+    }
+    if (a->unestimated && a->unestimated[0]) {
+        printf("%s", a->estimated_to > a->start ? "; then " : ", whose error is not known: ");
+        fputs(a->unestimated, stdout);
+    }
+    if (a->step > 0.0) {
+        putchar('\n');
+    }
+}
+
 static void print_analysis(const se3d_run_analysis *a)
 {
     printf("%s, %s%s%s: %s\n", a->type, a->formulation, a->method[0] ? ", " : "", a->method,
@@ -87,9 +114,7 @@ static void print_analysis(const se3d_run_analysis *a)
                strcmp(a->method, "convex") == 0 ? "many bodies came together"
                                                 : "the motion became stiff");
     }
-    if (a->step > 0.0) {
-        printf("  equal steps of %.6g s\n", a->step);
-    }
+    print_step(a);
     if (a->reached > a->tolerance) {
         printf("  the tolerance %g is smaller than what %s reaches; %.3g was used\n", a->tolerance,
                a->method, a->reached);
@@ -206,6 +231,28 @@ static void json_put_left_out(const se3d_run_analysis *a)
     }
 }
 
+static void json_put_value(const char *name, double value)
+{
+    printf(", \"%s\": ", name);
+    json_put_number(value);
+}
+
+static void json_put_estimate(const se3d_run_analysis *a)
+{
+    if (a->estimated_to > a->start) {
+        json_put_value("error_position", a->error_position);
+        json_put_value("error_velocity", a->error_velocity);
+        json_put_value("error_angular_velocity", a->error_angular_velocity);
+        json_put_value("error_work", a->error_work);
+        json_put_value("error_state", a->error_state);
+        json_put_value("estimated_to", a->estimated_to);
+    }
+    if (a->unestimated && a->unestimated[0]) {
+        fputs(", \"unestimated\": ", stdout);
+        json_put_text(a->unestimated);
+    }
+}
+
 static void json_put_analysis(const se3d_run_analysis *a)
 {
     fputs("{\"type\": ", stdout);
@@ -238,6 +285,7 @@ static void json_put_analysis(const se3d_run_analysis *a)
         fputs(", \"step\": ", stdout);
         json_put_number(a->step);
     }
+    json_put_estimate(a);
     json_put_start(a);
     json_put_left_out(a);
     json_put_count("steps", a->stats.steps);
@@ -286,12 +334,6 @@ static void json_put_particles(const se3d_run *run)
         json_put_count("deferred", p.deferred);
         putchar('}');
     }
-}
-
-static void json_put_value(const char *name, double value)
-{
-    printf(", \"%s\": ", name);
-    json_put_number(value);
 }
 
 static void json_put_summaries(const se3d_run *run)
@@ -468,12 +510,14 @@ static const char *advice_to_resume(const options *o)
     return o->checkpoint ? "; --resume goes on" : "";
 }
 
-static void ask_checkpoints(const options *o, se3d_scene *scene, se3d_run_options *how)
+/* What is asked for beside the results. */
+static void ask(const options *o, se3d_scene *scene, se3d_run_options *how)
 {
     how->checkpoint = o->checkpoint ? fmax(strtod(o->checkpoint, NULL), EVERY_ROW) : 0.0;
     how->resume = o->resume;
     how->scene = scene;
     how->temporary = getenv("TMPDIR");
+    how->estimate = !o->no_estimate && (o->json || o->strict || !o->quiet);
 }
 
 /* Run, and leave the results and the scene in `folder`. */
@@ -496,7 +540,7 @@ static int run_into(const warnings *warned, se3d_model *model, const char *folde
     how.ctx = &w;
     how.interrupt = is_over;
     how.interrupt_ctx = &w;
-    ask_checkpoints(o, *scene, &how);
+    ask(o, *scene, &how);
     const se3d_status status = se3d_model_run(model, &how, &run, &error);
     const int ended = (!SE3D_FAILED(status) || status == SE3D_ERR_INTERRUPTED) && interrupt_came();
     progress_end(&bar);
@@ -728,6 +772,9 @@ const command_entry run_entry = {
             {"--resume", NULL, NULL,
              "go on with a run that was ended, from its last checkpoint, or begin if there is "
              "none: the results are the same to the byte"},
+            {"--no-estimate", NULL, NULL,
+             "do not estimate the error of a given step of methods that control none, which takes "
+             "half as much time again"},
             COMMAND_OPTION_STRICT,
             COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},

@@ -23,6 +23,7 @@
 #include "io/model/model.h"
 #include "io/run/checkpoint.h"
 #include "io/run/guest.h"
+#include "io/run/run_estimate.h"
 #include "io/run/run_files.h"
 #include "io/run/run_modes.h"
 #include "io/run/run_particles.h"
@@ -244,10 +245,11 @@ static se3d_status collect_events(se3di_runner *r, size_t index, se3d_status sta
     return collected < 0 && status >= 0 ? se3di_files_fail(r, collected, "out of memory") : status;
 }
 
-/* CPU time of the analysis so far [s]. */
+/* CPU time of the analysis itself so far [s]. */
 static double cpu_time(const se3di_runner *r)
 {
-    return r->cpu_before + (double)(clock() - r->begin) / (double)CLOCKS_PER_SEC;
+    return r->cpu_before + (double)(clock() - r->begin) / (double)CLOCKS_PER_SEC -
+           se3di_estimate_get_time(r->estimate);
 }
 
 /* A checkpoint, if it is time for one. */
@@ -312,6 +314,9 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
         reached = time;
         if (collect_events(r, index, SE3D_OK) < 0) {
             return SE3D_ERR_NO_MEMORY;
+        }
+        if (se3di_estimate_meet(r->estimate, time, ends || !(time < start + duration)) < 0) {
+            return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
         }
         se3di_files_flush(r);
         show_progress(r, index, time, start, duration);
@@ -388,6 +393,8 @@ static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *e
     if (r->resume) {
         status = se3di_checkpoint_restore(r, place);
         r->cpu_before = place->cpu;
+    } else if (status >= 0 && se3di_estimate_begin(r, entry) < 0) {
+        return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     return status;
 }
@@ -424,6 +431,7 @@ static se3d_status run_analysis(se3di_runner *r, size_t index)
     }
     status = collect_events(r, index, status);
     se3di_run_record(r, entry, cpu_time(r), done);
+    se3di_estimate_end(r, done);
     done->status = (int32_t)status;
     se3di_guests_close(r->guests);
     r->guests = NULL;

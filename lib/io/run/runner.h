@@ -46,6 +46,7 @@ struct se3d_run {
 struct se3di_resume;
 struct se3di_told;
 struct se3di_guests;
+typedef struct se3di_estimate se3di_estimate;
 
 typedef struct se3di_runner {
     se3d_model *model;
@@ -58,6 +59,7 @@ typedef struct se3di_runner {
     size_t file_count; /* open ones */
     se3d_solver *solver;
     struct se3di_guests *guests; /* units beside the analysis; NULL: none */
+    se3di_estimate *estimate;    /* of the error of equal steps; NULL: none */
     se3di_sample sample;         /* what the rows of one time ask for */
     se3d_solver_stats stats;
     double time;                 /* where the analysis before ended */
