@@ -7,6 +7,7 @@
 
 #include "math/vec3.h"
 #include "nonlinear/against.h"
+#include "primitive/scale.h"
 
 #include <math.h>
 #include <stdio.h>

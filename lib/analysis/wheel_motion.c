@@ -5,8 +5,8 @@
 #include "force/driver_rate.h"
 #include "force/measure.h"
 #include "joint/equation.h"
-#include "joint/user.h"
 #include "math/vec3.h"
+#include "primitive/user.h"
 
 #include <math.h>
 #include <string.h>

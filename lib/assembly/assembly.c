@@ -4,8 +4,9 @@
 
 #include "assembly/armature.h"
 #include "assembly/fused.h"
-#include "joint/user.h"
 #include "model/state.h"
+#include "primitive/scale.h"
+#include "primitive/user.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -202,15 +203,6 @@ void se3di_assembly_destroy(se3di_assembly *assembly)
     list_structure(assembly, structure);
     se3di_arrays_free(allocator, structure, STRUCTURE_ARRAYS);
     memset(assembly, 0, sizeof *assembly);
-}
-
-uint32_t se3di_row_get_owner(const se3di_model *model, uint32_t row)
-{
-    uint32_t k = 0;
-    while (row >= model->constraints[k].row_begin + model->constraints[k].row_count) {
-        ++k;
-    }
-    return k;
 }
 
 void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size)

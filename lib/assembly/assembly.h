@@ -142,8 +142,6 @@ static inline int se3di_assembly_fits(const se3di_assembly *assembly)
            assembly->break_version == assembly->model->break_version;
 }
 
-/* The constraint (dense index) that a row is of. */
-uint32_t se3di_row_get_owner(const se3di_model *model, uint32_t row);
 /* Name of a row: "pin.cd_x", or "joint 3.cd_x" if the constraint has no name. */
 void se3di_row_name(const se3di_model *model, uint32_t row, char *text, size_t size);
 

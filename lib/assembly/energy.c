@@ -4,8 +4,8 @@
 #include "assembly/armature.h"
 #include "contact/bodies/body_contacts.h"
 #include "force/force.h"
-#include "joint/user.h"
 #include "math/vec3.h"
+#include "primitive/user.h"
 
 #include <string.h>
 

@@ -10,11 +10,11 @@
 #include "force/measure.h"
 #include "force/signal.h"
 #include "force/tyre.h"
-#include "joint/user.h"
 #include "math/inertia.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "model/state.h"
+#include "primitive/user.h"
 
 #include <stdlib.h>
 #include <string.h>

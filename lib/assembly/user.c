@@ -119,7 +119,8 @@ static void eval_joint(se3di_assembly *assembly, uint32_t joint)
     se3di_user_values values;
     (void)eval(assembly, joint, SE3DI_USER_JACOBIAN | SE3DI_USER_NU, &values);
     for (uint32_t r = 0; r < constraint->row_count; ++r) {
-        assembly->f[3 * (size_t)(constraint->row_begin + r) + 1] = values.nu[r];
+        const uint32_t row = constraint->row_begin + r;
+        assembly->f[3 * (size_t)row + 1] = assembly->model->rows[row].left_out ? 0.0 : values.nu[r];
     }
     int32_t place =
         assembly->joint_begin[joint]; /* the free bodies follow in the callback's order */

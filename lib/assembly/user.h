@@ -6,7 +6,7 @@
 #define SE3DI_ASSEMBLY_USER_H
 
 #include "assembly/assembly.h"
-#include "joint/user.h"
+#include "primitive/user.h"
 
 /* Nothing has failed yet. */
 void se3di_user_begin(se3di_model *model);

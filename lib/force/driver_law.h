@@ -4,7 +4,7 @@
 #ifndef SE3DI_FORCE_DRIVER_LAW_H
 #define SE3DI_FORCE_DRIVER_LAW_H
 
-#include "joint/user.h"
+#include "primitive/user.h"
 
 /* The coordinate of a joint follows a function, by dense index. Its bodies are those of the joint,
  * which are i and j, and those of the signals, each once.

@@ -4,7 +4,7 @@
 #ifndef SE3DI_FORCE_DRIVER_RATE_H
 #define SE3DI_FORCE_DRIVER_RATE_H
 
-#include "joint/user.h"
+#include "primitive/user.h"
 
 /* Signals that a rate depends on in the end. */
 #define SE3DI_RATE_LEAVES_MAX 24

@@ -2,11 +2,11 @@
 #include "joint/equation.h"
 
 #include "joint/rows.h"
-#include "joint/user.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 #include "primitive/turn_counter.h"
+#include "primitive/user.h"
 
 #include <math.h>
 #include <string.h>

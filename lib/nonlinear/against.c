@@ -3,6 +3,8 @@
  * in the combination of rows that vanishes: the rows that are off are those that contradict. */
 #include "nonlinear/against.h"
 
+#include "primitive/scale.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -11,6 +11,7 @@
 #include "nonlinear/ranks.h"
 
 #include "linsol/null_space.h"
+#include "primitive/user.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -38,12 +39,32 @@ typedef struct decision {
     double *most;       /* [rows] largest relative violation */
     double *C;          /* scaled rows */
     int32_t *joint_rows;
-    size_t value_count; /* of C */
+    int32_t *is_geometric; /* [constraints] */
+    size_t value_count;    /* of C */
 } decision;
 
-/* Rows of drivers and functions of time move the mechanism, callbacks' are the user's. */
-static int is_geometric(const se3di_model *model, const se3di_constraint *constraint)
+/* A callback's rows do not move the mechanism, as far as one can see. */
+static int stands_still(const se3di_model *model, const se3di_constraint *constraint, double t)
 {
+    se3di_user_values values;
+    if (!constraint->callback ||
+        se3di_user_eval(model, constraint, t, SE3DI_USER_NU, &values) < 0) {
+        return 0;
+    }
+    for (uint32_t r = 0; r < constraint->row_count; ++r) {
+        if (fabs(values.nu[r]) > 0.0) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Rows of drivers and functions of time move the mechanism. */
+static int is_geometric(const se3di_model *model, const se3di_constraint *constraint, double t)
+{
+    if (se3di_is_user(constraint) && !se3di_is_broken(constraint, model->rows)) {
+        return stands_still(model, constraint, t);
+    }
     int geometric =
         strcmp(constraint->type, "driver") != 0 && !se3di_is_broken(constraint, model->rows);
     for (uint32_t r = 0; r < constraint->row_count; ++r) {
@@ -54,9 +75,11 @@ static int is_geometric(const se3di_model *model, const se3di_constraint *constr
 }
 
 /* Rows that broke are among them: nothing takes them back. */
-static int is_driving(const se3di_model *model, const se3di_constraint *constraint)
+static int is_driving(const decision *d, uint32_t joint)
 {
-    return !is_geometric(model, constraint) && model->rows[constraint->row_begin].term_count > 0;
+    const se3di_model *model = d->model;
+    return !d->is_geometric[joint] &&
+           model->rows[model->constraints[joint].row_begin].term_count > 0;
 }
 
 static void leave_out(se3di_model *model, uint32_t row, int32_t left_out)
@@ -105,8 +128,7 @@ static void scale_rows(const decision *d, const se3di_assembly *flat)
         d->C[k] *= k % 6 < 3 ? d->size : 1.0;
     }
     for (uint32_t joint = 0; joint < flat->constraint_count; ++joint) {
-        const int geometric = is_geometric(d->model, &d->model->constraints[joint]);
-        d->joint_rows[joint] = geometric ? flat->joint_rows[joint] : 0;
+        d->joint_rows[joint] = d->is_geometric[joint] ? flat->joint_rows[joint] : 0;
     }
 }
 
@@ -188,11 +210,13 @@ static se3d_status allocate(decision *d, const se3di_assembly *flat)
     d->value_count = flat->joint_value_count;
     d->C = se3di_alloc(allocator, d->value_count, sizeof *d->C);
     d->joint_rows = se3di_alloc(allocator, flat->constraint_count, sizeof *d->joint_rows);
+    d->is_geometric = se3di_alloc(allocator, flat->constraint_count, sizeof *d->is_geometric);
     d->rest = se3di_alloc(allocator, flat->row_count, sizeof *d->rest);
     d->most = se3di_alloc(allocator, flat->row_count, sizeof *d->most);
     d->direction = se3di_alloc(allocator, 6 * (size_t)flat->body_count, sizeof *d->direction);
     d->start = se3di_alloc(allocator, d->model->body_slots.count, sizeof *d->start);
-    return d->C && d->joint_rows && d->rest && d->most && d->direction && d->start
+    return d->C && d->joint_rows && d->is_geometric && d->rest && d->most && d->direction &&
+                   d->start
                ? SE3D_OK
                : SE3D_ERR_NO_MEMORY;
 }
@@ -203,6 +227,7 @@ static void release(decision *d)
     const se3d_allocator *allocator = &d->model->allocator;
     se3di_free(allocator, d->C, d->value_count, sizeof *d->C);
     se3di_free(allocator, d->joint_rows, assembly->constraint_count, sizeof *d->joint_rows);
+    se3di_free(allocator, d->is_geometric, assembly->constraint_count, sizeof *d->is_geometric);
     se3di_free(allocator, d->rest, assembly->row_count, sizeof *d->rest);
     se3di_free(allocator, d->most, assembly->row_count, sizeof *d->most);
     se3di_free(allocator, d->direction, 6 * (size_t)assembly->body_count, sizeof *d->direction);
@@ -217,6 +242,9 @@ static se3d_status find_candidates(decision *d)
     SE3DI_TRY(se3di_assembly_init(&flat, d->model, &se3di_formulation_romega,
                                   d->equations->assembly.moves_states, d->equations->error));
     se3d_status status = allocate(d, &flat);
+    for (uint32_t joint = 0; joint < flat.constraint_count && status >= 0; ++joint) {
+        d->is_geometric[joint] = is_geometric(d->model, &d->model->constraints[joint], d->t);
+    }
     if (status >= 0) {
         se3di_assembly_eval_jacobian(&flat);
         status = eliminate(d, &flat);
@@ -256,7 +284,7 @@ static void release_drivers(const decision *d, int32_t released)
 {
     for (uint32_t j = 0; j < d->equations->assembly.constraint_count; ++j) {
         const se3di_constraint *constraint = &d->model->constraints[j];
-        for (uint32_t r = 0; r < constraint->row_count && is_driving(d->model, constraint); ++r) {
+        for (uint32_t r = 0; r < constraint->row_count && is_driving(d, j); ++r) {
             leave_out(d->model, constraint->row_begin + r, released);
         }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-#include "joint/user.h"
+#include "primitive/user.h"
 
 #include "base/floats.h"
 #include "math/quaternion.h"

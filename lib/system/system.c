@@ -214,9 +214,23 @@ se3d_status se3d_system_set_gravity_function(se3d_system *system, const se3d_fun
     return SE3D_OK;
 }
 
+/* A row by callback is among those that are left out as they depend on others. */
+static int leaves_user_rows_out(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->row_count && model->left_out_count > 0; ++k) {
+        if (model->rows[k].term_count == 0 && model->rows[k].left_out == SE3DI_ROW_DEPENDENT) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 se3d_status se3d_system_touch(se3d_system *system)
 {
     SE3DI_SET(system);
+    if (leaves_user_rows_out(&system->model)) { /* do they still depend on others? */
+        se3di_model_take_all_rows(&system->model);
+    }
     se3di_model_touch_values(&system->model);
     se3di_model_touch_contact(&system->model);
     return SE3D_OK;

@@ -5,7 +5,7 @@
  *                                                             docs/theory/joint_coordinates.md */
 #include "tree/loops.h"
 
-#include "joint/user.h"
+#include "primitive/user.h"
 
 #include <string.h>
 

@@ -7,8 +7,8 @@
 #include "tree/tree.h"
 
 #include "joint/joint.h"
-#include "joint/user.h"
 #include "model/state.h"
+#include "primitive/user.h"
 #include "tree/core.h"
 
 #include <string.h>

@@ -9,9 +9,9 @@
 #include "force/driver_rate.h"
 #include "force/signal.h"
 #include "joint/equation.h"
-#include "joint/user.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "primitive/user.h"
 #include "support/two_points.h"
 #include "system/system_internal.h"
 

@@ -4,8 +4,8 @@
 #include "property/test_joint_world.h"
 
 #include "joint/equation.h"
-#include "joint/user.h"
 #include "primitive/scale.h"
+#include "primitive/user.h"
 #include "se3d/io.h"
 
 /* A callback that can be told to fail. */
