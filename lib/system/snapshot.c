@@ -19,6 +19,24 @@ static uint64_t add_words(uint64_t hash, const uint32_t *words, size_t count)
     return hash;
 }
 
+/* The coordinates that a constraint binds, which bodies and rows do not say: of a rate the one that
+ * is free to the state, of other drivers and of couplers those of their equations. */
+static uint64_t add_coordinates(uint64_t hash, const se3di_model *model, const se3di_constraint *c)
+{
+    if (se3di_is_driver_rate(c)) {
+        const uint32_t words[] = {(uint32_t)c->joints[0], (uint32_t)c->coordinate};
+        return add_words(hash, words, 2);
+    }
+    for (size_t k = 0; k < SE3D_COUPLER_TERMS_MAX && c->joints[k] >= 0; ++k) {
+        hash = add_words(hash, &(uint32_t){(uint32_t)c->joints[k]}, 1);
+    }
+    for (uint32_t r = 0; r < c->row_count && c->joints[0] >= 0; ++r) {
+        const char *name = model->rows[c->row_begin + r].name;
+        hash = se3di_hash_bytes(hash, name, strlen(name) + 1);
+    }
+    return hash;
+}
+
 uint64_t se3di_snapshot_structure(const se3di_model *model)
 {
     uint64_t hash = SE3DI_HASH_START;
@@ -30,10 +48,7 @@ uint64_t se3di_snapshot_structure(const se3di_model *model)
         hash = se3di_hash_bytes(hash, c->type, strlen(c->type) + 1);
         hash = add_words(hash, &c->row_count, 1);
         hash = add_words(hash, c->bodies, c->body_count);
-        if (se3di_is_driver_rate(c)) { /* its coordinate is free to the state */
-            const uint32_t words[] = {(uint32_t)c->joints[0], (uint32_t)c->coordinate};
-            hash = add_words(hash, words, 2);
-        }
+        hash = add_coordinates(hash, model, c);
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *f = &model->forces[k];

@@ -9,6 +9,7 @@
 #include "support/ball_on_floor.h"
 #include "support/damage.h"
 #include "support/models.h"
+#include "support/world.h"
 
 enum { ROOM = 20000 };
 
@@ -111,6 +112,55 @@ static void another_model_is_refused(void)
     close_world(&w);
 }
 
+/* A body that a driver holds in one coordinate of a cylindrical joint, or in that of another joint
+ * between the same bodies. */
+static se3d_system *create_driven(int32_t coordinate, int second)
+{
+    const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0};
+    se3d_system *system = NULL;
+    se3d_body body, ground;
+    se3d_constraint joints[2], driver;
+    se3d_body_def def = se3d_body_def_default();
+    se3d_driver_def drives = se3d_driver_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    def.mass = def.inertia[0] = def.inertia[1] = def.inertia[2] = 1.0;
+    CHECK(!se3d_body_create(system, &def, &body));
+    CHECK(!se3d_system_get_ground(system, &ground));
+    for (int k = 0; k < 2; ++k) {
+        joints[k] = world_join(system, se3d_joint_create_cylindrical, NULL, ground, body, at, axis);
+    }
+    drives.joint = joints[second];
+    drives.coordinate = coordinate;
+    CHECK(!se3d_driver_create(system, &drives, &driver));
+    return system;
+}
+
+static void drivers_of_other_coordinates_are_another_model(void)
+{
+    static const struct {
+        int32_t coordinate;
+        int second;
+    } rows[] = {{SE3D_JOINT_COORDINATE_ANGLE, 0},
+                {SE3D_JOINT_COORDINATE_DISPLACEMENT, 0},
+                {SE3D_JOINT_COORDINATE_ANGLE, 1}};
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+            unsigned char bytes[ROOM];
+            size_t size = 0;
+            se3d_snapshot *snapshot = NULL, *read = NULL;
+            se3d_system *from = create_driven(rows[a].coordinate, rows[a].second);
+            se3d_system *to = create_driven(rows[b].coordinate, rows[b].second);
+            CHECK(!se3d_snapshot_create(from, &snapshot));
+            CHECK(!se3d_snapshot_write(snapshot, bytes, ROOM, &size));
+            CHECK((se3d_snapshot_read(to, bytes, size, &read) >= 0) == (a == b));
+            se3d_snapshot_destroy(read);
+            se3d_snapshot_destroy(snapshot);
+            se3d_system_destroy(from);
+            se3d_system_destroy(to);
+        }
+    }
+}
+
 /* Whatever one word says, nothing is read or written that is not there, and what is taken can be
  * gone on with: the run ends well or with a message. */
 static void made_up_words_do_no_harm(void)
@@ -209,6 +259,7 @@ int main(void)
     RUN(numbers_that_are_not_finite_are_refused);
     RUN(cut_and_changed_bytes_are_refused);
     RUN(another_model_is_refused);
+    RUN(drivers_of_other_coordinates_are_another_model);
     RUN(made_up_words_do_no_harm);
     RUN(rows_that_are_left_out_for_no_reason_are_refused);
     return check_finish();
