@@ -2,8 +2,10 @@
 /* Files of results and files that are read, in folders where others have left something. */
 #define _XOPEN_SOURCE 700
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "check.h"
@@ -97,6 +99,87 @@ static void only_regular_files_are_opened_for_reading(void)
     CHECK(se3di_file_open(path) == NULL && errno == ENOENT);
 }
 
+static void touch(const char *name)
+{
+    FILE *file = fopen(name, "w");
+    CHECK(file && fclose(file) == 0);
+}
+
+/* A tree whose process was killed, with a folder `in`, in which many files are, and a link. */
+static void leave_folder(const char *held, const char *far)
+{
+    char name[400];
+    CHECK(mkdir(held, 0700) == 0);
+    snprintf(name, sizeof name, "%s/link", held);
+    CHECK(symlink(far, name) == 0);
+    snprintf(name, sizeof name, "%s/in", held);
+    CHECK(mkdir(name, 0700) == 0);
+    for (int k = 0; k < 40; ++k) {
+        snprintf(name, sizeof name, "%s/in/%d", held, k);
+        touch(name);
+    }
+}
+
+/* Another user, who may write where temporary folders are, puts links in the place of those that
+ * are being swept: for ever. */
+static void exchange_folders(const char *held, const char *far)
+{
+    char in[400], away[400], outside[400];
+    snprintf(in, sizeof in, "%s/in", held);
+    snprintf(away, sizeof away, "%s/away", held);
+    snprintf(outside, sizeof outside, "%s-away", held);
+    for (;;) {
+        if (rename(in, away) == 0 && symlink(far, in) == 0) {
+            unlink(in);
+        }
+        rename(away, in);
+        if (rename(held, outside) == 0 && symlink(far, held) == 0) {
+            unlink(held);
+        }
+        rename(outside, held);
+    }
+}
+
+static void what_was_left_is_swept_and_nothing_else(void)
+{
+    char far[300], kept[400], held[300], made[300];
+    struct stat about;
+    snprintf(far, sizeof far, "%s/far", folder);
+    snprintf(held, sizeof held, "%s/se3d-held-abcdef", folder);
+    CHECK(mkdir(far, 0700) == 0);
+    for (int k = 0; k < 40; ++k) {
+        snprintf(kept, sizeof kept, "%s/%d", far, k);
+        touch(kept);
+    }
+    for (int round = 0; round < 60; ++round) {
+        int hold = -1;
+        leave_folder(held, far);
+        const pid_t child = round < 2 ? 0 : fork();
+        if (round >= 2 && child == 0) {
+            exchange_folders(held, far);
+        }
+        CHECK(se3di_temporary_hold(folder, made, sizeof made, &hold) && hold >= 0);
+        if (child > 0) {
+            CHECK(kill(child, SIGKILL) == 0 && waitpid(child, NULL, 0) == child);
+        }
+        CHECK(round >= 2 || !exists(held));
+        se3di_temporary_release(made, hold);
+        CHECK(!exists(made));
+        for (int k = 0; k < 40; ++k) {
+            snprintf(kept, sizeof kept, "%s/%d", far, k);
+            CHECK(lstat(kept, &about) == 0);
+        }
+        char rest[400];
+        snprintf(rest, sizeof rest, "%s-away", held);
+        unlink(held);
+        se3di_temporary_remove(held);
+        se3di_temporary_remove(rest);
+        CHECK(!exists(held) && !exists(rest));
+    }
+    se3di_temporary_remove(far);
+    CHECK(!exists(far));
+}
+
 int main(void)
 {
     const char *where = getenv("TMPDIR");
@@ -112,6 +195,7 @@ int main(void)
     RUN(pipes_are_not_replaced);
     RUN(two_paths_of_one_file_are_known);
     RUN(only_regular_files_are_opened_for_reading);
+    RUN(what_was_left_is_swept_and_nothing_else);
     rmdir(folder);
     return check_finish();
 }

@@ -113,7 +113,6 @@ void se3di_temporary_release(const char *path, int hold)
 #else
 #include <dirent.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -239,18 +238,65 @@ bool se3di_temporary_make(const char *within, char *path, size_t size)
     return mkdtemp(path) != NULL; /* mode 0700 */
 }
 
-static int take_each(const char *path, const struct stat *about, int kind, struct FTW *place)
+/* A folder of this user, by its name within an open one; no link is followed. @return -1: none */
+static int open_folder(int within, const char *name)
 {
-    (void)about;
-    (void)place;
-    (void)(kind == FTW_DP ? rmdir(path) : unlink(path)); /* what stays is left behind */
-    return 0;
+    struct stat about;
+    const int number = openat(within, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (number >= 0 && (fstat(number, &about) != 0 || about.st_uid != geteuid())) {
+        close(number);
+        return -1;
+    }
+    return number;
+}
+
+/* Take away what is in an open folder, whatever its name leads to meanwhile; what stays is left
+ * behind. */
+static void empty_folder(int folder, int depth)
+{
+    enum { DEEPEST = 64 };
+    const int again = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    DIR *entries = again >= 0 ? fdopendir(again) : NULL;
+    if (!entries && again >= 0) {
+        close(again);
+    }
+    for (struct dirent *entry = entries ? readdir(entries) : NULL; entry;
+         entry = readdir(entries)) {
+        const char *name = entry->d_name;
+        if (strcmp(name, ".") == 0 || strcmp(name, "..") == 0 || unlinkat(folder, name, 0) == 0) {
+            continue;
+        }
+        const int inner = depth < DEEPEST ? open_folder(folder, name) : -1;
+        if (inner >= 0) {
+            empty_folder(inner, depth + 1);
+            close(inner);
+        }
+        (void)unlinkat(folder, name, AT_REMOVEDIR);
+    }
+    if (entries) {
+        closedir(entries);
+    }
+}
+
+/* Take an open folder away, by its name within another one if that is still its. */
+static void remove_folder(int folder, int within, const char *name)
+{
+    struct stat own;
+    struct stat named;
+    empty_folder(folder, 0);
+    if (fstat(folder, &own) == 0 && fstatat(within, name, &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+        own.st_dev == named.st_dev && own.st_ino == named.st_ino) {
+        (void)unlinkat(within, name, AT_REMOVEDIR); /* another one would have to be empty */
+    }
 }
 
 void se3di_temporary_remove(const char *path)
 {
-    enum { OPEN_MOST = 16 };
-    (void)nftw(path, take_each, OPEN_MOST, FTW_DEPTH | FTW_PHYS);
+    const int folder = open_folder(AT_FDCWD, path);
+    if (folder >= 0) {
+        remove_folder(folder, AT_FDCWD, path);
+        close(folder);
+    }
 }
 
 /* Folders that are held have the name of the second kind, and get it once they are locked: the lock
@@ -259,12 +305,10 @@ static const char held_mark[] = "se3d-held-";
 enum { RANDOM = 6 }; /* characters of mkdtemp behind it */
 
 /* Lock a folder of this user. @return -1: it is none, or another process has it */
-static int lock_folder(const char *path)
+static int lock_folder(int within, const char *name)
 {
-    struct stat about;
-    const int number = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    if (number >= 0 && (fstat(number, &about) != 0 || about.st_uid != geteuid() ||
-                        flock(number, LOCK_EX | LOCK_NB) != 0)) {
+    const int number = open_folder(within, name);
+    if (number >= 0 && flock(number, LOCK_EX | LOCK_NB) != 0) {
         close(number);
         return -1;
     }
@@ -279,16 +323,13 @@ static bool has_held_name(const char *name)
 
 static void sweep(const char *within)
 {
-    char path[PATH_SIZE];
     DIR *folder = opendir(within);
     for (struct dirent *entry = folder ? readdir(folder) : NULL; entry; entry = readdir(folder)) {
-        const int length = snprintf(path, sizeof path, "%s/%s", within, entry->d_name);
-        if (!has_held_name(entry->d_name) || length < 0 || (size_t)length >= sizeof path) {
-            continue;
-        }
-        const int hold = lock_folder(path);
+        const char *name = entry->d_name;
+        const int hold = has_held_name(name) ? lock_folder(dirfd(folder), name) : -1;
         if (hold >= 0) {
-            se3di_temporary_release(path, hold);
+            remove_folder(hold, dirfd(folder), name);
+            close(hold);
         }
     }
     if (folder) {
@@ -310,7 +351,7 @@ bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold
     if (length < 0 || (size_t)length >= sizeof name || (size_t)length >= size) {
         return true; /* it stays as it is */
     }
-    *hold = lock_folder(path);
+    *hold = lock_folder(AT_FDCWD, path);
     if (*hold >= 0 && rename(path, name) == 0) {
         memcpy(path, name, (size_t)length + 1);
     }
@@ -319,10 +360,12 @@ bool se3di_temporary_hold(const char *within, char *path, size_t size, int *hold
 
 void se3di_temporary_release(const char *path, int hold)
 {
-    se3di_temporary_remove(path);
-    if (hold >= 0) {
-        close(hold);
+    if (hold < 0) {
+        se3di_temporary_remove(path);
+        return;
     }
+    remove_folder(hold, AT_FDCWD, path);
+    close(hold);
 }
 #endif
 
