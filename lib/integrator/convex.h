@@ -40,6 +40,7 @@ typedef struct se3di_convex_contact {
     double damping, rebound;
     double tangential, drag;           /* k_t; -dy/dv_t */
     double friction, bound, wanted;    /* mu, the cap in use, that of p_n */
+    double wanted_before, gap;         /* at the last look; wanted - bound */
     double before[3], v[3], change[3]; /* velocity of the point: at the start, now, of the search */
     double impulse[3];                 /* on j */
     double slope[9];                   /* minus the derivative of the impulse */
@@ -86,10 +87,11 @@ typedef struct se3di_convex {
     int32_t *root;    /* [free bodies]: the first body of its island */
     int32_t *number;  /* [free bodies]: of its island */
     int32_t *order;   /* [contacts]: island by island */
+    int32_t *stirred; /* [free bodies], by places: the last sweep that changed its velocity */
     double *mobility; /* [10 * free bodies], by places: 1/m, J^-1 */
     double *own;      /* blocks of the mass, by places, 6 x 6 each */
     size_t place_capacity, root_capacity, number_capacity, order_capacity, mobility_capacity,
-        own_capacity;
+        own_capacity, stirred_capacity;
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
     uint8_t *bars;   /* [free bodies]: something acts on it that may change: it does not sleep, */

@@ -19,6 +19,7 @@ static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
                   {&c->root, &c->root_capacity, bodies + 1, sizeof *c->root},
                   {&c->number, &c->number_capacity, bodies + 1, sizeof *c->number},
                   {&c->order, &c->order_capacity, contacts + 1, sizeof *c->order},
+                  {&c->stirred, &c->stirred_capacity, bodies + 1, sizeof *c->stirred},
                   {&c->pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs},
                   {&c->mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof *c->mobility},
                   {&c->own, &c->own_capacity, 36 * bodies + 1, sizeof *c->own}};

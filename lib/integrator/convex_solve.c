@@ -18,9 +18,12 @@
 #define FOLLOWING   60   /* iterations in which the caps of friction follow */
 #define MAY_FOLLOW  0.1  /* of impulses: what is left where they do */
 #define ACCURACY    1e-9 /* of impulses */
-#define CAP_CHANGE  1e-4 /* of the largest cap: it needs no other iteration */
+#define CAP_CHANGE  3e-4 /* of the largest cap: it needs no other iteration */
+#define GO_AHEAD    1e-3 /* of impulses: what is left where caps go on as they went, */
+#define AHEAD_MOST  4.0  /* at most so many times */
 #define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
+#define SAME        1e-2 /* of a slope: changes that the matrix need not know */
 #define SOLVES_MOST 500
 #define GUESSES     6    /* at which contacts act and how, before */
 #define GUESSED     1e-3 /* of the largest impulse: they will hardly change */
@@ -40,6 +43,7 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->root, c->root_capacity, sizeof *c->root);
     se3di_free(allocator, c->number, c->number_capacity, sizeof *c->number);
     se3di_free(allocator, c->order, c->order_capacity, sizeof *c->order);
+    se3di_free(allocator, c->stirred, c->stirred_capacity, sizeof *c->stirred);
     se3di_free(allocator, c->mobility, c->mobility_capacity, sizeof *c->mobility);
     se3di_free(allocator, c->own, c->own_capacity, sizeof *c->own);
     se3di_free(allocator, c->body, c->body_capacity, sizeof *c->body);
@@ -138,9 +142,10 @@ static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3d_status status = se3di_convex_group(c, assembly);
     if (status >= 0) {
-        status = assembly->row_count > 0
-                     ? suit_solver(c, assembly)
-                     : se3di_block_cg_reserve(&c->cg, allocator, assembly->body_count);
+        status =
+            assembly->row_count > 0
+                ? suit_solver(c, assembly)
+                : se3di_block_cg_reserve(&c->cg, allocator, assembly->body_count, c->pair_count);
     }
     status = status < 0
                  ? status
@@ -208,52 +213,105 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
     }
 }
 
-/* Gradient and blocks of the matrix without contacts. */
-static void clear(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
+/* Blocks of the matrix without contacts. */
+static void clear_blocks(se3di_convex *c, const se3di_convex_island *island)
 {
     const size_t bodies = island->body_end - island->body;
     const size_t pairs = island->pair_end - island->pair;
-    memcpy(c->gradient + 6 * island->body, c->moved + 6 * island->body,
-           6 * bodies * sizeof *c->gradient);
-    if (is_wanted && bodies > 0) {
+    if (bodies > 0) {
         memcpy(c->body + 36 * island->body, c->own + 36 * island->body,
                36 * bodies * sizeof *c->body);
     }
-    if (is_wanted && pairs > 0) {
+    if (pairs > 0) {
         memset(c->coupling + 36 * island->pair, 0, 36 * pairs * sizeof *c->coupling);
     }
 }
 
-/* Impulses, gradient and, if `is_wanted`, the blocks of the matrix at v. */
-static void evaluate(se3di_convex *c, const se3di_convex_island *island, int is_wanted)
+/* The gradient without contacts. */
+static void clear_gradient(se3di_convex *c, const se3di_convex_island *island)
 {
-    clear(c, island, is_wanted);
+    memcpy(c->gradient + 6 * island->body, c->moved + 6 * island->body,
+           6 * (island->body_end - island->body) * sizeof *c->gradient);
+}
+
+/* Impulses and gradient at v. */
+static void evaluate(se3di_convex *c, const se3di_convex_island *island)
+{
+    clear_gradient(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        double G[9];
-        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, is_wanted ? G : NULL);
+        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, NULL);
         subtract_impulse(contact, c->gradient);
-        if (is_wanted) {
-            add_contact(c, contact, G);
-        }
     }
 }
 
-/* The caps of friction to the normal impulses, if one of them is another. */
-static void follow(se3di_convex *c, const se3di_convex_island *island)
+/* Whether `change` of a slope is small, along the normal beside what is along it and across it
+ * beside what is across: one may be a thousand times the other. */
+static int is_small(const se3di_convex_contact *contact, const double change[9])
 {
-    double largest = 0.0, change = 0.0, slope;
+    const double *n = contact->normal, *slope = contact->slope;
+    double turned[3], along, less, across = 0.0, off = 0.0;
+    se3di_mul(slope, n, turned);
+    along = se3di_dot(turned, n);
+    se3di_mul(change, n, turned);
+    less = se3di_dot(turned, n);
+    for (int r = 0; r < 3; ++r) {
+        for (int k = 0; k < 3; ++k) {
+            const double part = n[r] * n[k];
+            off = se3di_larger(off, fabs(change[3 * r + k] - less * part));
+            across = se3di_larger(across, fabs(slope[3 * r + k] - along * part));
+        }
+    }
+    return fabs(less) <= SAME * along && off <= SAME * across;
+}
+
+/* The slope of a contact at a velocity of its point into the matrix, if it is clearly another than
+ * the one that is there. Returns 1 if so. */
+static int set_slope(se3di_convex *c, se3di_convex_contact *contact, const double v[3])
+{
+    double impulse[3], slope[9], change[9];
+    se3di_convex_impulse(contact, c->h, v, impulse, slope);
+    for (int k = 0; k < 9; ++k) {
+        change[k] = slope[k] - contact->slope[k];
+    }
+    if (is_small(contact, change)) {
+        return 0;
+    }
+    memcpy(contact->slope, slope, sizeof slope);
+    add_contact(c, contact, change);
+    return 1;
+}
+
+/* What normal impulses make of the caps of friction, and how that differs from those in use.
+ * Returns the share of the change since the last look that leads to where they would agree, if all
+ * went on as from that look to this one (Anderson 1965); `is_near` is 1 if they agree. */
+static double look_at_caps(se3di_convex *c, const se3di_convex_island *island, int *is_near)
+{
+    double largest = 0.0, gap = 0.0, change = 0.0, product = 0.0, slope;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        const double vn = se3di_dot(contact->v, contact->normal);
+        const double vn = se3di_dot(contact->v, contact->normal), before = contact->gap;
+        contact->wanted_before = contact->wanted;
         contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, vn, &slope);
+        contact->gap = contact->wanted - contact->bound;
         largest = fmax(largest, contact->wanted);
-        change = se3di_larger(change, fabs(contact->wanted - contact->bound));
+        gap = se3di_larger(gap, fabs(contact->gap));
+        product += contact->gap * (contact->gap - before);
+        change += (contact->gap - before) * (contact->gap - before);
     }
-    for (size_t k = island->contact; k < island->contact_end && change > CAP_CHANGE * largest;
-         ++k) {
+    *is_near = !(gap > CAP_CHANGE * largest);
+    return change > 0.0 ? fmax(-AHEAD_MOST, fmin(0.0, product / change)) : 0.0;
+}
+
+/* The caps of friction follow the normal impulses, if one of them is another. */
+static void follow(se3di_convex *c, const se3di_convex_island *island, int goes_ahead)
+{
+    int is_near;
+    const double ahead = look_at_caps(c, island, &is_near);
+    for (size_t k = island->contact; k < island->contact_end && !is_near; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        contact->bound = contact->wanted;
+        const double change = goes_ahead ? contact->wanted - contact->wanted_before : 0.0;
+        contact->bound = fmax(0.0, contact->wanted - ahead * change);
     }
 }
 
@@ -322,17 +380,21 @@ static se3di_block_matrix matrix_of(const se3di_convex *c, const se3di_convex_is
                                 .coupling = has_pairs ? c->coupling + 36 * island->pair : NULL};
 }
 
-/* `change` to the accuracy that an iteration needs. */
+/* `change` to the accuracy that an iteration needs; the matrix is another than before, or not. */
 static void solve_free(se3di_convex *c, se3di_equations *equations,
-                       const se3di_convex_island *island)
+                       const se3di_convex_island *island, int is_new, double share)
 {
     const se3di_block_matrix A = matrix_of(c, island);
+    if (is_new) {
+        ++equations->counters.factorizations;
+        se3di_block_cg_factor(&c->cg, &A);
+    }
     const size_t begin = 6 * island->body;
     for (size_t k = begin; k < 6 * island->body_end; ++k) {
         equations->b[k] = -c->gradient[k];
     }
     ++equations->counters.solves;
-    (void)se3di_block_cg_solve(&c->cg, &A, equations->b + begin, SHARE, SOLVES_MOST,
+    (void)se3di_block_cg_solve(&c->cg, &A, equations->b + begin, share, SOLVES_MOST,
                                c->change + begin);
 }
 
@@ -340,15 +402,18 @@ static void solve_free(se3di_convex *c, se3di_equations *equations,
  * them near the end of the iteration is rounding, by which the solver would measure its residual.
  */
 static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
-                               const se3di_convex_island *island)
+                               const se3di_convex_island *island, int is_new)
 {
     const se3di_assembly *assembly = &equations->assembly;
     const se3di_block_matrix A = matrix_of(c, island);
     const se3di_kkt_values values = {
         .body = c->body, .coupling_upper = c->coupling, .joint = assembly->C};
-    ++equations->counters.factorizations;
+    se3d_status status = SE3D_OK;
+    if (is_new) {
+        ++equations->counters.factorizations;
+        status = se3di_kkt_factor(c->kkt, &values, NULL);
+    }
     ++equations->counters.solves;
-    se3d_status status = se3di_kkt_factor(c->kkt, &values, NULL);
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
         equations->b[k] = -c->gradient[k];
     }
@@ -402,7 +467,7 @@ static double search(const se3di_convex *c, const se3di_convex_island *island)
     const double line[2] = {dot(c->moved, c->change, begin, end),
                             dot(c->carried, c->change, begin, end)};
     double curvature, low = 0.0, high = HUGE_VAL, s = 1.0;
-    const double first = slope_at(c, island, line, 0.0, &curvature);
+    const double first = dot(c->gradient, c->change, begin, end);
     if (!(first < 0.0)) {
         return 1.0;
     }
@@ -468,6 +533,7 @@ static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_i
         c->change[k] = c->v[k] - aim[k];
     }
     mul_mass(c, assembly, island, c->change, c->moved);
+    clear_blocks(c, island);
     memset(c->change + first, 0, count * sizeof *c->change);
     memset(c->carried + first, 0, count * sizeof *c->carried);
     move(c, island, 0.0);
@@ -490,18 +556,18 @@ static void carry(se3di_convex *c, const se3di_assembly *assembly,
 static double foresee(se3di_convex *c, const se3di_convex_island *island)
 {
     double far = 0.0, largest = 0.0;
-    clear(c, island, 1);
+    clear_gradient(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         double ahead[3], less[3];
         far = se3di_larger(far, se3di_convex_foresee(c, contact, ahead));
-        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, contact->slope);
+        set_slope(c, contact, ahead);
+        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, NULL);
         largest = fmax(largest, se3di_norm(contact->impulse));
         se3di_sub(contact->v, ahead, ahead);
         se3di_mul(contact->slope, ahead, less);
         se3di_sub(contact->impulse, less, contact->impulse);
         subtract_impulse(contact, c->gradient);
-        add_contact(c, contact, contact->slope);
     }
     return largest > 0.0 ? far / largest : 0.0;
 }
@@ -510,7 +576,7 @@ static double foresee(se3di_convex *c, const se3di_convex_island *island)
 static void relax(se3di_convex *c, const se3di_convex_island *island)
 {
     const size_t begin = 6 * island->body, end = 6 * island->body_end;
-    clear(c, island, 0);
+    clear_gradient(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         subtract_impulse(se3di_convex_at(c, k), c->gradient);
     }
@@ -534,7 +600,7 @@ static void approach(se3di_convex *c, se3di_equations *equations, const se3di_co
 {
     for (int guess = 0; guess < GUESSES; ++guess) {
         const double far = foresee(c, island);
-        solve_free(c, equations, island);
+        solve_free(c, equations, island, 1, SHARE);
         ++equations->counters.iterations;
         carry(c, &equations->assembly, island);
         for (size_t k = island->contact; k < island->contact_end; ++k) {
@@ -560,18 +626,31 @@ static se3d_status fail(const se3di_convex *c, se3di_equations *equations, doubl
 }
 
 static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
-                           const se3di_convex_island *island, int is_first)
+                           const se3di_convex_island *island, int is_first, double share)
 {
     const se3di_assembly *assembly = &equations->assembly;
+    int is_new = is_first;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        is_new |= set_slope(c, contact, contact->v);
+    }
     if (assembly->row_count > 0) {
-        SE3DI_TRY(solve_bound(c, equations, island));
+        SE3DI_TRY(solve_bound(c, equations, island, is_new));
     } else {
-        solve_free(c, equations, island);
+        solve_free(c, equations, island, is_new, share);
     }
     ++equations->counters.iterations;
     carry(c, assembly, island);
     move(c, island, is_first && assembly->row_count > 0 ? 1.0 : search(c, island));
     return SE3D_OK;
+}
+
+/* What linear equations may leave: the less, the faster the iteration ends (Eisenstat and Walker
+ * 1996), but no less than it needs. */
+static double share_of(double rest, double before)
+{
+    const double ratio = before < HUGE_VAL ? rest / before : 1.0;
+    return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
 static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
@@ -586,9 +665,9 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         SE3DI_TRY(se3di_equations_ask(equations));
         const int waits = assembly->row_count == 0 && k > 0 && !(rest <= MAY_FOLLOW);
         if (k < FOLLOWING && !waits) {
-            follow(c, island);
+            follow(c, island, k > 0 && rest <= GO_AHEAD);
         }
-        evaluate(c, island, 1);
+        evaluate(c, island);
         const double before = rest;
         rest = measure(c, equations, island);
         const int stays = k >= FOLLOWING && rest <= ENOUGH && rest >= 0.5 * before;
@@ -596,9 +675,9 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
             (!waits || k >= FOLLOWING)) {
             return SE3D_OK;
         }
-        SE3DI_TRY(iterate(c, equations, island, k == 0));
+        SE3DI_TRY(iterate(c, equations, island, k == 0, share_of(rest, before)));
     }
-    evaluate(c, island, 0);
+    evaluate(c, island);
     return rest <= ENOUGH ? SE3D_OK : fail(c, equations, rest);
 }
 

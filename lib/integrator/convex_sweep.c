@@ -16,6 +16,7 @@
 #define SWEEPS_BETWEEN 8    /* guesses of all contacts at once */
 #define LOOKS          3    /* for an impulse of a spring that is not linear */
 #define CALM           1e-3 /* of the largest impulse: changes that need no other sweep */
+#define PASSED_ON      0.2  /* of such a change: those on the same bodies are looked at again */
 #define NEAR           1e-6 /* of an impulse: what is left of it */
 
 /* What an impulse on the point does to its velocity. */
@@ -136,19 +137,55 @@ static void remember(se3di_convex *c, const se3di_convex_island *island)
     }
 }
 
-/* Returns the sweeps after which hardly anything changed any more. */
+/* Whether a body of it was moved in this sweep or the one before. */
+static int is_stirred(const se3di_convex *c, const se3di_convex_contact *contact, int sweep)
+{
+    return (contact->free[0] >= 0 && c->stirred[contact->free[0]] + 1 >= sweep) ||
+           (contact->free[1] >= 0 && c->stirred[contact->free[1]] + 1 >= sweep);
+}
+
+static void stir(se3di_convex *c, const se3di_convex_contact *contact, int sweep)
+{
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            c->stirred[contact->free[k]] = sweep;
+        }
+    }
+}
+
+static double largest_impulse(const se3di_convex *c, const se3di_convex_island *island)
+{
+    double largest = 0.0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        largest = fmax(largest, se3di_norm(se3di_convex_at(c, k)->impulse));
+    }
+    return largest;
+}
+
+/* Returns the sweeps after which hardly anything changed any more. After the first one only those
+ * are looked at again whose bodies others have moved. */
 static int sweep_all(se3di_convex *c, const se3di_convex_island *island, int most)
 {
     const size_t count = island->contact_end - island->contact;
+    double largest = largest_impulse(c, island);
+    memset(c->stirred + island->body, -1, (island->body_end - island->body) * sizeof *c->stirred);
     for (int sweep = 0; sweep < most; ++sweep) {
-        double change = 0.0, largest = 0.0;
+        const double calm = CALM * largest;
+        size_t changed = 0;
         for (size_t k = 0; k < count; ++k) {
             const size_t at = sweep % 2 ? count - 1 - k : k;
             se3di_convex_contact *contact = se3di_convex_at(c, island->contact + at);
-            change = se3di_larger(change, settle(c, contact));
+            if (!is_stirred(c, contact, sweep)) {
+                continue;
+            }
+            const double change = settle(c, contact);
             largest = fmax(largest, se3di_norm(contact->impulse));
+            if (change > PASSED_ON * calm) {
+                stir(c, contact, sweep);
+            }
+            changed += change > calm;
         }
-        if (!(change > CALM * largest)) {
+        if (changed == 0) {
             return sweep;
         }
     }

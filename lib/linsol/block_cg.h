@@ -21,15 +21,20 @@ typedef struct se3di_block_matrix {
     const double *coupling;  /* [36 * pair_count]: A_ij */
 } se3di_block_matrix;
 
+typedef struct se3di_block_cg_core se3di_block_cg_core;
+
 typedef struct se3di_block_cg {
     double *work;
     size_t capacity;
+    const se3di_block_cg_core *core; /* kernels for this processor */
 } se3di_block_cg;
 
 void se3di_block_cg_destroy(se3di_block_cg *cg, const se3d_allocator *allocator);
 /* @return OK, NO_MEMORY */
 se3d_status se3di_block_cg_reserve(se3di_block_cg *cg, const se3d_allocator *allocator,
-                                   size_t count);
+                                   size_t count, size_t pair_count);
+/* The preconditioner of A, for solutions until the next call. */
+void se3di_block_cg_factor(se3di_block_cg *cg, const se3di_block_matrix *A);
 /* x for A x = b, from x = 0, until the residual by P^-1 is `share` of that of b, or after `most`
  * iterations: b . x > 0 in any case, unless b = 0. Returns the iterations. */
 int se3di_block_cg_solve(se3di_block_cg *cg, const se3di_block_matrix *A, const double *b,

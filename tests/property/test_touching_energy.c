@@ -82,8 +82,39 @@ static void energy_never_grows(void)
     }
 }
 
+/* Stiff enough to stand, but so stiff that forces which do not belong to the velocities of a step
+ * would shake it. */
+static void a_high_stack_stays_where_it_is(void)
+{
+    enum { HIGH = 30 };
+    const double size[3] = {0.1, 0.1, 0.1};
+    double least = HUGE_VAL, first, balance, energy, growth = 0.0, r[3];
+    se3d_body top = {0};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.1, 3e6);
+    for (int k = 0; k < HIGH; ++k) {
+        const double at[3] = {0.0, 0.0, 0.05 + 0.1 * k};
+        top = scene_box(&s, size, 1.0, at, scene_zero);
+    }
+    scene_floor(&s, 0.0);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, 2e-3, 0.0);
+    look(&s, &first, &balance);
+    for (int k = 1; k <= 40 && scene_run(&s, 0.1 * k); ++k) {
+        look(&s, &energy, &balance);
+        growth = fmax(growth, energy - least);
+        least = fmin(least, energy);
+    }
+    CHECK(growth < 1e-13 * first);
+    CHECK(se3d_body_get_position(s.system, top, r) == SE3D_OK);
+    CHECK_NEAR(r[0], 0.0, 1e-6);
+    CHECK_NEAR(r[1], 0.0, 1e-6);
+    CHECK_NEAR(r[2], 0.05 + 0.1 * (HIGH - 1), 5e-4);
+    CHECK(se3d_system_count_contacts(s.system) == 4 * HIGH);
+    scene_end(&s);
+}
+
 int main(void)
 {
     RUN(energy_never_grows);
+    RUN(a_high_stack_stays_where_it_is);
     return check_finish();
 }

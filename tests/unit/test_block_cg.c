@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Conjugate gradients on 6 x 6 blocks: against the matrix itself, for random graphs, chains, pieces
  * of larger lists, and stiff couplings. */
-#include "linsol/block_cg.h"
+#include "linsol/block_cg_core.h"
 
 #include "check.h"
 
@@ -70,7 +70,8 @@ static void build(problem *p, size_t count, double density, double stiffness)
 static double solve(se3di_block_cg *cg, problem *p, double share, int *iterations)
 {
     double worst = 0.0;
-    CHECK(se3di_block_cg_reserve(cg, &allocator, p->A.count) == SE3D_OK);
+    CHECK(se3di_block_cg_reserve(cg, &allocator, p->A.count, p->A.pair_count) == SE3D_OK);
+    se3di_block_cg_factor(cg, &p->A);
     *iterations = se3di_block_cg_solve(cg, &p->A, p->b, share, 500, p->found);
     for (size_t k = 0; k < 6 * p->A.count; ++k) {
         worst = fmax(worst, fabs(p->found[k] - p->x[k]));
@@ -81,7 +82,7 @@ static double solve(se3di_block_cg *cg, problem *p, double share, int *iteration
 static void random_graphs_are_solved(void)
 {
     static problem p;
-    se3di_block_cg cg = {NULL, 0};
+    se3di_block_cg cg = {0};
     for (int k = 0; k < 24; ++k) {
         int iterations;
         build(&p, 1 + (size_t)(k % 8) * 5, 0.1 * (k / 8), k % 2 ? 1e4 : 1.0);
@@ -94,7 +95,7 @@ static void random_graphs_are_solved(void)
 static void a_chain_is_solved_at_once(void)
 {
     static problem p;
-    se3di_block_cg cg = {NULL, 0};
+    se3di_block_cg cg = {0};
     int iterations;
     build(&p, MOST, 0.0, 100.0);
     CHECK(solve(&cg, &p, 1e-9, &iterations) < 1e-9);
@@ -106,7 +107,7 @@ static void a_chain_is_solved_at_once(void)
 static void blocks_may_be_part_of_more(void)
 {
     static problem p;
-    se3di_block_cg cg = {NULL, 0};
+    se3di_block_cg cg = {0};
     double whole[6 * 10];
     int iterations, again;
     build(&p, 10, 0.5, 3.0);
@@ -125,9 +126,10 @@ static void blocks_may_be_part_of_more(void)
 static void every_beginning_leads_downhill(void)
 {
     static problem p;
-    se3di_block_cg cg = {NULL, 0};
+    se3di_block_cg cg = {0};
     build(&p, MOST, 0.2, 1e3);
-    CHECK(se3di_block_cg_reserve(&cg, &allocator, MOST) == SE3D_OK);
+    CHECK(se3di_block_cg_reserve(&cg, &allocator, MOST, PAIRS) == SE3D_OK);
+    se3di_block_cg_factor(&cg, &p.A);
     for (int most = 1; most < 40; most += 3) {
         double down = 0.0;
         CHECK(se3di_block_cg_solve(&cg, &p.A, p.b, 0.0, most, p.found) == most);
@@ -142,6 +144,27 @@ static void every_beginning_leads_downhill(void)
     se3di_block_cg_destroy(&cg, &allocator);
 }
 
+static void all_levels_give_the_same_bits(void)
+{
+    static problem p;
+    static double first[6 * MOST];
+    se3di_block_cg cg = {0};
+    const se3di_block_cg_core *levels[2] = {se3di_block_cg_core_portable(),
+                                            se3di_block_cg_core_avx2()};
+    build(&p, MOST, 0.2, 1e3);
+    CHECK(se3di_block_cg_reserve(&cg, &allocator, MOST, PAIRS) == SE3D_OK);
+    for (int k = 0; k < 2 && levels[k]; ++k) {
+        cg.core = levels[k];
+        se3di_block_cg_factor(&cg, &p.A);
+        CHECK(se3di_block_cg_solve(&cg, &p.A, p.b, 1e-12, 500, p.found) > 3);
+        if (k == 0) {
+            memcpy(first, p.found, sizeof first);
+        }
+        CHECK(memcmp(first, p.found, sizeof first) == 0);
+    }
+    se3di_block_cg_destroy(&cg, &allocator);
+}
+
 int main(void)
 {
     allocator = se3di_alloc_default();
@@ -149,5 +172,6 @@ int main(void)
     RUN(a_chain_is_solved_at_once);
     RUN(blocks_may_be_part_of_more);
     RUN(every_beginning_leads_downhill);
+    RUN(all_levels_give_the_same_bits);
     return check_finish();
 }
