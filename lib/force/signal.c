@@ -81,21 +81,31 @@ static void lever_row(const double A[9], const double s[3], int axis, double row
     se3di_cross(s, a, row);
 }
 
+/* A coordinate of a point or of its velocity. */
+static double point_value(const se3di_frame *frame, const se3di_signal *signal)
+{
+    const int axis = signal->component;
+    const double *row = frame->A + 3 * axis;
+    double turned[3];
+    if (signal->kind == SE3D_SIGNAL_POINT_POSITION) {
+        return frame->r[axis] + se3di_dot(row, signal->point);
+    }
+    se3di_cross(frame->w, signal->point, turned);
+    return frame->v[axis] + se3di_dot(row, turned);
+}
+
 static void eval_point(const se3di_frame *frame, const se3di_signal *signal,
                        se3di_signal_value *out)
 {
     const int axis = signal->component;
-    double offset[3], turned[3];
+    double turned[3];
+    out->value = point_value(frame, signal);
     if (signal->kind == SE3D_SIGNAL_POINT_POSITION) {
-        se3di_mul(frame->A, signal->point, offset);
-        out->value = frame->r[axis] + offset[axis];
         out->q[6 + axis] = 1.0;
         lever_row(frame->A, signal->point, axis, out->q + 9);
         return;
     }
     se3di_cross(frame->w, signal->point, turned);
-    se3di_mul(frame->A, turned, offset);
-    out->value = frame->v[axis] + offset[axis];
     lever_row(frame->A, turned, axis, out->q + 9);
     out->u[6 + axis] = 1.0;
     lever_row(frame->A, signal->point, axis, out->u + 9);
@@ -113,18 +123,45 @@ const se3di_function *se3di_signal_function(const se3di_model *model, const se3d
 
 /* The value of a state, or its output or input; without a function the output is the value, the
  * input 0. */
-static se3d_status eval_state(const se3di_model *model, const se3di_signal *signal, double t,
-                              se3di_signal_value *out)
+static se3d_status state_value(const se3di_model *model, const se3di_signal *signal, double t,
+                               double *value)
 {
     const se3di_function *function = se3di_signal_function(model, signal);
     double jet[3];
+    *value = signal->component == SE3D_STATE_INPUT ? 0.0 : model->frames[signal->body].v[0];
     if (function) {
         SE3DI_TRY(se3di_law_eval(model, function, &t, jet, NULL));
-        out->value = jet[0];
-    } else if (signal->component != SE3D_STATE_INPUT) {
-        out->value = model->frames[signal->body].v[0];
-        out->u[6] = 1.0;
+        *value = jet[0];
     }
+    return SE3D_OK;
+}
+
+static se3d_status eval_state(const se3di_model *model, const se3di_signal *signal, double t,
+                              se3di_signal_value *out)
+{
+    const int is_own =
+        signal->component != SE3D_STATE_INPUT && !se3di_signal_function(model, signal);
+    out->u[6] = is_own ? 1.0 : 0.0;
+    return state_value(model, signal, t, &out->value);
+}
+
+/* The value alone. */
+static se3d_status find_value(const se3di_model *model, const se3di_signal *signal, double t,
+                              double *value)
+{
+    const se3di_frame *frame = &model->frames[signal->body];
+    if (is_of_joint(signal) || is_of_force(signal)) {
+        se3di_signal_value out;
+        SE3DI_TRY(eval_coordinate(model, signal, 0, &out));
+        *value = out.value;
+        return SE3D_OK;
+    }
+    if (signal->kind == SE3D_SIGNAL_STATE) {
+        return state_value(model, signal, t, value);
+    }
+    *value = signal->kind == SE3D_SIGNAL_ANGULAR_VELOCITY ? frame->w[signal->component]
+             : signal->kind == SE3D_SIGNAL_ORIENTATION    ? frame->p[signal->component]
+                                                          : point_value(frame, signal);
     return SE3D_OK;
 }
 
@@ -165,9 +202,7 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
     }
     memcpy(x, own, first * sizeof *x);
     for (uint32_t k = 0; k < function->signal_count; ++k) {
-        se3di_signal_value s;
-        SE3DI_TRY(se3di_signal_eval(model, &function->signals[k], own[0], 0, &s));
-        x[first + k] = s.value;
+        SE3DI_TRY(find_value(model, &function->signals[k], own[0], &x[first + k]));
     }
     SE3DI_TRY(se3di_function_eval(function, x, jet, gradient));
     return SE3D_OK;
