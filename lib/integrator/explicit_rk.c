@@ -335,30 +335,37 @@ static se3d_status build_dense(se3di_explicit *m)
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
 
-/* y = s (form + y) */
-static void add_form(double s, const double *form, size_t count, double *y)
-{
-    const pair factor = {s, s};
-    size_t k = 0;
-    for (; k + 2 <= count; k += 2) {
-        pair *to = (pair *)(void *)(y + k);
-        *to = factor * (*(const pair *)(const void *)(form + k) + *to);
-    }
-    for (; k < count; ++k) {
-        y[k] = s * (form[k] + y[k]);
-    }
-}
+#define PAIRS 4 /* stay in registers */
 
+/* y = y0 + s_0 (form_0 + s_1 (form_1 + ...)) */
 static void interpolate(const se3di_explicit *m, double t, double *y)
 {
     const double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
+    const double factor[2] = {s, 1.0 - s};
     const int forms = 3 + m->tableau->dense_rows;
-    memset(y, 0, m->count * sizeof *y);
-    for (int row = forms - 1; row >= 0; --row) {
-        add_form(row % 2 == 0 ? s : 1.0 - s, m->forms + (size_t)row * m->count, m->count, y);
+    size_t k = 0;
+    for (; k + 2 * PAIRS <= m->count; k += 2 * PAIRS) {
+        pair sum[PAIRS] = {{0.0, 0.0}}, base[PAIRS];
+        for (int row = forms - 1; row >= 0; --row) {
+            const pair by = {factor[row % 2], factor[row % 2]};
+            const pair *form = (const pair *)(const void *)(m->forms + (size_t)row * m->count + k);
+            sum[0] = by * (form[0] + sum[0]);
+            sum[1] = by * (form[1] + sum[1]);
+            sum[2] = by * (form[2] + sum[2]);
+            sum[3] = by * (form[3] + sum[3]);
+        }
+        memcpy(base, m->y0 + k, sizeof base);
+        for (int p = 0; p < PAIRS; ++p) {
+            sum[p] = base[p] + sum[p];
+        }
+        memcpy(y + k, sum, sizeof sum);
     }
-    for (size_t k = 0; k < m->count; ++k) {
-        y[k] = m->y0[k] + y[k];
+    for (; k < m->count; ++k) {
+        double sum = 0.0;
+        for (int row = forms - 1; row >= 0; --row) {
+            sum = factor[row % 2] * (m->forms[(size_t)row * m->count + k] + sum);
+        }
+        y[k] = m->y0[k] + sum;
     }
 }
 
