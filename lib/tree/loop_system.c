@@ -15,7 +15,7 @@
 
 #define CLEAR      1e-4 /* of the usual size of a pivot */
 #define NEAR       1e-2 /* the same: a singular position is not far */
-#define EXACT      0.1  /* of a row's size: a smaller pivot leaves rounding in what is added */
+#define EXACT      1e-3 /* of a row's size: a smaller pivot leaves rounding in what is added */
 #define USUAL_MIN  1e-9 /* of a row's size: rows with less depend on others at every pose, or are */
 #define PIVOT_MIN  1e-11 /*     made of what shapes are off, and no pivot below this serves */
 #define PASSES_MIN 4     /* strips that only pass a freedom, so that it pays to keep it */
