@@ -290,6 +290,23 @@ static const bad_input table[] = {
      17,
      {"xxx?` is not allowed"}},
     /* joints */
+    {"se3d: 1\n" BAR
+     "joints: [{type: distance, body_i: ground, body_j: bar, point_i: [1, 0, 0], point_j: [0, 0, "
+     "0]}]\n",
+     3,
+     10,
+     {"distance: is missing", "`distance` needs it"}},
+    {"se3d: 1\n" BAR
+     "joints: [{type: distance, body_i: ground, body_j: bar, at: [1, 0, 0], at_2: [1, 0, 0]}]\n",
+     3,
+     10,
+     {"distance = 0"}},
+    {"se3d: 1\n" BAR
+     "joints: [{type: revolute_spherical, body_i: ground, body_j: bar, at: [1, 0, 0], at_2: [0, 0, "
+     "0], axis: [0, 0, 1]}]\n",
+     3,
+     10,
+     {"distance: is missing"}},
     {"se3d: 1\n" BAR "joints: [{type: hinge}]\n", 3, 17, {"`hinge` is not supported", "revolute"}},
     {"se3d: 1\n" BAR "joints: [{type: revolut}]\n", 3, 17, {"did you mean `revolute`"}},
     {"se3d: 1\n" BAR "joints: [{type: ' '}]\n", 3, 17, {"` ` is not supported, allowed are"}},

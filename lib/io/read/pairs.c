@@ -2,6 +2,7 @@
 /* Joints between two bodies, by a global frame or locally. */
 #include "io/read/pairs.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -94,6 +95,13 @@ static bool read_local(se3di_reader *reader, const se3di_node *node, const joint
            se3di_read_key_body_direction(reader, node, "ref_j", bodies[1], false, def->ref_j);
 }
 
+/* Two points at the given pose say how far they are apart. */
+static bool takes_distance(const se3di_node *node, const joint_type *type)
+{
+    return strcmp(type->name, "distance") == 0 && !has(node, "distance") && has(node, "at") &&
+           has(node, "at_2");
+}
+
 static bool check_global(se3di_reader *reader, const se3di_node *node, const joint_type *type)
 {
     if ((type->needs & POINT) && !has(node, "at")) {
@@ -151,6 +159,11 @@ static bool read_global(se3di_reader *reader, const se3di_node *node, const join
     if (status < 0) {
         return se3di_reader_fail_system(reader, node, status);
     }
+    if (takes_distance(node, type)) {
+        def->distance =
+            sqrt((at_2[0] - at[0]) * (at_2[0] - at[0]) + (at_2[1] - at[1]) * (at_2[1] - at[1]) +
+                 (at_2[2] - at[2]) * (at_2[2] - at[2]));
+    }
     return (!has(node, "at_2") || se3di_ground_to_body(reader, def->body_j, at_2, def->point_j)) &&
            (!has(node, "axis_2") || to_body_axis(reader, def->body_j, axis_2, def->axis_j));
 }
@@ -158,7 +171,7 @@ static bool read_global(se3di_reader *reader, const se3di_node *node, const join
 static bool read_sizes(se3di_reader *reader, const se3di_node *node, const joint_type *type,
                        se3d_joint_def *def)
 {
-    if ((type->needs & DISTANCE) && !has(node, "distance")) {
+    if ((type->needs & DISTANCE) && !has(node, "distance") && !takes_distance(node, type)) {
         return se3di_reader_fail_key(reader, node, "distance", "is missing, `%s` needs it [m]",
                                      type->name);
     }
