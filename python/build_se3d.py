@@ -26,6 +26,8 @@ CALLBACKS = """
 extern "Python" se3d_status se3d_python_function(void *, const double *, double *, double *);
 extern "Python" se3d_status se3d_python_force(void *, double, const se3d_body_motion *, double *,
                                               double *, double *);
+extern "Python" se3d_status se3d_python_energy(void *, double, const se3d_body_motion *, double *,
+                                               double *);
 extern "Python" se3d_status se3d_python_constraint(void *, double, const se3d_body_motion *,
                                                    double *, double *, double *, double *);
 extern "Python" se3d_status se3d_python_event_value(void *, const se3d_system *, double *);

@@ -31,6 +31,11 @@ extern "C" {
 #define SE3D_VERSION_MINOR 1
 #define SE3D_VERSION_PATCH 0
 
+/* The same as one number that grows with the version: 1000000 major + 1000 minor + patch.
+ * @since 0.1 */
+#define SE3D_VERSION_NUMBER                                                                        \
+    (1000000 * SE3D_VERSION_MAJOR + 1000 * SE3D_VERSION_MINOR + SE3D_VERSION_PATCH)
+
 /* The statuses with their texts: 0 is success, < 0 failure, > 0 success with information.
  * @since 0.1 */
 #define SE3D_STATUS_LIST(X)                                                                        \
@@ -82,6 +87,11 @@ SE3D_API size_t se3d_text_get_character(const char *text);
 /* Get the version of the library that is linked, e.g. "0.1.0". @return the text, static.
  * @since 0.1 */
 SE3D_API const char *se3d_version_get_text(void);
+
+/* Get the version of the library that is linked, to compare it with SE3D_VERSION_NUMBER, that of
+ * the headers, which may be older. @return the number.
+ * @since 0.1 */
+SE3D_API int32_t se3d_version_number(void);
 
 /* Asked during a long call whether it is to end now: before every step that is tried and in every
  * iteration of a solution, in the thread of the call. It must not touch the objects that the call

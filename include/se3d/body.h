@@ -43,6 +43,22 @@ static inline se3d_body_def se3d_body_def_default(void)
 SE3D_API se3d_status se3d_body_create(se3d_system *system, const se3d_body_def *def,
                                       se3d_body *body);
 
+/* Get the definition of a body, with the state of now. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_body_get_def(const se3d_system *system, se3d_body body,
+                                       se3d_body_def *def);
+
+/* Define a body again: it takes mass, inertia and state of the definition, and keeps its handle,
+ * its name and what is attached to it. Joints and others that were made of its pose do not follow.
+ * All that defines an element again is an edit as its creation is, fails as that does and changes
+ * nothing then; def->name is not looked at.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of the ground).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_body_set_def(se3d_system *system, se3d_body body,
+                                       const se3d_body_def *def);
+
 /* Destroy a body. @return OK, NULL, STALE_HANDLE, IN_USE (an element is attached),
  * INVALID_ARGUMENT (the ground). @since 0.1 */
 SE3D_API se3d_status se3d_body_destroy(se3d_system *system, se3d_body body);
@@ -180,6 +196,55 @@ typedef struct se3d_body_motion {
     double w[3]; /* body frame [rad/s] */
 } se3d_body_motion;
 
+/* Get the motion of a body as callbacks see it. @return OK, NULL, STALE_HANDLE. @since 0.1 */
+SE3D_API se3d_status se3d_body_get_motion(const se3d_system *system, se3d_body body,
+                                          se3d_body_motion *motion);
+
+/* Get the rotation matrix of a motion.
+ * @param[out] A  row-major [1], body -> ground: its columns are the axes of the body
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_motion_get_rotation(const se3d_body_motion *motion, double A[9]);
+
+/* Get the motion of a point of a body. NULL arrays are skipped.
+ * @param[in] local         the point, body frame [m]
+ * @param[out] position     ground frame [m]
+ * @param[out] velocity     ground frame [m/s]
+ * @param[out] centripetal  its acceleration if those of the body are zero, ground frame [m/s^2]
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_motion_get_point(const se3d_body_motion *motion, const double local[3],
+                                           double position[3], double velocity[3],
+                                           double centripetal[3]);
+
+/* Get the derivatives of the position of a point of a body, as the Jacobians of callbacks have
+ * them.
+ * @param[in] local      the point, body frame [m]
+ * @param[out] jacobian  [3 * 6], row-major: d position / d (dr, dtheta), ground frame [1, m]
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_motion_get_jacobian(const se3d_body_motion *motion, const double local[3],
+                                              double jacobian[18]);
+
+/* Add a force at a point of a body to the wrench that a force callback gives for it: the force at
+ * the centre of mass (ground frame), its torque about that (body frame).
+ * @param[in] local   where it acts, body frame [m]
+ * @param[in] force   ground frame [N]
+ * @param[in] wrench  six of the numbers of the callback, for one body: ground and body frame
+ *                    [N, N m]
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_motion_add_force(const se3d_body_motion *motion, const double local[3],
+                                           const double force[3], double wrench[6]);
+
+/* Add a torque on a body to the wrench that a force callback gives for it.
+ * @param[in] torque  ground frame [N m]
+ * @param[in] wrench  as in se3d_motion_add_force: ground and body frame [N, N m]
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_motion_add_torque(const se3d_body_motion *motion, const double torque[3],
+                                            double wrench[6]);
+
 /* Get the states of all bodies in creation order, the ground first. Arrays that are NULL are
  * skipped.
  * @param[in] count  must be se3d_system_count_bodies
@@ -231,13 +296,26 @@ SE3D_API se3d_status se3d_marker_create(se3d_system *system, const se3d_marker_d
 
 /* Get the definition of a marker. Set def->struct_size before the call.
  * @param[out] def  its name is valid until the system is edited; NULL: none
- * @return OK, NULL, STALE_HANDLE.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
  * @since 0.1 */
 SE3D_API se3d_status se3d_marker_get_def(const se3d_system *system, se3d_marker marker,
                                          se3d_marker_def *def);
 
+/* Define a marker again, on its body: see se3d_body_set_def.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of another body).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_marker_set_def(se3d_system *system, se3d_marker marker,
+                                         const se3d_marker_def *def);
+
 /* Destroy a marker. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_marker_destroy(se3d_system *system, se3d_marker marker);
+
+/* Find a marker by its name.
+ * @param[in] name  UTF-8, among the markers of the body
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_marker_find(const se3d_system *system, se3d_body body, const char *name,
+                                      se3d_marker *marker);
 
 /* Get the name of a marker.
  * @param[out] name  "" if it has none; valid until the system is edited

@@ -72,6 +72,12 @@ SE3D_API se3d_status se3d_primitive_create(se3d_system *system, const se3d_primi
 SE3D_API se3d_status se3d_primitive_get_def(const se3d_system *system, se3d_constraint primitive,
                                             se3d_primitive_def *def);
 
+/* Define a primitive again, of the same type: see se3d_body_set_def.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of another constraint or type).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_primitive_set_def(se3d_system *system, se3d_constraint primitive,
+                                            const se3d_primitive_def *def);
+
 /* ---- User-defined constraints. ---- */
 
 /* The most bodies and equations of a user-defined constraint. @since 0.1 */
@@ -132,6 +138,20 @@ static inline se3d_user_constraint_def se3d_user_constraint_def_default(void)
 SE3D_API se3d_status se3d_user_constraint_create(se3d_system *system,
                                                  const se3d_user_constraint_def *def,
                                                  se3d_constraint *constraint);
+
+/* Get the definition of a user-defined constraint. Set def->struct_size before the call.
+ * @param[out] def  its name is valid until the system is edited; NULL: none
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (another constraint, struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_user_constraint_get_def(const se3d_system *system,
+                                                  se3d_constraint constraint,
+                                                  se3d_user_constraint_def *def);
+
+/* Define a user-defined constraint again, with as many equations: see se3d_body_set_def.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of another constraint).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_user_constraint_set_def(se3d_system *system, se3d_constraint constraint,
+                                                  const se3d_user_constraint_def *def);
 
 /* Set the prescribed value of a driver, primitive or coupler that was made without a function. The
  * next step begins with a state that meets the new value, with the same velocities: a jump.

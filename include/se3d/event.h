@@ -101,6 +101,22 @@ SE3D_API se3d_status se3d_event_destroy(se3d_solver *solver, se3d_event event);
  * @since 0.1 */
 SE3D_API se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const char **name);
 
+/* Get the definition of an event. Set def->struct_size before the call.
+ * @param[out] def  its name (NULL: none) is owned by the event
+ * @return OK, NULL, STATE (the system is gone), STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_event_get_def(se3d_solver *solver, se3d_event event, se3d_event_def *def);
+
+/* Count the events that a solver looks for. @return the number; 0 for NULL. @since 0.1 */
+SE3D_API size_t se3d_solver_count_events(const se3d_solver *solver);
+
+/* Get an event of a solver, in the order of creation.
+ * @param[in] index  from 0, below se3d_solver_count_events
+ * @return OK, NULL, STATE (the system is gone), INVALID_ARGUMENT (index).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_event(const se3d_solver *solver, size_t index,
+                                           se3d_event *event);
+
 /* Count the events that happened, in the order in which they did. @return the number; 0 for
  * NULL. @since 0.1 */
 SE3D_API size_t se3d_solver_count_event_records(const se3d_solver *solver);

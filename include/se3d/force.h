@@ -268,6 +268,16 @@ SE3D_API se3d_status se3d_force_create_effort(se3d_system *system, const se3d_ef
 typedef se3d_status (*se3d_force_callback)(void *ctx, double t, const se3d_body_motion motion[2],
                                            double wrench[12], double *K, double *D);
 
+/* Compute the energy that a user-defined element stores, and the power that it dissipates, at the
+ * time t [s] and the motion of its bodies i and j. Both come zeroed. Energies of systems, elements
+ * and results count them; what the wrench does beside them counts as work of an actuator. The
+ * potential must depend on time and poses alone. A pure function, as se3d_force_callback is.
+ * @return OK, or a negative status: the call ends with CALLBACK.
+ * @since 0.1 */
+typedef se3d_status (*se3d_force_energy_callback)(void *ctx, double t,
+                                                  const se3d_body_motion motion[2],
+                                                  double *potential, double *dissipated);
+
 /* The definition of an element with a callback. @since 0.1 */
 typedef struct se3d_force_callback_def {
     size_t struct_size;
@@ -278,6 +288,7 @@ typedef struct se3d_force_callback_def {
     void *ctx;                    /* of `callback` */
     int32_t has_jacobian;         /* not 0: the callback fills K and D; else differences are used */
     int32_t reserved;
+    se3d_force_energy_callback energy; /* NULL: all that it does is work of an actuator */
 } se3d_force_callback_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see
@@ -421,6 +432,55 @@ SE3D_API se3d_status se3d_force_get_armature(const se3d_system *system, se3d_for
 SE3D_API se3d_status se3d_force_get_callback(const se3d_system *system, se3d_force force,
                                              se3d_force_callback_def *def);
 
+/* ---- Elements that are defined again, with other points, functions, bodies, by what the readers
+ * above give: see se3d_body_set_def. What an element remembers (sticking, an impact) begins anew.
+ * ---- */
+
+/* Define a tsda again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element of
+ * another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_tsda(se3d_system *system, se3d_force force,
+                                         const se3d_tsda_def *def);
+
+/* Define an rsda, on a joint or about an axis of its own as it was, again. @return OK, NULL,
+ * STALE_HANDLE, INVALID_ARGUMENT (also of an element of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_rsda(se3d_system *system, se3d_force force,
+                                         const se3d_rsda_def *def);
+
+/* Define a force or torque again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an
+ * element of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_load(se3d_system *system, se3d_force force,
+                                         const se3d_load_def *def);
+
+/* Define a bushing again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element
+ * of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_bushing_def(se3d_system *system, se3d_force force,
+                                                const se3d_bushing_def *def);
+
+/* Define a friction element again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an
+ * element of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_friction(se3d_system *system, se3d_force force,
+                                             const se3d_friction_def *def);
+
+/* Define a stop again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element of
+ * another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_stop(se3d_system *system, se3d_force force,
+                                         const se3d_stop_def *def);
+
+/* Define an effort again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element
+ * of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_effort(se3d_system *system, se3d_force force,
+                                           const se3d_effort_def *def);
+
+/* Define an armature again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element
+ * of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_armature(se3d_system *system, se3d_force force,
+                                             const se3d_armature_def *def);
+
+/* Define an element with a callback again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT
+ * (also of an element of another type). @since 0.1 */
+SE3D_API se3d_status se3d_force_set_callback(se3d_system *system, se3d_force force,
+                                             const se3d_force_callback_def *def);
+
 /* A number that a force element has, with the unit and the range of its definition. @since 0.1 */
 typedef enum se3d_force_parameter {
     SE3D_FORCE_PARAMETER_K = 0,           /* tsda, rsda, stop, tyre */
@@ -440,7 +500,10 @@ typedef enum se3d_force_parameter {
     /* stop: the speed of the impact that it is in, or of one that would begin now, >= 0 [m/s,
      * rad/s]; 0: not known. A part of the state: to go on from one that was kept elsewhere, set it
      * after positions and velocities. */
-    SE3D_FORCE_PARAMETER_IMPACT = 14
+    SE3D_FORCE_PARAMETER_IMPACT = 14,
+    SE3D_FORCE_PARAMETER_LENGTH = 15,       /* friction */
+    SE3D_FORCE_PARAMETER_WIDTH = 16,        /* friction */
+    SE3D_FORCE_PARAMETER_THRUST_RADIUS = 17 /* friction */
 } se3d_force_parameter;
 
 /* Set a number of a tsda, rsda, stop, friction, tyre or armature element. What the change makes of

@@ -152,6 +152,16 @@ SE3D_API se3d_status se3d_function_get_def(const se3d_system *system, se3d_funct
 SE3D_API se3d_status se3d_function_get_signal(const se3d_system *system, se3d_function function,
                                               size_t k, se3d_signal *signal);
 
+/* Count the functions of a system. @return the number; 0 for NULL. @since 0.1 */
+SE3D_API size_t se3d_system_count_functions(const se3d_system *system);
+
+/* Get a function of a system, in the order of creation.
+ * @param[in] index  from 0, below se3d_system_count_functions
+ * @return OK, NULL, INVALID_ARGUMENT (index).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_system_get_function(const se3d_system *system, size_t index,
+                                              se3d_function *function);
+
 /* Destroy a function. @return OK, NULL, STALE_HANDLE, IN_USE. @since 0.1 */
 SE3D_API se3d_status se3d_function_destroy(se3d_system *system, se3d_function function);
 

@@ -158,6 +158,14 @@ SE3D_API se3d_status se3d_joint_create_perpendicular2(se3d_system *system,
 SE3D_API se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
                                         se3d_joint_def *def);
 
+/* Define a joint again, of the same type: see se3d_body_set_def. Force elements on it follow;
+ * drivers and couplers of it are made of what it was, and go first.
+ * @return OK, NULL, STALE_HANDLE, IN_USE (by a driver or coupler), INVALID_ARGUMENT (also of no
+ *         joint between two bodies).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_joint_set_def(se3d_system *system, se3d_constraint joint,
+                                        const se3d_joint_def *def);
+
 /* Set the limits at which a joint breaks: where the force or the moment of its reaction
  * (se3d_constraint_get_reaction) passes its limit in a run of dynamics, its equations are left out
  * from there on, and so are those of drivers and couplers of its coordinates; force elements on
@@ -268,6 +276,12 @@ SE3D_API se3d_status se3d_joint_create_rack_pinion(se3d_system *system, const ch
 SE3D_API se3d_status se3d_coupler_get_def(const se3d_system *system, se3d_constraint coupler,
                                           se3d_coupler_def *def);
 
+/* Define a coupler, gear or rack and pinion again, with as many terms: see se3d_body_set_def.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of another constraint or structure).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_coupler_set_def(se3d_system *system, se3d_constraint coupler,
+                                          const se3d_coupler_def *def);
+
 /* The definition of a driver: coordinate of `joint` = f(t), or f(t, s_1, s_2, ...), where the s_k
  * are signals of positions (se3d/function.h): coordinates of other joints, lengths and angles of
  * force elements, positions of points, Euler parameters. Such a driver ties the coordinate to the
@@ -315,6 +329,13 @@ SE3D_API se3d_status se3d_driver_create(se3d_system *system, const se3d_driver_d
  * @since 0.1 */
 SE3D_API se3d_status se3d_driver_get_def(const se3d_system *system, se3d_constraint driver,
                                          se3d_driver_def *def);
+
+/* Define a driver again, with another function, value or joint: see se3d_body_set_def. One whose
+ * function has signals stays one with signals.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of another constraint or structure).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_driver_set_def(se3d_system *system, se3d_constraint driver,
+                                         const se3d_driver_def *def);
 
 /* Get the prescribed value f of a driver, or of any constraint of one equation, at the present
  * time and positions; of a driver with `is_rate` the coordinate.

@@ -60,6 +60,19 @@ SE3D_API se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *
 /* Destroy a road that no tyre is on. @return OK, NULL, STALE_HANDLE, IN_USE. @since 0.1 */
 SE3D_API se3d_status se3d_road_destroy(se3d_system *system, se3d_road road);
 
+/* Find a road by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_road_find(const se3d_system *system, const char *name, se3d_road *road);
+
+/* Get the definition of a road. Set def->struct_size before the call.
+ * @param[out] def  its name (NULL: none) and arrays are valid until the system is edited
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_road_get_def(const se3d_system *system, se3d_road road,
+                                       se3d_road_def *def);
+
 /* Get the name of a road.
  * @param[out] name  "" if it has none; valid as long as the road lives
  * @return OK, NULL, STALE_HANDLE.

@@ -166,6 +166,21 @@ SE3D_API se3d_status se3d_shape_get_def(const se3d_system *system, se3d_shape sh
 SE3D_API se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape shape,
                                          se3d_body *body);
 
+/* Give a shape another material, or none.
+ * @param[in] material  null: nothing touches it
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_shape_set_material(se3d_system *system, se3d_shape shape,
+                                             se3d_material material);
+
+/* Set what a shape may touch: see se3d_shape_def.
+ * @param[in] group  the bits that it is in
+ * @param[in] mask   the bits that it touches
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_shape_set_filter(se3d_system *system, se3d_shape shape, uint32_t group,
+                                           uint32_t mask);
+
 /* Let the surface of a shape move on its body, as a belt or a turntable does, from now on: a place
  * x of the surface of a shape whose origin is at o has, relative to its body,
  *

@@ -69,6 +69,11 @@ SE3D_API se3d_status se3d_state_set_output(se3d_system *system, se3d_state state
 SE3D_API se3d_status se3d_state_set_input(se3d_system *system, se3d_state state,
                                           se3d_function input);
 
+/* Give a state another size, by which its errors are measured: see se3d_state_def.
+ * @param[in] size  > 0 [unit of z]
+ * @return OK, NULL, INVALID_ARGUMENT, STALE_HANDLE. @since 0.1 */
+SE3D_API se3d_status se3d_state_set_size(se3d_system *system, se3d_state state, double size);
+
 /* Destroy a state. A function with its value among the signals goes first.
  * @return OK, NULL, STALE_HANDLE, IN_USE. @since 0.1 */
 SE3D_API se3d_status se3d_state_destroy(se3d_system *system, se3d_state state);

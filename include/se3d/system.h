@@ -215,7 +215,7 @@ SE3D_API se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_
                                                 size_t size);
 
 /* Get the works done in a system since the start of the run. @return OK, NULL, STATE (the last
- * analysis was kinematics). @since 0.1 */
+ * analysis was kinematics), CALLBACK, NOT_FINITE (of the energy of a callback). @since 0.1 */
 static inline se3d_status se3d_system_get_work(const se3d_system *system, se3d_work *work)
 {
     return se3d_system_get_work_sized(system, work, sizeof *work);

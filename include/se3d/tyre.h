@@ -304,6 +304,12 @@ SE3D_API se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre
 SE3D_API se3d_status se3d_force_get_tyre(const se3d_system *system, se3d_force force,
                                          se3d_tyre_def *def);
 
+/* Define a tyre again, with slips that lag if they did: see se3d_body_set_def.
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element of another type).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_force_set_tyre(se3d_system *system, se3d_force force,
+                                         const se3d_tyre_def *def);
+
 /* What a tyre tells: X(NAME, number, name). Forces [N] and moments [N m] in the axes at the contact
  * point, on the wheel; MY is about the spin axis and what comes on top of the forces at the contact
  * point. SLIP_RATIO is positive in driving, SLIP_ANGLE [rad] as the wheel slips to the left,

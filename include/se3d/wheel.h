@@ -74,6 +74,18 @@ SE3D_API se3d_status se3d_wheel_get_name(const se3d_system *system, se3d_wheel w
 SE3D_API se3d_status se3d_wheel_get_def(const se3d_system *system, se3d_wheel wheel,
                                         se3d_wheel_def *def);
 
+/* Define a wheel again: see se3d_body_set_def. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_wheel_set_def(se3d_system *system, se3d_wheel wheel,
+                                        const se3d_wheel_def *def);
+
+/* Find a wheel by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_wheel_find(const se3d_system *system, const char *name,
+                                     se3d_wheel *wheel);
+
 /* Count the wheels of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_wheels(const se3d_system *system);
 

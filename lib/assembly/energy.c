@@ -132,14 +132,27 @@ se3d_status se3di_work_accept(se3di_model *model, double h)
 void se3di_work_take(se3di_model *model, double h, const double power[3])
 {
     if (model->work_valid <= 0) {
+        double stored;
         memset(model->work, 0, sizeof model->work);
         model->work[0] = se3di_contacts_potential(model, model->time);
+        (void)se3di_callbacks_energy(model, model->time, &stored); /* whose powers were found */
+        model->work[1] = 0.0 - stored;
     }
     for (int k = 0; k < 3; ++k) {
         model->work[k] += model->work_valid > 0 ? 0.5 * h * (model->power[k] + power[k]) : 0.0;
         model->power[k] = power[k];
     }
     model->work_valid = 1;
+}
+
+se3d_status se3di_work_fed(const se3di_model *model, double *fed)
+{
+    double stored = 0.0;
+    if (model->work_valid > 0) {
+        SE3DI_TRY(se3di_callbacks_energy(model, model->time, &stored));
+    }
+    *fed = model->work[1] + stored;
+    return SE3D_OK;
 }
 
 double se3di_work_lost(const se3di_model *model, double springs)

@@ -24,6 +24,9 @@ se3d_status se3di_loads_complete_power(const se3di_model *model, double t, doubl
 se3d_status se3di_work_accept(se3di_model *model, double h);
 /* The same with the present power. */
 void se3di_work_take(se3di_model *model, double h, const double power[3]);
+/* Work of actuators since the audit began [J], with what the energies of callbacks have become:
+ * model->work[1] began at their negative. @return OK, CALLBACK, NOT_FINITE */
+se3d_status se3di_work_fed(const se3di_model *model, double *fed);
 /* Energy lost since the audit began [J]; `springs` of contacts hold energy now. */
 double se3di_work_lost(const se3di_model *model, double springs);
 

@@ -16,6 +16,11 @@ const char *se3d_status_get_text(se3d_status status)
     return "unknown status";
 }
 
+int32_t se3d_version_number(void)
+{
+    return SE3D_VERSION_NUMBER;
+}
+
 const char *se3d_version_get_text(void)
 {
     return STRING(SE3D_VERSION_MAJOR) "." STRING(SE3D_VERSION_MINOR) "." STRING(SE3D_VERSION_PATCH);

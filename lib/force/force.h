@@ -81,6 +81,12 @@ typedef struct se3di_force_sums {
 
 se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums);
 
+/* What the energy of a callback changes by [W], and the energies of all callbacks [J]: power[1] of
+ * its effect lacks the rate, so that works lack the energy. @return OK, CALLBACK, NOT_FINITE */
+se3d_status se3di_callback_energy_rate(const se3di_model *model, const se3di_force *force, double t,
+                                       double *rate);
+se3d_status se3di_callbacks_energy(const se3di_model *model, double t, double *potential);
+
 /* Wrenches of gravity and all elements on all bodies, [bodies * 6]; *failed as above. */
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
 /* Whether an element is an effort that needs nothing but its number. */

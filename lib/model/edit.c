@@ -52,10 +52,12 @@ static se3di_handle add_named(se3di_slots *slots, uint32_t owner, const char *na
     return handle;
 }
 
-/* What is replaced by something of this name; SE3DI_NO_INDEX: nothing, it is new. */
-static uint32_t find_replaced(const se3di_model *model, const se3di_slots *slots, uint32_t owner,
-                              const char *name)
+uint32_t se3di_model_find_replaced(const se3di_model *model, const se3di_slots *slots,
+                                   uint32_t owner, const char *name)
 {
+    if (model->target > 0) {
+        return model->target - 1;
+    }
     return model->replaces && name ? se3di_slots_find_name(slots, owner, name) : SE3DI_NO_INDEX;
 }
 
@@ -239,7 +241,7 @@ se3d_status se3di_model_add_body(se3di_model *model, const se3di_body *body,
 {
     size_t count = model->body_slots.count;
     char *name;
-    const uint32_t old = find_replaced(model, &model->body_slots, 0, body->name);
+    const uint32_t old = se3di_model_find_replaced(model, &model->body_slots, 0, body->name);
     if (old != SE3DI_NO_INDEX) {
         replace_body(model, old, body, frame);
         *handle = se3di_slots_handle(&model->body_slots, old);
@@ -352,7 +354,11 @@ se3d_status se3di_model_add_marker(se3di_model *model, const se3di_marker *marke
     size_t count = model->marker_slots.count;
     char *name;
     const uint32_t owner = se3di_model_owner(model, marker->body);
-    const uint32_t old = find_replaced(model, &model->marker_slots, owner, marker->name);
+    const uint32_t old =
+        se3di_model_find_replaced(model, &model->marker_slots, owner, marker->name);
+    if (old != SE3DI_NO_INDEX && model->markers[old].body != marker->body) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
     if (old != SE3DI_NO_INDEX) {
         memcpy(model->markers[old].s, marker->s, sizeof marker->s);
         memcpy(model->markers[old].p, marker->p, sizeof marker->p);
@@ -497,7 +503,8 @@ se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *dr
     size_t count = model->constraint_slots.count;
     size_t rows = model->row_count + draft->row_count;
     char *name;
-    const uint32_t old = find_replaced(model, &model->constraint_slots, 0, draft->constraint.name);
+    const uint32_t old =
+        se3di_model_find_replaced(model, &model->constraint_slots, 0, draft->constraint.name);
     if (old != SE3DI_NO_INDEX) {
         *handle = se3di_slots_handle(&model->constraint_slots, old);
         return replace_constraint(model, old, draft);
@@ -656,7 +663,7 @@ se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
 {
     size_t count = model->force_slots.count;
     se3di_force own = *force;
-    const uint32_t old = find_replaced(model, &model->force_slots, 0, force->name);
+    const uint32_t old = se3di_model_find_replaced(model, &model->force_slots, 0, force->name);
     if (old != SE3DI_NO_INDEX) {
         *handle = se3di_slots_handle(&model->force_slots, old);
         return replace_force(model, old, force);
@@ -682,7 +689,7 @@ se3d_status se3di_model_add_force_with_angle(se3di_model *model, const se3di_for
                                              const se3di_angle *angle, se3di_handle *handle)
 {
     se3di_force owner = *force;
-    const uint32_t old = find_replaced(model, &model->force_slots, 0, force->name);
+    const uint32_t old = se3di_model_find_replaced(model, &model->force_slots, 0, force->name);
     const int is_new = old == SE3DI_NO_INDEX;
     RESERVE(model, angles, angle_capacity, model->angle_count + 1, sizeof *model->angles);
     owner.angle = is_new ? (int32_t)model->angle_count : model->forces[old].angle;
@@ -728,7 +735,7 @@ se3d_status se3di_model_add_state(se3di_model *model, const se3di_force *state, 
     se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}, .v = {z, 0.0, 0.0}};
     se3di_force data = *state;
     se3di_handle carrier;
-    if (find_replaced(model, &model->force_slots, 0, state->name) != SE3DI_NO_INDEX) {
+    if (se3di_model_find_replaced(model, &model->force_slots, 0, state->name) != SE3DI_NO_INDEX) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     se3di_frame_update(&frame);
@@ -868,7 +875,7 @@ se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
 {
     size_t count = model->wheel_slots.count;
     char *name;
-    const uint32_t old = find_replaced(model, &model->wheel_slots, 0, wheel->name);
+    const uint32_t old = se3di_model_find_replaced(model, &model->wheel_slots, 0, wheel->name);
     if (old != SE3DI_NO_INDEX) {
         replace_wheel(model, old, wheel);
         *handle = se3di_slots_handle(&model->wheel_slots, old);

@@ -138,6 +138,19 @@ void se3di_model_remove_shape(se3di_model *model, uint32_t shape)
     se3di_model_touch(model);
 }
 
+void se3di_model_set_shape_material(se3di_model *model, uint32_t shape, int32_t material)
+{
+    const int32_t before = model->shapes[shape].material;
+    if (before >= 0) {
+        --model->materials[before].users;
+    }
+    if (material >= 0) {
+        ++model->materials[material].users;
+    }
+    model->shapes[shape].material = material;
+    se3di_model_touch(model);
+}
+
 se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *material,
                                      se3di_handle *handle)
 {

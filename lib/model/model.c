@@ -294,6 +294,7 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
 {
     *copy = *model;
     copy->replaces = 0;
+    copy->target = 0;
     disown(copy);
     se3di_model slots = *copy; /* slot counts stay zero in `copy` until its arrays are filled */
     se3d_status status = clone_slots(model, &slots);

@@ -210,6 +210,7 @@ typedef struct se3di_force {
     double p_i[4], p_j[4];                                    /* bushing: frames -> bodies */
     double K[36], C[36];                                      /* bushing, in frame i */
     se3d_force_callback callback;
+    se3d_force_energy_callback energy; /* of a callback; NULL: none is stored */
     void *ctx;
     se3di_tyre *tyre;                 /* owned; NULL: no tyre */
     double state[SE3DI_FORCE_STATES]; /* friction, stop: see their files */
@@ -252,7 +253,8 @@ typedef struct se3di_model {
                                   se3di_forces_show */
     int32_t replaces;        /* 1: what is added takes the place of what has its name, see
                                   se3d_system_set_replacing; not copied by se3di_model_clone */
-    int32_t reserved;
+    uint32_t target;         /* not 0: what is added takes the place of this one - 1 of its kind,
+                                  whatever its name is; the same */
 
     se3di_slots body_slots; /* count = bodies, [0] the ground */
     se3di_body *bodies;
@@ -373,6 +375,11 @@ se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *m
 se3d_status se3di_model_add_wheel(se3di_model *model, const se3di_wheel *wheel,
                                   se3di_handle *handle);
 
+/* What an addition takes the place of: by model->target, or by its name; SE3DI_NO_INDEX: nothing,
+ * it is new. */
+uint32_t se3di_model_find_replaced(const se3di_model *model, const se3di_slots *slots,
+                                   uint32_t owner, const char *name);
+
 /* Name, heights and mesh are copied. */
 se3d_status se3di_model_add_road(se3di_model *model, const se3di_road *road, se3di_handle *handle);
 
@@ -390,6 +397,9 @@ void se3di_model_remove_shape(se3di_model *model, uint32_t shape);
 void se3di_model_remove_wheel(se3di_model *model, uint32_t wheel);
 void se3di_model_remove_road(se3di_model *model, uint32_t road);
 void se3di_model_remove_material(se3di_model *model, uint32_t material);
+
+/* -1: none. */
+void se3di_model_set_shape_material(se3di_model *model, uint32_t shape, int32_t material);
 
 /* What holds between two materials, and for all contacts. */
 void se3di_model_set_override(se3di_model *model, uint32_t a, uint32_t b,

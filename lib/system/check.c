@@ -184,6 +184,13 @@ static int may_be_replaced(const se3di_model *model, const se3di_slots *slots)
 
 se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char *what)
 {
+    if (added == SE3D_ERR_INVALID_ARGUMENT && system->model.target > 0) {
+        return SE3DI_FAIL(
+            system, added,
+            "%s of another kind, body or structure cannot take the place of this one; "
+            "destroy it and create another one",
+            what);
+    }
     return added == SE3D_ERR_INVALID_ARGUMENT
                ? SE3DI_FAIL_OF(system, "name", added,
                                " is taken by another kind of element, which %s cannot replace",
@@ -194,7 +201,7 @@ se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char 
 se3d_status se3di_check_new_name(se3d_system *system, const se3di_slots *slots, uint32_t owner,
                                  const char *what, const char *name)
 {
-    if (!name) {
+    if (!name || system->model.target > 0) { /* what is defined again keeps its name */
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_check_name(system, name));

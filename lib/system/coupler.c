@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 void se3d_coupler_def_init(se3d_coupler_def *def, size_t size)
 {
@@ -70,6 +71,19 @@ static se3d_status check_call(se3d_system *system, const char *function, se3d_co
     return se3di_check_pointer(system, "joint", joint);
 }
 
+/* What is defined again stays a gear, or a rack and pinion. */
+static const char *type_of(const se3d_system *system)
+{
+    static const char *const others[] = {"gear", "rack_pinion"};
+    const se3di_model *model = &system->model;
+    for (size_t k = 0; k < 2 && model->target > 0; ++k) {
+        if (strcmp(model->constraints[model->target - 1].type, others[k]) == 0) {
+            return others[k];
+        }
+    }
+    return "coupler";
+}
+
 se3d_status se3d_joint_create_coupler(se3d_system *system, const se3d_coupler_def *user,
                                       se3d_constraint *joint)
 {
@@ -78,7 +92,7 @@ se3d_status se3d_joint_create_coupler(se3d_system *system, const se3d_coupler_de
     se3di_draft draft;
     int32_t function;
     SE3DI_TRY(se3di_check_def(system, "def", user, &def, sizeof def));
-    SE3DI_TRY(draft_build(system, "coupler", &def, &draft));
+    SE3DI_TRY(draft_build(system, type_of(system), &def, &draft));
     SE3DI_TRY(se3di_find_function(system, "function", def.function, 1, &function));
     SE3DI_TRY(se3di_check_prescribed(system, def.value, function));
     draft.constraint.has_value = 1;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Public layer: definitions of markers, joints, couplers, drivers and primitives, as they can be
- * given again. What a definition left to be chosen (reference directions, a distance, the value of
+/* Public layer: definitions of bodies, markers, roads and constraints, as they can be given again. What a definition left to be chosen (reference directions, a distance, the value of
  * a gear) is what it became. */
 #include "system/definition.h"
 
@@ -199,5 +198,69 @@ se3d_status se3d_primitive_get_def(const se3d_system *system, se3d_constraint pr
     se3di_copy(term->c, full.c);
     full.value = row->value;
     full.function = se3di_function_handle(model, row->function);
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
+}
+
+se3d_status se3d_user_constraint_get_def(const se3d_system *system, se3d_constraint constraint,
+                                         se3d_user_constraint_def *def)
+{
+    const se3di_constraint *data;
+    SE3DI_TRY(find(system, constraint, def, &data));
+    if (!data->callback) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    se3d_user_constraint_def full = se3d_user_constraint_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.callback = data->callback;
+    full.ctx = data->ctx;
+    full.body_count = (int32_t)(data->body_count - data->user_first);
+    full.equation_count = (int32_t)data->row_count;
+    for (uint32_t k = 0; k < data->body_count - data->user_first; ++k) {
+        full.bodies[k] = se3di_body_handle(&system->model, data->bodies[data->user_first + k]);
+    }
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
+}
+
+se3d_status se3d_body_get_def(const se3d_system *system, se3d_body body, se3d_body_def *def)
+{
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, body), SE3DI_HANDLE(body), def, &index));
+    const se3di_body *data = &system->model.bodies[index];
+    const se3di_frame *frame = &system->model.frames[index];
+    se3d_body_def full = se3d_body_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.mass = data->mass;
+    memcpy(full.inertia, data->J, sizeof full.inertia);
+    se3di_copy(frame->r, full.position);
+    memcpy(full.orientation, frame->p, sizeof full.orientation);
+    se3di_copy(frame->v, full.velocity);
+    se3di_copy(frame->w, full.angular_velocity);
+    full.fixed = data->fixed;
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
+}
+
+se3d_status se3d_road_get_def(const se3d_system *system, se3d_road road, se3d_road_def *def)
+{
+    uint32_t index;
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, road), SE3DI_HANDLE(road), def, &index));
+    const se3di_road *data = &system->model.roads[index];
+    se3d_road_def full = se3d_road_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.body = se3di_body_handle(&system->model, data->body);
+    se3di_copy(data->point, full.point);
+    se3di_copy(data->axes + 6, full.normal);
+    se3di_copy(data->axes, full.forward);
+    full.height = se3di_function_handle(&system->model, data->function);
+    full.heights = data->heights;
+    full.row_count = data->rows;
+    full.column_count = data->columns;
+    memcpy(full.spacing, data->cell, sizeof full.spacing);
+    full.vertices = data->points;
+    full.vertex_count = data->point_count;
+    full.triangles = data->triangles;
+    full.triangle_count = data->triangle_count;
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

@@ -122,6 +122,42 @@ se3d_status se3d_event_get_name(se3d_solver *solver, se3d_event event, const cha
     return SE3D_OK;
 }
 
+se3d_status se3d_event_get_def(se3d_solver *solver, se3d_event event, se3d_event_def *def)
+{
+    uint32_t index;
+    SE3DI_OWNED(solver);
+    SE3DI_TRY(se3di_check_pointer(solver->system, "def", def));
+    SE3DI_TRY(find(solver, event, &index));
+    const se3di_event *data = &solver->run.events.list[index];
+    se3d_event_def full = se3d_event_def_default();
+    full.struct_size = def->struct_size;
+    full.name = data->name;
+    full.value = data->value;
+    full.ctx = data->ctx;
+    full.callback = data->callback;
+    full.callback_ctx = data->callback_ctx;
+    full.level = data->level;
+    full.direction = data->direction;
+    full.action = data->action;
+    full.motion_only = data->motion_only;
+    full.hysteresis = data->hysteresis;
+    return se3di_sized_give(def, def->struct_size, &full, sizeof full);
+}
+
+size_t se3d_solver_count_events(const se3d_solver *solver)
+{
+    return solver && solver->system ? solver->run.events.slots.count : 0;
+}
+
+se3d_status se3d_solver_get_event(const se3d_solver *solver, size_t index, se3d_event *event)
+{
+    if (event) {
+        *event = (se3d_event){0, 0};
+    }
+    SE3DI_OWNED(solver);
+    return se3di_read_handle(&solver->run.events.slots, index, event);
+}
+
 size_t se3d_solver_count_event_records(const se3d_solver *solver)
 {
     return solver && solver->system ? solver->run.events.record_count : 0;

@@ -305,8 +305,17 @@ se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, s
 se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force, double *potential,
                                  double *dissipated, double *actuator)
 {
+    const se3di_force *data;
     se3di_effect effect;
+    double rate = 0.0; /* of the energy of a callback */
+    se3di_reading reading;
     SE3DI_TRY(eval_reader(system, force, system, &effect));
+    SE3DI_TRY(se3di_force_find_reader(system, force, system, &data));
+    if (actuator && data->energy) {
+        SE3DI_TRY(se3di_read_begin(system, &reading));
+        SE3DI_TRY(se3di_read_end(
+            &reading, se3di_callback_energy_rate(&system->model, data, system->model.time, &rate)));
+    }
     if (potential) {
         *potential = effect.potential;
     }
@@ -314,7 +323,7 @@ se3d_status se3d_force_get_power(const se3d_system *system, se3d_force force, do
         *dissipated = effect.power[0];
     }
     if (actuator) {
-        *actuator = effect.power[1];
+        *actuator = effect.power[1] + rate;
     }
     return SE3D_OK;
 }

@@ -204,5 +204,6 @@ se3d_status se3d_force_get_callback(const se3d_system *system, se3d_force force,
     full.callback = data->callback;
     full.ctx = data->ctx;
     full.has_jacobian = data->has_jacobian;
+    full.energy = data->energy;
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

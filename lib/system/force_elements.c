@@ -176,5 +176,6 @@ se3d_status se3d_force_create_callback(se3d_system *system, const se3d_force_cal
     data.callback = full.callback;
     data.ctx = full.ctx;
     data.has_jacobian = full.has_jacobian != 0;
+    data.energy = full.energy;
     return se3di_force_add(system, &data, force);
 }

@@ -44,6 +44,10 @@ static const parameter parameters[] = {
                                          offsetof(se3di_force, presliding)},
     [SE3D_FORCE_PARAMETER_INERTIA] = {"inertia", ARMATURE, 0, offsetof(se3di_force, value)},
     [SE3D_FORCE_PARAMETER_IMPACT] = {"impact", STOP, 0, offsetof(se3di_force, state)},
+    [SE3D_FORCE_PARAMETER_LENGTH] = {"length", FRICTION, 0, offsetof(se3di_force, length)},
+    [SE3D_FORCE_PARAMETER_WIDTH] = {"width", FRICTION, 0, offsetof(se3di_force, width)},
+    [SE3D_FORCE_PARAMETER_THRUST_RADIUS] = {"thrust_radius", FRICTION, 0,
+                                            offsetof(se3di_force, thrust_radius)},
 };
 
 #define PARAMETERS ((int32_t)(sizeof parameters / sizeof parameters[0]))

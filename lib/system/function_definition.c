@@ -76,3 +76,14 @@ se3d_status se3d_function_get_signal(const se3d_system *system, se3d_function fu
     memcpy(signal->point, from->point, sizeof signal->point);
     return SE3D_OK;
 }
+
+size_t se3d_system_count_functions(const se3d_system *system)
+{
+    return system ? system->model.function_slots.count : 0;
+}
+
+se3d_status se3d_system_get_function(const se3d_system *system, size_t index,
+                                     se3d_function *function)
+{
+    return se3di_read_handle(SE3DI_SLOTS(system, function), index, function);
+}

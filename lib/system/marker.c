@@ -49,6 +49,23 @@ static se3d_status find_reader(const se3d_system *system, se3d_marker marker, co
     return SE3D_OK;
 }
 
+se3d_status se3d_marker_find(const se3d_system *system, se3d_body body, const char *name,
+                             se3d_marker *marker)
+{
+    uint32_t index;
+    if (marker) {
+        *marker = (se3d_marker){0, 0};
+    }
+    if (!name) {
+        return SE3D_ERR_NULL;
+    }
+    SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, body), SE3DI_HANDLE(body), marker, &index));
+    const se3di_slots *slots = &system->model.marker_slots;
+    const uint32_t found =
+        se3di_slots_find_name(slots, se3di_model_owner(&system->model, index), name);
+    return se3di_read_handle(slots, found, marker);
+}
+
 se3d_status se3d_marker_get_name(const se3d_system *system, se3d_marker marker, const char **name)
 {
     const se3di_marker *data = NULL;

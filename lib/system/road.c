@@ -165,6 +165,11 @@ se3d_status se3d_road_get_name(const se3d_system *system, se3d_road road, const 
     return se3di_give_name(status, status < 0 ? NULL : system->model.roads[index].name, name);
 }
 
+se3d_status se3d_road_find(const se3d_system *system, const char *name, se3d_road *road)
+{
+    return se3di_read_named(SE3DI_SLOTS(system, road), name, road);
+}
+
 se3d_status se3d_road_get_height(const se3d_system *system, se3d_road road, double x, double y,
                                  double height[4])
 {

@@ -116,6 +116,29 @@ se3d_status se3d_shape_set_surface_motion(se3d_system *system, se3d_shape shape,
     return SE3D_OK;
 }
 
+se3d_status se3d_shape_set_material(se3d_system *system, se3d_shape shape, se3d_material material)
+{
+    SE3DI_EDIT(system);
+    uint32_t index, other = 0;
+    const int is_null = material.index1 == 0 && material.generation == 0;
+    SE3DI_TRY(find_shape(system, shape, &index));
+    SE3DI_TRY(is_null ? SE3D_OK : se3di_find_material(system, "material", material, &other));
+    se3di_model_set_shape_material(&system->model, index, is_null ? -1 : (int32_t)other);
+    return SE3D_OK;
+}
+
+se3d_status se3d_shape_set_filter(se3d_system *system, se3d_shape shape, uint32_t group,
+                                  uint32_t mask)
+{
+    SE3DI_EDIT(system);
+    uint32_t index;
+    SE3DI_TRY(find_shape(system, shape, &index));
+    system->model.shapes[index].group = group;
+    system->model.shapes[index].mask = mask;
+    se3di_model_touch(&system->model);
+    return SE3D_OK;
+}
+
 static se3d_status find_reader(const se3d_system *system, se3d_shape shape, const void *out,
                                const se3di_shape **data)
 {

@@ -31,6 +31,15 @@ se3d_status se3di_find_state(se3d_system *system, const char *what, se3d_state h
     return SE3D_OK;
 }
 
+static se3d_status check_size(se3d_system *system, double size)
+{
+    if (!(isfinite(size) && size > 0.0)) {
+        return SE3DI_FAIL_OF(system, "size", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, must be finite and > 0", size);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_state_create(se3d_system *system, const se3d_state_def *def, se3d_state *state)
 {
     SE3DI_CREATE(system, state);
@@ -44,10 +53,7 @@ se3d_status se3d_state_create(se3d_system *system, const se3d_state_def *def, se
     SE3DI_TRY(
         se3di_find_law(system, "input", full.input, 1, &data.function[SE3DI_FORCE_OUTPUT + 1]));
     SE3DI_TRY(se3di_check_finite(system, "initial", full.initial));
-    if (!(isfinite(full.size) && full.size > 0.0)) {
-        return SE3DI_FAIL_OF(system, "size", SE3D_ERR_INVALID_ARGUMENT,
-                             " = %g, must be finite and > 0", full.size);
-    }
+    SE3DI_TRY(check_size(system, full.size));
     data.rest = full.size;
     se3di_handle handle = {0, 0};
     const se3d_status added = se3di_model_add_state(&system->model, &data, full.initial, &handle);
@@ -124,6 +130,17 @@ se3d_status se3d_state_set_output(se3d_system *system, se3d_state state, se3d_fu
 se3d_status se3d_state_set_input(se3d_system *system, se3d_state state, se3d_function input)
 {
     return set_function(system, state, "input", SE3DI_FORCE_OUTPUT + 1, input);
+}
+
+se3d_status se3d_state_set_size(se3d_system *system, se3d_state state, double size)
+{
+    SE3DI_EDIT(system);
+    uint32_t index;
+    SE3DI_TRY(se3di_find_state(system, "state", state, &index));
+    SE3DI_TRY(check_size(system, size));
+    system->model.forces[index].rest = size;
+    se3di_model_touch(&system->model);
+    return SE3D_OK;
 }
 
 se3d_status se3d_state_destroy(se3d_system *system, se3d_state state)

@@ -353,15 +353,15 @@ se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *wor
     if (system->model.work_valid < 0) {
         return SE3D_ERR_STATE;
     }
-    const double *done = system->model.work;
+    double fed = 0.0;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
     const double springs = system->model.work_valid > 0
                                ? se3di_contacts_potential(&system->model, system->model.time)
                                : 0.0;
     const double lost = se3di_work_lost(&system->model, springs);
-    const se3d_work full = {.dissipated = lost, .actuators = done[1], .drivers = done[2]};
-    se3di_busy_unread(&reading);
+    SE3DI_TRY(se3di_read_end(&reading, se3di_work_fed(&system->model, &fed)));
+    const se3d_work full = {.dissipated = lost, .actuators = fed, .drivers = system->model.work[2]};
     return se3di_sized_give(work, size, &full, sizeof full);
 }
 

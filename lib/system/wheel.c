@@ -28,6 +28,8 @@ static se3d_status take_relations(se3d_system *system, const se3d_wheel_def *def
                                   se3di_wheel *wheel)
 {
     uint32_t index;
+    const uint32_t replaced =
+        se3di_model_find_replaced(&system->model, &system->model.wheel_slots, 0, def->name);
     wheel->travel = wheel->steering = wheel->spring = wheel->opposite = -1;
     if (!is_null(def->travel.index1, def->travel.generation)) {
         SE3DI_TRY(se3di_find_constraint(system, "travel", def->travel, &index));
@@ -46,7 +48,8 @@ static se3d_status take_relations(se3d_system *system, const se3d_wheel_def *def
     }
     if (!is_null(def->opposite.index1, def->opposite.generation)) {
         SE3DI_TRY(se3di_find_wheel(system, "opposite", def->opposite, &index));
-        if (system->model.wheels[index].opposite >= 0) {
+        const int32_t across = system->model.wheels[index].opposite;
+        if (across >= 0 && (uint32_t)across != replaced) {
             return SE3DI_FAIL_OF(system, "opposite", SE3D_ERR_INVALID_ARGUMENT,
                                  " has an opposite wheel already, must be another one");
         }
@@ -161,6 +164,11 @@ se3d_status se3d_wheel_get_name(const se3d_system *system, se3d_wheel wheel, con
     const se3d_status status =
         se3di_read_index(SE3DI_SLOTS(system, wheel), SE3DI_HANDLE(wheel), name, &index);
     return se3di_give_name(status, status < 0 ? NULL : system->model.wheels[index].name, name);
+}
+
+se3d_status se3d_wheel_find(const se3d_system *system, const char *name, se3d_wheel *wheel)
+{
+    return se3di_read_named(SE3DI_SLOTS(system, wheel), name, wheel);
 }
 
 se3d_status se3d_wheel_get_measures(const se3d_system *system, se3d_wheel wheel, size_t first,

@@ -194,7 +194,7 @@ def se3d_python_function(ctx, x, jet, gradient):
 @ffi.def_extern(error=lib.SE3D_ERR_CALLBACK)
 @_guard
 def se3d_python_force(ctx, time, motion, wrench, K, D):
-    call, has_jacobian = ffi.from_handle(ctx)
+    call, has_jacobian, _energy = ffi.from_handle(ctx)
     i, j = _motions(motion, 2)
     if has_jacobian:
         matrices = [None if m == ffi.NULL else _array(m, 144).reshape(12, 12) for m in (K, D)]
@@ -202,6 +202,14 @@ def se3d_python_force(ctx, time, motion, wrench, K, D):
     else:
         values = call(time, i, j)
     _array(wrench, 12)[:] = numpy.asarray(values, dtype=float).reshape(12)
+    return lib.SE3D_OK
+
+
+@ffi.def_extern(error=lib.SE3D_ERR_CALLBACK)
+@_guard
+def se3d_python_energy(ctx, time, motion, potential, dissipated):
+    values = ffi.from_handle(ctx)[2](time, *_motions(motion, 2))
+    potential[0], dissipated[0] = values if numpy.ndim(values) else (values, 0.0)
     return lib.SE3D_OK
 
 

@@ -234,14 +234,18 @@ class System:
         values.update(joint=joint, coordinate=coordinate)
         return self._force(lib.se3d_force_create_armature, "se3d_armature_def", values)
 
-    def force_callback(self, call, body_i, body_j, *, name=None, has_jacobian=False):
+    def force_callback(self, call, body_i, body_j, *, name=None, has_jacobian=False, energy=None):
         """Create an element from call(time, motion_i, motion_j) -> 12 numbers: force (ground
         frame) and torque (body frame) on i and on j. With has_jacobian it gets K and D, arrays of
-        12 x 12 or None, to fill. It must be a pure function: call touch() if it changes."""
+        12 x 12 or None, to fill. energy(time, motion_i, motion_j) gives the energy that it stores
+        [J], or that and the power that it dissipates [W]; without it all is work of an actuator.
+        They must be pure functions: call touch() if they change."""
         definition = Definition("se3d_force_callback_def", {
             "name": name, "body_i": body_i, "body_j": body_j, "has_jacobian": has_jacobian}, self)
         definition.pointer.callback = lib.se3d_python_force
-        definition.pointer.ctx = self._keep((call, has_jacobian))
+        definition.pointer.ctx = self._keep((call, has_jacobian, energy))
+        if energy:
+            definition.pointer.energy = lib.se3d_python_energy
         handle = ffi.new("se3d_force *")
         self.check(lib.se3d_force_create_callback(self.pointer, definition.pointer, handle))
         return Force(self, handle)

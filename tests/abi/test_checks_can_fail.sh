@@ -66,7 +66,8 @@ reject 'se3di_say (T) is defined by libse3d.a(say.o) and libse3d-io.a(say_io.o)'
     $abi duplicates libse3d.a libse3d-io.a
 
 $abi update >update.log || { cat update.log; exit 1; }
-for name in se3d_status_get_text se3d_text_get_character se3d_version_get_text; do
+for name in se3d_status_get_text se3d_text_get_character se3d_version_get_text \
+    se3d_version_number; do
     printf 'void %s(void);\nvoid %s(void) {}\n' $name $name >>public.c
 done
 "$cc" -shared -fPIC -Wl,-soname,libse3d.so -Wl,--version-script=lib/se3d.map public.c -o libse3d.so

@@ -25,6 +25,7 @@ CALL(body_get_angular_velocity, a->system, a->use.body, a->out[0])
 CALL(body_get_acceleration, a->system, a->use.body, a->out[0])
 CALL(body_get_angular_acceleration, a->system, a->use.body, a->out[0])
 CALL(body_get_orientation, a->system, a->use.body, a->out[0])
+CALL(body_get_motion, a->system, a->use.body, a->out[0])
 CALL(body_set_position, a->system, a->use.body, a->in)
 CALL(body_set_velocity, a->system, a->use.body, a->in)
 CALL(body_set_angular_velocity, a->system, a->use.body, a->in)
@@ -216,6 +217,9 @@ CALL(system_get_road, a->system, a->index, a->out[0])
 CALL(road_create, a->system, a->def, a->out[0])
 CALL(road_destroy, a->system, a->use.road)
 CALL(road_get_name, a->system, a->use.road, a->out[0])
+CALL(road_find, a->system, a->text, a->out[0])
+CALL(wheel_find, a->system, a->text, a->out[0])
+CALL(state_set_size, a->system, a->use.state, a->number)
 CALL(road_get_height, a->system, a->use.road, a->number, 1.0, a->out[0])
 CALL(state_create, a->system, a->def, a->out[0])
 CALL(state_destroy, a->system, a->use.state)
@@ -432,12 +436,37 @@ static se3d_status counting_null_gives_zero(arguments *a)
     return SE3D_OK;
 }
 
+static se3d_status motions_reject_null(arguments *a)
+{
+    const se3d_body_motion m = {.p = {1.0, 0.0, 0.0, 0.0}};
+    const double x[3] = {0.0, 0.0, 0.0};
+    double out[18] = {0.0};
+    (void)a;
+    CHECK(se3d_motion_get_rotation(NULL, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_rotation(&m, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_point(NULL, x, out, out, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_point(&m, NULL, out, out, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_point(&m, x, NULL, NULL, NULL) == SE3D_OK);
+    CHECK(se3d_motion_get_jacobian(NULL, x, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_jacobian(&m, NULL, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_get_jacobian(&m, x, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_force(NULL, x, x, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_force(&m, NULL, x, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_force(&m, x, NULL, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_force(&m, x, x, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_torque(NULL, x, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_torque(&m, NULL, out) == SE3D_ERR_NULL);
+    CHECK(se3d_motion_add_torque(&m, x, NULL) == SE3D_ERR_NULL);
+    return SE3D_OK;
+}
+
 static se3d_status texts_are_never_null(arguments *a)
 {
     CHECK_CONTAINS(se3d_status_get_text(SE3D_OK), "success");
     CHECK(se3d_status_get_text((se3d_status)-99) && se3d_status_get_text((se3d_status)99));
     CHECK(se3d_text_get_character(NULL) == 0 && se3d_text_get_character("") == 0);
     CHECK_CONTAINS(se3d_version_get_text(), ".");
+    CHECK(se3d_version_number() == SE3D_VERSION_NUMBER && SE3D_VERSION_NUMBER >= 1000);
     CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_RK4), "rk4") == 0);
     CHECK(strcmp(se3d_method_get_name(SE3D_METHOD_AUTO), "auto") == 0);
     CHECK(strcmp(se3d_method_get_name(-1), "") == 0 && !*se3d_method_get_name(INT32_MAX));
@@ -639,6 +668,10 @@ static const row rows[] = {
     {"se3d_road_create", roads_reject_misuse, "", NULL, NULL},
     {"se3d_road_destroy", call_road_destroy, "Sr", NULL, NULL},
     {"se3d_road_get_name", call_road_get_name, "sro0", NULL, NULL},
+    {"se3d_road_find", call_road_find, "sth0", NULL, NULL},
+    {"se3d_wheel_find", call_wheel_find, "sth0", NULL, NULL},
+    {"se3d_state_set_size", call_state_set_size, "Szn", NULL, NULL},
+    {"se3d_body_get_motion", call_body_get_motion, "sbo0", NULL, NULL},
     {"se3d_road_get_height", call_road_get_height, "srno0", NULL, NULL},
     {"se3d_state_create", call_state_create, "SDh0", define_state, state_fields},
     {"se3d_state_destroy", call_state_destroy, "Sz", NULL, NULL},
@@ -672,6 +705,32 @@ static const row rows[] = {
     {"se3d_force_set_parameter", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_get_parameter", setters_reject_misuse, "", NULL, NULL},
     {"se3d_force_set_bushing", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_body_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_body_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_marker_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_marker_find", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_user_constraint_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_user_constraint_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_joint_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_coupler_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_driver_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_primitive_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_wheel_set_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_road_get_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_count_functions", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_system_get_function", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_set_material", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_shape_set_filter", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_tsda", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_rsda", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_load", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_bushing_def", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_friction", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_stop", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_effort", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_armature", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_callback", definitions_reject_misuse, "", NULL, NULL},
+    {"se3d_force_set_tyre", definitions_reject_misuse, "", NULL, NULL},
     {"se3d_marker_get_def", definitions_reject_misuse, "", NULL, NULL},
     {"se3d_joint_get_def", definitions_reject_misuse, "", NULL, NULL},
     {"se3d_coupler_get_def", definitions_reject_misuse, "", NULL, NULL},
@@ -734,6 +793,7 @@ static const row rows[] = {
     {"se3d_status_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_elementary_eval", unknown_functions_are_not_a_number, "", NULL, NULL},
     {"se3d_text_get_character", texts_are_never_null, "", NULL, NULL},
+    {"se3d_version_number", texts_are_never_null, "", NULL, NULL},
     {"se3d_version_get_text", texts_are_never_null, "", NULL, NULL},
     {"se3d_method_get_name", texts_are_never_null, "", NULL, NULL},
     {"se3d_analysis_get_name", texts_are_never_null, "", NULL, NULL},
@@ -766,6 +826,14 @@ static const row rows[] = {
     {"se3d_event_create", events_reject_misuse, "", NULL, NULL},
     {"se3d_event_destroy", events_reject_misuse, "", NULL, NULL},
     {"se3d_event_get_name", events_reject_misuse, "", NULL, NULL},
+    {"se3d_event_get_def", events_reject_misuse, "", NULL, NULL},
+    {"se3d_solver_count_events", events_reject_misuse, "", NULL, NULL},
+    {"se3d_solver_get_event", events_reject_misuse, "", NULL, NULL},
+    {"se3d_motion_get_rotation", motions_reject_null, "", NULL, NULL},
+    {"se3d_motion_get_point", motions_reject_null, "", NULL, NULL},
+    {"se3d_motion_get_jacobian", motions_reject_null, "", NULL, NULL},
+    {"se3d_motion_add_force", motions_reject_null, "", NULL, NULL},
+    {"se3d_motion_add_torque", motions_reject_null, "", NULL, NULL},
     {"se3d_solver_count_event_records", events_reject_misuse, "", NULL, NULL},
     {"se3d_solver_get_event_record", events_reject_misuse, "", NULL, NULL},
     {"se3d_solver_clear_event_records", events_reject_misuse, "", NULL, NULL},

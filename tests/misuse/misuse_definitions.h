@@ -3,6 +3,7 @@
 #ifndef SE3D_TESTS_MISUSE_DEFINITIONS_H
 #define SE3D_TESTS_MISUSE_DEFINITIONS_H
 
+#include "misuse/misuse_fields.h"
 #include "misuse/misuse_world.h"
 
 /* The reader of one kind of definitions: of `good` handles, which `other` ones have not. */
@@ -39,6 +40,108 @@
         CHECK(memcmp(&def, &twin, sizeof def) == 0);                                               \
     } while (0)
 
+/* An element takes another value of a member of its definition, and nothing else; it is refused
+ * what its creation refuses, and keeps its name. */
+#define DEFINED_AGAIN(what, setter, handle_type, definition, good, member, value)                  \
+    do {                                                                                           \
+        definition again = definition##_default(), twin = definition##_default();                  \
+        const handle_type null_handle = {0, 0};                                                    \
+        CHECK(!se3d_##what(a->system, good, &again));                                              \
+        CHECK(se3d_##setter(NULL, good, &again) == SE3D_ERR_NULL);                                 \
+        CHECK(se3d_##setter(a->system, good, NULL) == SE3D_ERR_NULL);                              \
+        CHECK(se3d_##setter(a->system, null_handle, &again) == SE3D_ERR_STALE_HANDLE);             \
+        again.struct_size = 0;                                                                     \
+        CHECK(se3d_##setter(a->system, good, &again) == SE3D_ERR_INVALID_ARGUMENT);                \
+        again.struct_size = sizeof again;                                                          \
+        CHECK(!se3d_##what(a->system, good, &twin) && memcmp(&again, &twin, sizeof again) == 0);   \
+        const char *const own = again.name;                                                        \
+        again.member = value;                                                                      \
+        again.name = "a name that is not looked at";                                               \
+        CHECK(!se3d_##setter(a->system, good, &again));                                            \
+        CHECK(!se3d_##what(a->system, good, &twin));                                               \
+        again.name = own;                                                                          \
+        CHECK(memcmp(&again, &twin, sizeof again) == 0);                                           \
+    } while (0)
+
+/* An element is refused the definition of another kind, type or structure, and stays. */
+#define IS_NO(setter, definition, good, part)                                                      \
+    do {                                                                                           \
+        definition fresh = definition##_default();                                                 \
+        const uint64_t before = se3d_system_hash(a->system);                                       \
+        CHECK(se3d_##setter(a->system, good, &fresh) < 0);                                         \
+        CHECK_CONTAINS(se3d_system_get_error(a->system), part);                                    \
+        CHECK(se3d_system_hash(a->system) == before);                                              \
+    } while (0)
+
+static se3d_status meet_nothing(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                                double *jacobian, double *nu, double *gamma)
+{
+    (void)ctx, (void)t, (void)bodies, (void)phi, (void)nu, (void)gamma;
+    if (jacobian) {
+        jacobian[2] = 1.0;
+    }
+    return SE3D_OK;
+}
+
+static void check_definitions_of_bodies(arguments *a)
+{
+    const handles *u = &a->use;
+    se3d_marker_def marker = se3d_marker_def_default();
+    se3d_user_constraint_def user = se3d_user_constraint_def_default();
+    se3d_constraint made;
+    se3d_marker found;
+    DEFINITION(body_get_def, se3d_body, se3d_body_def, u->body, ((se3d_body){9, 9}));
+    DEFINED_AGAIN(body_get_def, body_set_def, se3d_body, se3d_body_def, u->body, position[1], 0.25);
+    DEFINED_AGAIN(marker_get_def, marker_set_def, se3d_marker, se3d_marker_def, u->marker,
+                  position[2], 0.5);
+    IS_NO(body_set_def, se3d_body_def, ground_of(a), "ground");
+    IS_NO(body_set_def, se3d_body_def, u->body, "mass = 0");
+    marker.body = ground_of(a);
+    CHECK(se3d_marker_set_def(a->system, u->marker, &marker) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "another kind, body or structure");
+    marker.body = u->body;
+    marker.name = "findable";
+    CHECK(!se3d_marker_create(a->system, &marker, &found));
+    CHECK(!se3d_marker_find(a->system, u->body, "findable", &found) && found.index1 > 0);
+    CHECK(se3d_marker_find(a->system, ground_of(a), "findable", &found) ==
+          SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(found.index1 == 0);
+    CHECK(se3d_marker_find(NULL, u->body, "findable", &found) == SE3D_ERR_NULL);
+    CHECK(se3d_marker_find(a->system, u->body, NULL, &found) == SE3D_ERR_NULL);
+    CHECK(se3d_marker_find(a->system, u->body, "findable", NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_marker_find(a->system, (se3d_body){9, 9}, "findable", &found) ==
+          SE3D_ERR_STALE_HANDLE);
+    user.callback = meet_nothing;
+    user.bodies[0] = u->body;
+    CHECK(!se3d_user_constraint_create(a->system, &user, &made));
+    DEFINITION(user_constraint_get_def, se3d_constraint, se3d_user_constraint_def, made, u->pin);
+    DEFINED_AGAIN(user_constraint_get_def, user_constraint_set_def, se3d_constraint,
+                  se3d_user_constraint_def, made, ctx, &a->number);
+    IS_NO(user_constraint_set_def, se3d_user_constraint_def, made, "callback");
+    user.equation_count = 2;
+    CHECK(se3d_user_constraint_set_def(a->system, made, &user) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(!se3d_constraint_destroy(a->system, made));
+}
+
+/* The joint has drivers and couplers, or none. */
+static void check_joint_again(arguments *a)
+{
+    const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0};
+    se3d_joint_def def = se3d_joint_def_default();
+    se3d_constraint lone;
+    CHECK(!se3d_joint_get_def(a->system, a->use.pin, &def));
+    CHECK(se3d_joint_set_def(a->system, a->use.pin, &def) == SE3D_ERR_IN_USE);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "drivers or couplers");
+    CHECK(!se3d_joint_def_set_frame(a->system, &def, at, axis, NULL));
+    def.name = NULL;
+    CHECK(!se3d_joint_create_revolute(a->system, &def, &lone));
+    DEFINED_AGAIN(joint_get_def, joint_set_def, se3d_constraint, se3d_joint_def, lone, break_force,
+                  7.0);
+    CHECK(!se3d_constraint_destroy(a->system, lone));
+    CHECK(se3d_joint_set_def(a->system, a->use.driver, &def) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "is a driver");
+}
+
 static void check_definitions_of_constraints(arguments *a)
 {
     const handles *u = &a->use;
@@ -60,6 +163,18 @@ static void check_definitions_of_constraints(arguments *a)
     CHECK(!se3d_joint_create_coupler(a->system, &coupler, &coupled));
     MADE_AGAIN(coupler_get_def, joint_create_coupler, se3d_constraint, se3d_coupler_def, coupled);
     DEFINITION(coupler_get_def, se3d_constraint, se3d_coupler_def, gear, u->pin);
+    DEFINED_AGAIN(coupler_get_def, coupler_set_def, se3d_constraint, se3d_coupler_def, gear,
+                  ratio[0], -0.5);
+    DEFINED_AGAIN(coupler_get_def, coupler_set_def, se3d_constraint, se3d_coupler_def, coupled,
+                  value, 0.125);
+    DEFINED_AGAIN(driver_get_def, driver_set_def, se3d_constraint, se3d_driver_def, u->driver,
+                  coordinate, SE3D_JOINT_COORDINATE_ANGLE);
+    DEFINED_AGAIN(primitive_get_def, primitive_set_def, se3d_constraint, se3d_primitive_def,
+                  u->primitive, point_j[1], 0.75);
+    IS_NO(coupler_set_def, se3d_coupler_def, u->pin, "count");
+    IS_NO(driver_set_def, se3d_driver_def, u->driver, "joint");
+    IS_NO(primitive_set_def, se3d_primitive_def, u->primitive, "body_i");
+    check_joint_again(a);
 }
 
 /* One of a type; the others are refused by all readers but its own. */
@@ -71,6 +186,9 @@ static void check_definitions_of_springs(arguments *a, se3d_body ground)
     se3d_force made;
     DEFINITION(force_get_tsda, se3d_force, se3d_tsda_def, u->force, ((se3d_force){9, 9}));
     MADE_AGAIN(force_get_tsda, force_create_tsda, se3d_force, se3d_tsda_def, u->force);
+    DEFINED_AGAIN(force_get_tsda, force_set_tsda, se3d_force, se3d_tsda_def, u->force, point_i[2],
+                  0.5);
+    IS_NO(force_set_tsda, se3d_tsda_def, u->force, "body_i");
     rsda.body_i = ground;
     rsda.body_j = u->body;
     rsda.axis_i[0] = 0.3;
@@ -80,6 +198,12 @@ static void check_definitions_of_springs(arguments *a, se3d_body ground)
     CHECK(!se3d_force_create_rsda(a->system, &rsda, &made));
     DEFINITION(force_get_rsda, se3d_force, se3d_rsda_def, made, u->force);
     MADE_AGAIN(force_get_rsda, force_create_rsda, se3d_force, se3d_rsda_def, made);
+    DEFINED_AGAIN(force_get_rsda, force_set_rsda, se3d_force, se3d_rsda_def, made, k, 3.0);
+    rsda.joint = u->pin;
+    CHECK(se3d_force_set_rsda(a->system, made, &rsda) == SE3D_ERR_INVALID_ARGUMENT);
+    rsda.joint = (se3d_constraint){0, 0};
+    CHECK(se3d_force_set_rsda(a->system, u->force, &rsda) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "another kind, body or structure");
     bushing.body_i = ground;
     bushing.body_j = u->body;
     bushing.K[0] = 5.0;
@@ -87,6 +211,8 @@ static void check_definitions_of_springs(arguments *a, se3d_body ground)
     CHECK(!se3d_force_create_bushing(a->system, &bushing, &made));
     DEFINITION(force_get_bushing_def, se3d_force, se3d_bushing_def, made, u->force);
     MADE_AGAIN(force_get_bushing_def, force_create_bushing, se3d_force, se3d_bushing_def, made);
+    DEFINED_AGAIN(force_get_bushing_def, force_set_bushing_def, se3d_force, se3d_bushing_def, made,
+                  point_j[0], 0.1);
 }
 
 static void check_definitions_on_bodies(arguments *a, se3d_body ground)
@@ -101,6 +227,8 @@ static void check_definitions_on_bodies(arguments *a, se3d_body ground)
     CHECK(!se3d_force_create_torque(a->system, &load, &made));
     DEFINITION(force_get_load, se3d_force, se3d_load_def, made, u->force);
     MADE_AGAIN(force_get_load, force_create_load, se3d_force, se3d_load_def, made);
+    DEFINED_AGAIN(force_get_load, force_set_load, se3d_force, se3d_load_def, made, function[1],
+                  u->function);
     tyre.road = ground;
     tyre.wheel = u->body;
     tyre.side = SE3D_TYRE_RIGHT;
@@ -112,6 +240,7 @@ static void check_definitions_on_bodies(arguments *a, se3d_body ground)
     CHECK(!se3d_force_create_tyre(a->system, &tyre, &made));
     DEFINITION(force_get_tyre, se3d_force, se3d_tyre_def, made, u->force);
     MADE_AGAIN(force_get_tyre, force_create_tyre, se3d_force, se3d_tyre_def, made);
+    DEFINED_AGAIN(force_get_tyre, force_set_tyre, se3d_force, se3d_tyre_def, made, k, 2e5);
 }
 
 static void check_definitions_on_joints(arguments *a)
@@ -124,6 +253,8 @@ static void check_definitions_on_joints(arguments *a)
     CHECK(!se3d_force_create_friction(a->system, &friction, &made));
     DEFINITION(force_get_friction, se3d_force, se3d_friction_def, made, u->force);
     MADE_AGAIN(force_get_friction, force_create_friction, se3d_force, se3d_friction_def, made);
+    DEFINED_AGAIN(force_get_friction, force_set_friction, se3d_force, se3d_friction_def, made,
+                  thrust_radius, 0.1);
     se3d_stop_def stop = se3d_stop_def_default();
     stop.joint = u->pin;
     stop.upper = 1.0;
@@ -131,18 +262,23 @@ static void check_definitions_on_joints(arguments *a)
     CHECK(!se3d_force_create_stop(a->system, &stop, &made));
     DEFINITION(force_get_stop, se3d_force, se3d_stop_def, made, u->force);
     MADE_AGAIN(force_get_stop, force_create_stop, se3d_force, se3d_stop_def, made);
+    DEFINED_AGAIN(force_get_stop, force_set_stop, se3d_force, se3d_stop_def, made, upper, 2.0);
     se3d_effort_def effort = se3d_effort_def_default();
     effort.joint = u->pin;
     effort.value = 0.5;
     CHECK(!se3d_force_create_effort(a->system, &effort, &made));
     DEFINITION(force_get_effort, se3d_force, se3d_effort_def, made, u->force);
     MADE_AGAIN(force_get_effort, force_create_effort, se3d_force, se3d_effort_def, made);
+    DEFINED_AGAIN(force_get_effort, force_set_effort, se3d_force, se3d_effort_def, made, function,
+                  u->function);
     se3d_armature_def armature = se3d_armature_def_default();
     armature.joint = u->pin;
     armature.inertia = 0.5;
     CHECK(!se3d_force_create_armature(a->system, &armature, &made));
     DEFINITION(force_get_armature, se3d_force, se3d_armature_def, made, u->force);
     MADE_AGAIN(force_get_armature, force_create_armature, se3d_force, se3d_armature_def, made);
+    DEFINED_AGAIN(force_get_armature, force_set_armature, se3d_force, se3d_armature_def, made,
+                  inertia, 0.25);
 }
 
 static void check_definitions_of_forces(arguments *a)
@@ -210,6 +346,13 @@ static void check_definitions_of_the_rest(arguments *a)
     DEFINITION(state_get_def, se3d_state, se3d_state_def, u->state, ((se3d_state){9, 9}));
     MADE_AGAIN(state_get_def, state_create, se3d_state, se3d_state_def, u->state);
     DEFINITION(wheel_get_def, se3d_wheel, se3d_wheel_def, u->wheel, ((se3d_wheel){9, 9}));
+    DEFINED_AGAIN(wheel_get_def, wheel_set_def, se3d_wheel, se3d_wheel_def, u->wheel, radius, 0.5);
+    DEFINITION(road_get_def, se3d_road, se3d_road_def, u->road, ((se3d_road){9, 9}));
+    CHECK(se3d_system_count_functions(NULL) == 0 && se3d_system_count_functions(a->system) > 0);
+    CHECK(!se3d_system_get_function(a->system, 0, &gravity[0]) && gravity[0].index1 > 0);
+    CHECK(se3d_system_get_function(a->system, 99, &gravity[0]) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_system_get_function(NULL, 0, &gravity[0]) == SE3D_ERR_NULL);
+    CHECK(se3d_system_get_function(a->system, 0, NULL) == SE3D_ERR_NULL);
     CHECK(!se3d_system_get_ground(a->system, &callback.body_i));
     callback.body_j = u->body;
     callback.callback = push_nothing;
@@ -217,6 +360,8 @@ static void check_definitions_of_the_rest(arguments *a)
     DEFINITION(force_get_callback, se3d_force, se3d_force_callback_def, made, u->force);
     MADE_AGAIN(force_get_callback, force_create_callback, se3d_force, se3d_force_callback_def,
                made);
+    DEFINED_AGAIN(force_get_callback, force_set_callback, se3d_force, se3d_force_callback_def, made,
+                  ctx, &a->number);
     CHECK(!se3d_system_get_state(a->system, 0, &state) && state.index1 == u->state.index1);
     CHECK(se3d_system_get_state(a->system, 99, &state) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_system_get_state(NULL, 0, &state) == SE3D_ERR_NULL);
@@ -273,6 +418,20 @@ static void check_definitions_of_contacts(arguments *a)
     CHECK(!se3d_system_get_shape(a->system, 0, &found) && found.index1 == shape.index1);
     CHECK(se3d_system_get_shape(a->system, 2, &found) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_system_get_shape(NULL, 0, &found) == SE3D_ERR_NULL);
+    CHECK(!se3d_shape_set_filter(a->system, shape, 2, 4) &&
+          !se3d_shape_get_def(a->system, shape, &box));
+    CHECK(box.group == 2 && box.mask == 4);
+    CHECK(se3d_shape_set_filter(NULL, shape, 2, 4) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_set_filter(a->system, (se3d_shape){0, 0}, 2, 4) == SE3D_ERR_STALE_HANDLE);
+    CHECK(!se3d_shape_set_material(a->system, shape, (se3d_material){0, 0}));
+    CHECK(!se3d_shape_get_def(a->system, shape, &box) && box.material.index1 == 0);
+    CHECK(!se3d_shape_set_material(a->system, shape, material));
+    CHECK(!se3d_shape_get_def(a->system, shape, &box) && box.material.index1 == material.index1);
+    CHECK(se3d_shape_set_material(NULL, shape, material) == SE3D_ERR_NULL);
+    CHECK(se3d_shape_set_material(a->system, (se3d_shape){0, 0}, material) ==
+          SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_shape_set_material(a->system, shape, (se3d_material){9, 9}) ==
+          SE3D_ERR_STALE_HANDLE);
 }
 
 /* On a clone: the elements that it makes would be in the way of other cases. */
@@ -280,6 +439,7 @@ static se3d_status definitions_reject_misuse(arguments *a)
 {
     se3d_system *original = a->system;
     CHECK(!se3d_system_clone(original, &a->system));
+    check_definitions_of_bodies(a);
     check_definitions_of_constraints(a);
     check_definitions_of_forces(a);
     check_definitions_of_functions(a);

@@ -99,6 +99,22 @@ static void values_that_fail_are_reported(arguments *a)
     }
 }
 
+static void event_definitions_are_given_back(se3d_solver *solver, se3d_event event)
+{
+    se3d_event_def def = se3d_event_def_default();
+    se3d_event found;
+    CHECK(!se3d_event_get_def(solver, event, &def) && def.value == zero_value && !def.name);
+    CHECK(se3d_event_get_def(NULL, event, &def) == SE3D_ERR_NULL);
+    CHECK(se3d_event_get_def(solver, event, NULL) == SE3D_ERR_NULL);
+    def.struct_size = 0;
+    CHECK(se3d_event_get_def(solver, event, &def) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_solver_count_events(NULL) == 0 && se3d_solver_count_events(solver) == 1);
+    CHECK(!se3d_solver_get_event(solver, 0, &found) && found.index1 == event.index1);
+    CHECK(se3d_solver_get_event(solver, 1, &found) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(found.index1 == 0 && se3d_solver_get_event(NULL, 0, &found) == SE3D_ERR_NULL);
+    CHECK(se3d_solver_get_event(solver, 0, NULL) == SE3D_ERR_NULL);
+}
+
 static se3d_status events_reject_misuse(arguments *a)
 {
     const char *name = NULL;
@@ -116,11 +132,13 @@ static se3d_status events_reject_misuse(arguments *a)
     CHECK(se3d_event_get_name(NULL, event, &name) == SE3D_ERR_NULL);
     REJECTED(se3d_event_get_name(solver, event, NULL), SE3D_ERR_NULL);
     CHECK(!se3d_event_get_name(solver, event, &name) && name[0] == '\0');
+    event_definitions_are_given_back(solver, event);
     CHECK(se3d_event_destroy(NULL, event) == SE3D_ERR_NULL);
     REJECTED(se3d_event_destroy(solver, none), SE3D_ERR_STALE_HANDLE);
     CHECK(!se3d_event_destroy(solver, event));
     REJECTED(se3d_event_destroy(solver, event), SE3D_ERR_STALE_HANDLE);
     REJECTED(se3d_event_get_name(solver, event, &name), SE3D_ERR_STALE_HANDLE);
+    REJECTED(se3d_event_get_def(solver, event, &def), SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_solver_count_event_records(NULL) == 0);
     CHECK(se3d_solver_get_event_record(NULL, 0, &record) == SE3D_ERR_NULL);
     REJECTED(se3d_solver_get_event_record(solver, 0, NULL), SE3D_ERR_NULL);

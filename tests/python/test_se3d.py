@@ -81,9 +81,13 @@ class Motion(unittest.TestCase):
 
         with se3d.System(gravity=(0, 0, 0)) as system:
             block = system.body(mass=2, inertia=(1, 1, 1), position=(0.5, 0, 0))
-            system.force_callback(pull, system.ground, block)
+            system.force_callback(pull, system.ground, block,
+                                  energy=lambda _time, _i, j: 4 * j.r @ j.r)
+            self.assertAlmostEqual(system.energy.potential, 1.0, delta=1e-15)
             se3d.Solver(system, tolerance=1e-10).run(2.0)
             self.assertAlmostEqual(block.position[0], 0.5 * numpy.cos(4), delta=1e-8)
+            self.assertAlmostEqual(system.energy.total, 1.0, delta=1e-8)
+            self.assertAlmostEqual(system.work.actuators, 0.0, delta=1e-8)
 
     def test_user_constraint_keeps_a_distance(self):
         def sphere(_time, body):
