@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Public layer: definitions of bodies, markers, roads and constraints, as they can be given again. What a definition left to be chosen (reference directions, a distance, the value of
- * a gear) is what it became. */
+/* Public layer: definitions of bodies, markers, roads and constraints, as they can be given again.
+ * What a definition left to be chosen (reference directions, a distance, the value of a gear) is
+ * what it became. */
 #include "system/definition.h"
 
 #include "force/driver_rate.h"

@@ -20,6 +20,16 @@ for command in $commands; do
     expect "$command -h" 0 "$program" "$command" -h
     is "$(cksum <"$dir/out")" "$(cksum <"$dir/help")"
 done
+expect 'quiet before the command' 0 "$program" -q check "$models/pendulum.yaml"
+is "$(cat "$dir/out")" ''
+expect 'the version of a command' 0 "$program" plot -V
+is "$(cut -d' ' -f1 "$dir/out")" se3d
+expect 'help before the command' 0 "$program" --help -q run
+has "$dir/out" 'se3d run MODEL'
+expect 'options alone' 2 "$program" -q
+says 'which command?'
+expect 'an option of none' 2 "$program" --loud run
+says 'unknown command `--loud`'
 expect 'what options take' 0 "$program" help run
 has "$dir/out" 'generalized_alpha'
 has "$dir/out" 'inverse_dynamics'

@@ -143,8 +143,8 @@ static void check_same(const world *user, const world *made, double within)
     CHECK(fabs(work[1].actuators) > 1e-3 && work[1].dissipated > 1e-3);
 }
 
-/* Methods of second order with steps of 1 ms integrate powers by the trapezoidal rule, of a callback
- * with that of its energy; convex linearises springs within a step, and callbacks not. */
+/* Methods of second order with steps of 1 ms integrate powers by the trapezoidal rule, of a
+ * callback with that of its energy; convex linearises springs in a step, and callbacks not. */
 static double tolerance_of(const char *method)
 {
     static const char *const second[] = {"generalized_alpha", "hht", "rattle", "verlet"};

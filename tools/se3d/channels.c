@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 #include "warnings.h"
 
@@ -36,6 +37,7 @@ static void print_text(const se3d_model *model, size_t count, const char *part)
 static void print_json(const options *o, const se3d_model *model, size_t count)
 {
     const char *separator = "";
+    outcome_tell();
     fputs("{\"status\": \"done\", \"channels\": [", stdout);
     for (size_t k = 0; k < count; ++k) {
         se3d_model_channel c;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 #include "warnings.h"
 
@@ -33,6 +34,7 @@ static void print_text(const se3d_model *model, const se3d_check_summary *s,
 
 static void print_json(const warnings *warned, const se3d_check_summary *s, const se3d_check *check)
 {
+    outcome_tell();
     fputs("{\"status\": \"done\", \"model\": ", stdout);
     json_put_text(warned->o->model);
     printf(", \"bodies\": %zu, \"equations\": %zu, \"rank\": %zu, \"redundant\": %zu, "
@@ -107,7 +109,6 @@ const command_entry check_entry = {
     .options =
         (const command_option[]){COMMAND_OPTION_SET,
                                  COMMAND_OPTION_STRICT,
-                                 COMMAND_OPTION_QUIET,
                                  {"--json", NULL, NULL, "print the counts and messages as JSON"},
                                  {0}},
     .examples = (const command_example[]){{"check suspension.yaml", "what the joints leave free"},

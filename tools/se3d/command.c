@@ -25,11 +25,64 @@ const command_entry *command_find(const char *name)
     return NULL;
 }
 
-const command_option *command_find_option(const command_entry *c, const char *name)
+static const command_option common[] = {
+    {"--quiet", "-q", NULL, "print nothing but errors, and what was asked for"},
+    {"--json", NULL, NULL, "print the outcome as JSON: status, message, files"},
+    {"--version", "-V", NULL, "print the version"},
+    {"--help", "-h", NULL, "print this text"},
+};
+
+enum { COMMON = sizeof common / sizeof *common };
+
+static int is_called(const command_option *o, const char *name)
+{
+    return strcmp(o->name, name) == 0 || (o->alias && strcmp(o->alias, name) == 0);
+}
+
+static const command_option *find_own(const command_entry *c, const char *name)
 {
     for (const command_option *o = c->options; o->name; ++o) {
-        if (strcmp(o->name, name) == 0 || (o->alias && strcmp(o->alias, name) == 0)) {
+        if (is_called(o, name)) {
             return o;
+        }
+    }
+    return NULL;
+}
+
+const command_option *command_find_common(const char *name)
+{
+    for (size_t k = 0; k < COMMON; ++k) {
+        if (is_called(&common[k], name)) {
+            return &common[k];
+        }
+    }
+    return NULL;
+}
+
+/* One that all have, but not if the command has its own of that name. */
+static int is_of(const command_entry *c, const command_option *o)
+{
+    return !find_own(c, o->name) && !(c->only_prints && strcmp(o->name, "--json") == 0);
+}
+
+const command_option *command_find_option(const command_entry *c, const char *name)
+{
+    const command_option *own = find_own(c, name), *other = command_find_common(name);
+    return own ? own : other && is_of(c, other) ? other : NULL;
+}
+
+const command_option *command_get_option(const command_entry *c, size_t k)
+{
+    size_t passed = 0;
+    while (c->options[passed].name) {
+        if (passed == k) {
+            return &c->options[k];
+        }
+        ++passed;
+    }
+    for (size_t n = 0; n < COMMON; ++n) {
+        if (is_of(c, &common[n]) && passed++ == k) {
+            return &common[n];
         }
     }
     return NULL;

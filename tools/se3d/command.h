@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* An option that every command has beside those of its table: --help, -h. */
+/* An option. Every command has --quiet, --json, --version and --help beside those of its table. */
 typedef struct command_option {
     const char *name;  /* with its dashes; NULL ends a table */
     const char *alias; /* another name; NULL: none */
@@ -21,10 +21,6 @@ typedef struct command_option {
         "--set", NULL, "NAME=VALUE",                                                               \
             "replace a parameter, or anything by its path, as in bodies.bar.mass; VALUE is what "  \
             "the file could say there; may be repeated"                                            \
-    }
-#define COMMAND_OPTION_QUIET                                                                       \
-    {                                                                                              \
-        "--quiet", "-q", NULL, "print nothing but errors"                                          \
     }
 #define COMMAND_OPTION_STRICT                                                                      \
     {                                                                                              \
@@ -54,6 +50,7 @@ typedef struct command_entry {
     const command_example *examples;
     const char *exits; /* what the exit codes mean */
     int prints;        /* 1: without -o it writes to standard output; COMMAND_PRINTS_GIVEN */
+    int only_prints; /* 1: text for others (a script) to standard output, nothing else: no --json */
 } command_entry;
 
 enum { COMMAND_PRINTS_GIVEN = 2 }; /* with -o - it writes to standard output */
@@ -69,6 +66,10 @@ const command_entry *command_get(size_t k);
 const command_entry *command_find(const char *name);
 /* The option of a command that has this name, NULL: there is none. */
 const command_option *command_find_option(const command_entry *c, const char *name);
+/* The k-th option that a command has, those that all have behind its own; NULL behind the last. */
+const command_option *command_get_option(const command_entry *c, size_t k);
+/* The option of that name that all commands have, NULL: there is none. */
+const command_option *command_find_common(const char *name);
 
 /* command_help.c: the text of `se3d COMMAND --help`, and that of `se3d --help`. */
 void command_print_help(const command_entry *c);

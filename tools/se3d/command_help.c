@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "options.h"
+#include "outcome.h"
 
 enum { COLUMNS = 96, OPTION_COLUMNS = 24, LINE_MAX = 2000 };
 
@@ -82,15 +83,12 @@ static void put_option(const command_option *o)
 
 void command_print_help(const command_entry *c)
 {
-    static const command_option help = {"--help", "-h", NULL, "print this text"};
-    printf("se3d %s%s%s%s\n\n", c->name, *c->operands ? " " : "", c->operands,
-           c->options->name ? " [OPTION]..." : "");
+    printf("se3d %s%s%s%s\n\n", c->name, *c->operands ? " " : "", c->operands, " [OPTION]...");
     put_wrapped(c->text, 0);
     putchar('\n');
-    for (const command_option *o = c->options; o->name; ++o) {
-        put_option(o);
+    for (size_t k = 0; command_get_option(c, k); ++k) {
+        put_option(command_get_option(c, k));
     }
-    put_option(&help);
     puts("\nExamples:");
     for (const command_example *e = c->examples; e->words; ++e) {
         printf("  se3d %s\n", e->words);
@@ -111,31 +109,83 @@ void command_print_overview(FILE *file)
         fprintf(file, "  se3d %-22s %s\n", words, c->summary);
     }
     fputs("  se3d --version, -V          print the version\n"
+          "  se3d --help, -h             print this text; behind a command, its help\n"
+          "  se3d --quiet, -q COMMAND    print nothing but errors, and what was asked for\n"
           "\n"
           "`se3d help COMMAND` says more, `se3d explain` what a model file may say.\n"
           "Exit code: 0 done; 1 the analysis failed; 2 bad usage or bad model.\n",
           file);
 }
 
+static void json_put_member(const char *separator, const char *name, const char *text)
+{
+    char plain[LINE_MAX];
+    command_expand(text ? text : "", plain, sizeof plain);
+    printf("%s\"%s\": ", separator, name);
+    json_put_text(plain);
+}
+
+static void json_put_command(const command_entry *c)
+{
+    json_put_member("{", "name", c->name);
+    json_put_member(", ", "operands", c->operands);
+    json_put_member(", ", "summary", c->summary);
+    json_put_member(", ", "text", c->text);
+    json_put_member(", ", "exits", c->exits);
+    fputs(", \"options\": [", stdout);
+    for (size_t k = 0; command_get_option(c, k); ++k) {
+        const command_option *o = command_get_option(c, k);
+        json_put_member(k > 0 ? ", {" : "{", "name", o->name);
+        json_put_member(", ", "alias", o->alias);
+        json_put_member(", ", "value", o->value);
+        json_put_member(", ", "text", o->text);
+        putchar('}');
+    }
+    fputs("], \"examples\": [", stdout);
+    for (const command_example *e = c->examples; e->words; ++e) {
+        json_put_member(e > c->examples ? ", {" : "{", "words", e->words);
+        json_put_member(", ", "text", e->text);
+        putchar('}');
+    }
+    fputs("]}", stdout);
+}
+
+/* All commands, or one. */
+static void print_json(const command_entry *only)
+{
+    const char *separator = "";
+    outcome_tell();
+    fputs("{\"status\": \"done\", \"commands\": [", stdout);
+    for (size_t k = 0; command_get(k); ++k) {
+        if (!only || command_get(k) == only) {
+            fputs(separator, stdout);
+            json_put_command(command_get(k));
+            separator = ", ";
+        }
+    }
+    fputs("]}\n", stdout);
+}
+
 static int command_help(int count, char *const *words)
 {
-    if (count == 0) {
-        command_print_overview(stdout);
-        return EXIT_DONE;
+    options o;
+    const int code = options_read(&o, &help_entry, count, words);
+    if (code != EXIT_DONE || o.help) {
+        return code;
     }
-    if (strcmp(words[0], "--help") == 0 || strcmp(words[0], "-h") == 0) {
-        command_print_help(&help_entry);
-        return EXIT_DONE;
+    const command_entry *c = o.model ? command_find(o.model) : NULL;
+    if (o.model && !c) {
+        return command_report_unknown(o.model);
     }
-    if (strcmp(words[0], "--man") == 0) {
+    if (o.man) {
         manual_print_program();
-        return EXIT_DONE;
+    } else if (o.json) {
+        print_json(c);
+    } else if (c) {
+        command_print_help(c);
+    } else {
+        command_print_overview(stdout);
     }
-    const command_entry *c = command_find(words[0]);
-    if (!c) {
-        return command_report_unknown(words[0]);
-    }
-    command_print_help(c);
     return EXIT_DONE;
 }
 
@@ -149,7 +199,9 @@ const command_entry help_entry = {
             "options and examples.",
     .options =
         (const command_option[]){
-            {"--man", NULL, NULL, "print the page se3d(1) of the manual, for `man -l -`"}, {0}},
+            {"--man", NULL, NULL, "print the page se3d(1) of the manual, for `man -l -`"},
+            {"--json", NULL, NULL, "print the commands with their options as JSON"},
+            {0}},
     .examples = (const command_example[]){{"help run", "the options of `se3d run`"},
                                           {"help --man | man -l -", "read it as a page"},
                                           {0}},

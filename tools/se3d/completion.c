@@ -4,14 +4,16 @@
 
 #include "command.h"
 #include "options.h"
+#include "outcome.h"
 
 /* "a b c" of the names and aliases of a command's options. */
 static void put_options(const command_entry *c)
 {
-    for (const command_option *o = c->options; o->name; ++o) {
-        printf("%s%s%s ", o->alias ? o->alias : "", o->alias ? " " : "", o->name);
+    for (size_t k = 0; command_get_option(c, k); ++k) {
+        const command_option *o = command_get_option(c, k);
+        printf("%s%s%s%s", k > 0 ? " " : "", o->alias ? o->alias : "", o->alias ? " " : "",
+               o->name);
     }
-    fputs("--help", stdout);
 }
 
 static void put_commands(void)
@@ -63,7 +65,7 @@ static void put_bash(void)
           "        COMPREPLY=($(compgen -W '",
           stdout);
     put_commands();
-    fputs(" --help --version' -- \"$word\"))\n"
+    fputs(" --help --version --quiet' -- \"$word\"))\n"
           "        return\n"
           "    fi\n"
           "    case $last in\n",
@@ -127,7 +129,8 @@ static void put_zsh_value(const command_option *o)
 static void put_zsh_command(const command_entry *c)
 {
     printf("%s)\n    _arguments", c->name);
-    for (const command_option *o = c->options; o->name; ++o) {
+    for (size_t k = 0; command_get_option(c, k); ++k) {
+        const command_option *o = command_get_option(c, k);
         printf(" \\\n        '*%s[", o->name);
         put_quoted(o->text, "[]:");
         putchar(']');
@@ -199,8 +202,8 @@ static void put_fish(void)
         printf("complete -c se3d -f -n __fish_use_subcommand -a %s -d '", c->name);
         put_quoted(c->summary, "");
         puts("'");
-        for (const command_option *o = c->options; o->name; ++o) {
-            put_fish_option(c, o);
+        for (size_t n = 0; command_get_option(c, n); ++n) {
+            put_fish_option(c, command_get_option(c, n));
         }
     }
 }
@@ -222,7 +225,7 @@ static int command_completion(int count, char *const *words)
             return EXIT_DONE;
         }
     }
-    fprintf(stderr, "se3d completion: the shell is `%s`, must be bash, zsh or fish\n", o.model);
+    complain("se3d completion: the shell is `%s`, must be bash, zsh or fish\n", o.model);
     return EXIT_USAGE;
 }
 
@@ -234,6 +237,7 @@ const command_entry completion_entry = {
     .summary = "print the completion script of bash, zsh or fish",
     .text = "Prints the script by which a shell completes the commands, options and files of this "
             "program. An installed program has it already.",
+    .only_prints = 1,
     .options = (const command_option[]){{0}},
     .examples = (const command_example[]){{"completion bash >~/.local/share/bash-completion/"
                                            "completions/se3d",

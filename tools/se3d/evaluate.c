@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "outcome.h"
 
 enum { SLOTS_MAX = 16 };
 
@@ -147,8 +148,63 @@ static void table_put_equation(const rows *e, size_t k)
     }
 }
 
+static void json_put_numbers(const char *name, const double *values, size_t count)
+{
+    printf(", \"%s\": [", name);
+    for (size_t k = 0; k < count; ++k) {
+        fputs(k > 0 ? ", " : "", stdout);
+        json_put_number(values[k]);
+    }
+    putchar(']');
+}
+
+static void json_put_value(const char *name, double value)
+{
+    printf(", \"%s\": ", name);
+    json_put_number(value);
+}
+
+/* The first members of an equation; *separator goes before the next one. */
+static void json_put_head(const char **separator, const char *constraint, const char *type,
+                          const char *equation)
+{
+    printf("%s{\"constraint\": ", *separator);
+    *separator = ", ";
+    json_put_text(constraint);
+    fputs(", \"type\": ", stdout);
+    json_put_text(type);
+    fputs(", \"equation\": ", stdout);
+    json_put_text(equation);
+}
+
+static void json_put_body(const char *separator, const char *slot, const char *body)
+{
+    printf("%s{\"slot\": ", separator);
+    json_put_text(slot);
+    fputs(", \"body\": ", stdout);
+    json_put_text(body);
+}
+
+static void json_put_equation(const rows *e, size_t k)
+{
+    json_put_value("phi", e->phi[k]);
+    json_put_value("nu", e->nu[k]);
+    json_put_value("gamma_rp", e->gamma_rp[k]);
+    json_put_value("gamma_romega", e->gamma_romega[k]);
+    fputs(", \"bodies\": [", stdout);
+    for (size_t b = 0; b < e->bodies; ++b) {
+        char text[24];
+        json_put_body(b > 0 ? ", " : "", slot_name(b, text), e->names[b]);
+        json_put_numbers("phi_r", &e->phi_r[b][3 * k], 3);
+        json_put_numbers("phi_p", &e->phi_p[b][4 * k], 4);
+        json_put_numbers("phi_pi", &e->phi_pi[b][3 * k], 3);
+        putchar('}');
+    }
+    fputs("]}", stdout);
+}
+
 static se3d_status print_constraint(const options *o, const se3d_system *system, se3d_constraint c,
-                                    size_t slots)
+                                    size_t slots, const char **separator)
 {
     rows e;
     const char *name = "";
@@ -166,7 +222,10 @@ static se3d_status print_constraint(const options *o, const se3d_system *system,
         if (status < 0) {
             break;
         }
-        if (o->csv) {
+        if (o->json) {
+            json_put_head(separator, name, type, equation);
+            json_put_equation(&e, k);
+        } else if (o->csv) {
             printf("%s,%s,%s", name, type, equation);
             csv_put_equation(&e, k, slots);
         } else {
@@ -180,7 +239,7 @@ static se3d_status print_constraint(const options *o, const se3d_system *system,
 
 /* p.p - 1 = 0 with Phi_p = 2 p^T and gamma = -2 pdot.pdot = -w.w / 2, for unit p. */
 static se3d_status print_norm(const options *o, const se3d_system *system, se3d_body body,
-                              size_t slots)
+                              size_t slots, const char **separator)
 {
     static const double zero[3] = {0.0, 0.0, 0.0};
     const char *name = "";
@@ -206,7 +265,17 @@ static se3d_status print_norm(const options *o, const se3d_system *system, se3d_
     for (int k = 0; k < 4; ++k) {
         row[k] = 2.0 * p[k];
     }
-    if (o->csv) {
+    if (o->json) {
+        json_put_head(separator, name, "normalization", "euler_norm");
+        json_put_value("phi", phi);
+        json_put_value("nu", 0.0);
+        json_put_value("gamma_rp", gamma);
+        fputs(", \"gamma_romega\": null, \"bodies\": [", stdout);
+        json_put_body("", "i", name);
+        json_put_numbers("phi_r", zero, 3);
+        json_put_numbers("phi_p", row, 4);
+        fputs(", \"phi_pi\": null}]}", stdout);
+    } else if (o->csv) {
         printf("%s,normalization,euler_norm,%.17g,0,%.17g,,%s", name, phi, gamma, name);
         csv_put_numbers(zero, 3);
         csv_put_numbers(row, 4);
@@ -239,45 +308,65 @@ static size_t count_slots(const se3d_system *system)
 static se3d_status print_all(const options *o, const se3d_system *system)
 {
     const size_t slots = count_slots(system);
+    const char *separator = "";
     se3d_status status = SE3D_OK;
-    if (o->csv) {
+    if (o->json) {
+        fputs("{\"equations\": [", stdout);
+    } else if (o->csv) {
         csv_put_header(slots);
     }
     for (size_t k = 0; k < se3d_system_count_constraints(system) && status >= 0; ++k) {
         se3d_constraint c;
         status = se3d_system_get_constraint(system, k, &c);
         if (status >= 0) {
-            status = print_constraint(o, system, c, slots);
+            status = print_constraint(o, system, c, slots, &separator);
         }
     }
     for (size_t k = 0; k < se3d_system_count_bodies(system) && status >= 0; ++k) {
         se3d_body body;
         status = se3d_system_get_body(system, k, &body);
         if (status >= 0) {
-            status = print_norm(o, system, body, slots);
+            status = print_norm(o, system, body, slots, &separator);
         }
     }
     return status;
 }
 
+static void end_json(const options *o, const char *status, const char *message)
+{
+    if (o->json) {
+        outcome_tell();
+        printf("], \"status\": \"%s\", \"message\": ", status);
+        json_put_text(message);
+        fputs("}\n", stdout);
+    }
+}
+
 static int evaluate_model(const options *o, se3d_model *model)
 {
     se3d_system *system = se3d_model_get_system(model);
+    if (o->json && o->csv) {
+        complain("se3d evaluate: give --csv or --json, not both\n");
+        return EXIT_USAGE;
+    }
     if (o->time) {
         char *end = NULL;
         const double time = strtod(o->time, &end);
         if (end == o->time || *end || SE3D_FAILED(se3d_system_set_time(system, time))) {
-            fprintf(stderr, "se3d evaluate: --time is `%s`, must be a finite number\n", o->time);
+            complain("se3d evaluate: --time is `%s`, must be a finite number\n", o->time);
             return EXIT_USAGE;
         }
     }
     const se3d_status status = print_all(o, system);
     if (status < 0) {
         const char *why = se3d_system_get_error(system);
+        why = why[0] ? why : se3d_status_get_text(status);
         fflush(stdout);
-        report_failure(o, o->model, why[0] ? why : se3d_status_get_text(status));
+        complain("%s: %s\n", o->model, why);
+        end_json(o, "error", why);
         return EXIT_FAILED;
     }
+    end_json(o, "done", "");
     return EXIT_DONE;
 }
 
@@ -319,6 +408,7 @@ const command_entry evaluate_entry = {
              "one line an equation: constraint, type, equation, phi, nu, gamma_rp, gamma_romega, "
              "then for body i, j (and 3, 4 ... of couplings): body_i, phi_r_i.x y z, phi_p_i.e0 e1 "
              "e2 e3, phi_pi_i.x y z; fields that do not apply are empty"},
+            {"--json", NULL, NULL, "print the same as JSON, in the list `equations`"},
             {0}},
     .examples = (const command_example[]){{"evaluate pendulum.yaml --time 0.5",
                                            "the equations half a second after the start"},

@@ -7,6 +7,7 @@
 #include "io/document/guess.h"
 #include "io/read/objects.h"
 #include "options.h"
+#include "outcome.h"
 #include "plain.h"
 
 static void put_row(const se3di_object *object, const se3di_key *row)
@@ -42,6 +43,73 @@ static void put_object(const se3di_object *object, const char *type)
     }
 }
 
+static void json_put_member(const char *separator, const char *name, const char *text)
+{
+    char plain[2000];
+    printf("%s\"%s\": ", separator, name);
+    if (!text) {
+        fputs("null", stdout);
+        return;
+    }
+    plain_copy(text, plain, sizeof plain);
+    json_put_text(plain);
+}
+
+static void json_put_row(const se3di_object *object, const se3di_key *row)
+{
+    char is[2000];
+    se3di_key_describe(object, row, is, sizeof is);
+    json_put_member("{", "key", row->key);
+    json_put_member(", ", "is", is);
+    printf(", \"required\": %s", row->required ? "true" : "false");
+    json_put_member(", ", "default", row->required ? NULL : row->standard);
+    json_put_member(", ", "text", row->text);
+    putchar('}');
+}
+
+/* An object with all its keys, those of one of its types, or one key. */
+static void json_put_object(const se3di_object *object, const char *type, const se3di_key *only)
+{
+    const char *separator = "";
+    json_put_member("{", "object", object->name);
+    json_put_member(", ", "type", type);
+    json_put_member(", ", "text", object->text);
+    fputs(", \"keys\": [", stdout);
+    for (const se3di_key *row = object->keys; row->key; ++row) {
+        if (only ? row == only
+                 : se3di_key_is_of(row, type) && !(type && row->kind == SE3DI_KIND_TYPE)) {
+            fputs(separator, stdout);
+            json_put_row(object, row);
+            separator = ", ";
+        }
+    }
+    fputs("]}", stdout);
+}
+
+static void show_object(const options *o, size_t place, const se3di_object *object,
+                        const char *type)
+{
+    if (o->json) {
+        fputs(place > 0 ? ", " : "", stdout);
+        json_put_object(object, type, NULL);
+    } else {
+        fputs(place > 0 ? "\n" : "", stdout);
+        put_object(object, type);
+    }
+}
+
+static void show_key(const options *o, size_t place, const se3di_object *object,
+                     const se3di_key *row)
+{
+    if (o->json) {
+        fputs(place > 0 ? ", " : "", stdout);
+        json_put_object(object, NULL, row);
+    } else {
+        printf("%s%s.%s\n", place > 0 ? "\n" : "", object->name, row->key);
+        put_row(object, row);
+    }
+}
+
 static bool has_type(const se3di_object *object, const char *type)
 {
     for (size_t k = 0; object->types && object->types[k]; ++k) {
@@ -54,7 +122,7 @@ static bool has_type(const se3di_object *object, const char *type)
 
 /* All that bears a name: an object, a type, a key, or a key of an object ("joint.axis").
  * @return how many there are */
-static size_t explain_name(const char *name)
+static size_t explain_name(const options *o, const char *name)
 {
     size_t found = 0;
     const size_t head = strcspn(name, ".");
@@ -62,8 +130,7 @@ static size_t explain_name(const char *name)
         const se3di_object *object = se3di_objects_get(k);
         const bool named = strlen(object->name) == head && strncmp(object->name, name, head) == 0;
         if ((named && !name[head]) || has_type(object, name)) {
-            fputs(found++ > 0 ? "\n" : "", stdout);
-            put_object(object, named ? NULL : name);
+            show_object(o, found++, object, named ? NULL : name);
         }
     }
     for (size_t k = 0; se3di_objects_get(k); ++k) {
@@ -72,8 +139,7 @@ static size_t explain_name(const char *name)
         const char *key = name[head] && named ? name + head + 1 : name;
         for (const se3di_key *row = object->keys; row->key; ++row) {
             if (strcmp(row->key, key) == 0) {
-                printf("%s%s.%s\n", found++ > 0 ? "\n" : "", object->name, row->key);
-                put_row(object, row);
+                show_key(o, found++, object, row);
             }
         }
     }
@@ -105,26 +171,46 @@ static int report_unknown(const char *name)
         }
     }
     const char *best = se3di_guess_get(&guess);
-    fprintf(stderr, "se3d explain: no object, type or key is called `%s`%s%s%s\n", name,
-            best ? "; did you mean `" : "; see `se3d explain`", best ? best : "", best ? "`?" : "");
+    complain("se3d explain: no object, type or key is called `%s`%s%s%s\n", name,
+             best ? "; did you mean `" : "; see `se3d explain`", best ? best : "",
+             best ? "`?" : "");
     return EXIT_USAGE;
+}
+
+static int show(const options *o)
+{
+    size_t found = 0;
+    if (o->model) {
+        found = explain_name(o, o->model);
+    } else if (o->json) {
+        for (; se3di_objects_get(found); ++found) {
+            show_object(o, found, se3di_objects_get(found), NULL);
+        }
+    } else {
+        put_objects();
+        found = 1;
+    }
+    return found > 0 ? EXIT_DONE : report_unknown(o->model);
 }
 
 static int command_explain(int count, char *const *words)
 {
     options o;
-    const int code = options_read(&o, &explain_entry, count, words);
+    int code = options_read(&o, &explain_entry, count, words);
     if (code != EXIT_DONE || o.help) {
         return code;
     }
     if (o.man) {
         manual_print_model();
-    } else if (!o.model) {
-        put_objects();
-    } else if (explain_name(o.model) == 0) {
-        return report_unknown(o.model);
+    } else if (!o.json) {
+        code = show(&o);
+    } else {
+        outcome_tell();
+        fputs("{\"found\": [", stdout);
+        code = show(&o);
+        printf("], \"status\": \"%s\"}\n", code == EXIT_DONE ? "done" : "error");
     }
-    return EXIT_DONE;
+    return code;
 }
 
 const command_entry explain_entry = {
@@ -137,9 +223,10 @@ const command_entry explain_entry = {
         "Without a word, lists the objects of the model file. With the name of an object (joint), "
         "of a type (revolute) or of a key (stiffness, joint.axis), says what may stand there, "
         "in which unit and frame, and what holds by default.",
-    .options =
-        (const command_option[]){
-            {"--man", NULL, NULL, "print the page se3d-model(5) of the manual"}, {0}},
+    .options = (const command_option[]){{"--man", NULL, NULL,
+                                         "print the page se3d-model(5) of the manual"},
+                                        {"--json", NULL, NULL, "print objects and keys as JSON"},
+                                        {0}},
     .examples = (const command_example[]){{"explain", "the objects"},
                                           {"explain revolute", "the keys of a revolute joint"},
                                           {"explain force.c", "one key"},

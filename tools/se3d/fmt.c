@@ -8,6 +8,7 @@
 #include "file.h"
 #include "io/document/layout.h"
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 
 /* Whether the file stays as it is is known; write it if not. */
@@ -19,17 +20,20 @@ static int write_layout(const options *o, const char *text, size_t length)
         report_failure(o, o->model, strerror(errno));
         return EXIT_FAILED;
     }
-    if (!o->quiet) {
+    if (!o->quiet && !o->json) {
         fputs("laid out ", stdout);
         text_put_plain(stdout, o->model);
         putchar('\n');
     }
+    outcome_add_file(o->model, 1, "");
     return EXIT_DONE;
 }
 
 static int report_change(const options *o)
 {
-    if (!o->quiet) {
+    if (o->json) {
+        complain("%s: its layout would change\n", o->model);
+    } else if (!o->quiet) {
         text_put_plain(stdout, o->model);
         puts(": its layout would change");
     }
@@ -66,6 +70,10 @@ static int command_fmt(int count, char *const *words)
         return code;
     }
     const int is_input = strcmp(o.model, "-") == 0;
+    if (is_input && o.json && !o.check) {
+        complain("se3d fmt: standard output is for the model or for --json, not for both\n");
+        return EXIT_USAGE;
+    }
     se3di_iopool pool;
     char *text = NULL;
     size_t length = 0;
@@ -100,10 +108,9 @@ const command_entry fmt_entry = {
             "output. Lines stay lines, comments, order and the characters of all values stay as "
             "they are, so the model is the same. The file has to be YAML; it may be a wrong model, "
             "which `se3d check` tells.",
-    .options = (const command_option[]){{"--check", NULL, NULL,
-                                         "change nothing; exit 1 if the layout would change"},
-                                        COMMAND_OPTION_QUIET,
-                                        {0}},
+    .options =
+        (const command_option[]){
+            {"--check", NULL, NULL, "change nothing; exit 1 if the layout would change"}, {0}},
     .examples = (const command_example[]){{"fmt car.yaml", "lay it out"},
                                           {"fmt --check car.yaml", "only look"},
                                           {"fmt - < a.yaml > b.yaml", "from one file to another"},

@@ -14,6 +14,7 @@
 #include "file.h"
 #include "io/fmi/package.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "text.h"
 
@@ -62,7 +63,7 @@ static int read_version(const options *o, int *version)
     } else if (strcmp(text, "3") == 0 || strcmp(text, "3.0") == 0) {
         *version = 3;
     } else {
-        fprintf(stderr, "se3d fmu: --fmi is `%s`, must be 2 or 3\n", text);
+        complain("se3d fmu: --fmi is `%s`, must be 2 or 3\n", text);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -71,6 +72,7 @@ static int read_version(const options *o, int *version)
 static void print_done(const options *o, const se3di_fmi_package *p, const char *target)
 {
     if (o->json) {
+        outcome_tell();
         printf("{\"status\": \"done\", \"file\": ");
         json_put_text(target);
         printf(", \"fmi\": \"%d.0\", \"inputs\": %zu, \"parameters\": %zu, \"outputs\": %zu, "
@@ -180,7 +182,6 @@ const command_entry fmu_entry = {
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "run only this one: {analyses}"},
             COMMAND_OPTIONS_OF_SOLVERS,
-            COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print what was made as JSON"},
             {0}},
     .examples = (const command_example[]){{"fmu model.yaml -o model.fmu", "a unit of FMI 2.0"},

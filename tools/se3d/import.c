@@ -8,6 +8,7 @@
 #include "command.h"
 #include "file.h"
 #include "options.h"
+#include "outcome.h"
 #include "se3d/import.h"
 #include "text.h"
 
@@ -92,12 +93,30 @@ static int read_back(const options *o, const se3d_model_import *import)
     se3d_model *model = NULL;
     se3d_model_error error;
     if (SE3D_FAILED(se3d_model_read_text(text, length, name, NULL, &model, &error))) {
-        fputs("what was made cannot be read, change it by hand:\n", stderr);
+        complain("what was made cannot be read, change it by hand:\n");
         report_failure(o, "", error.message);
         return EXIT_FAILED;
     }
     se3d_model_destroy(model);
     return EXIT_DONE;
+}
+
+static se3d_status read_source(const options *o, const se3d_model_import_options *how,
+                               se3d_model_import **import, se3d_model_error *error)
+{
+    size_t length = 0;
+    if (strcmp(o->model, "-") != 0) {
+        return se3d_model_import_file(o->model, how, import, error);
+    }
+    char *text = options_read_input(&length);
+    if (!text) {
+        memset(error, 0, sizeof *error);
+        snprintf(error->message, sizeof error->message, "stdin: %s", strerror(errno));
+        return SE3D_ERR_IO;
+    }
+    const se3d_status status = se3d_model_import_text(text, length, "stdin", how, import, error);
+    free(text);
+    return status;
 }
 
 static int import_model(const options *o, const char *folder)
@@ -109,7 +128,7 @@ static int import_model(const options *o, const char *folder)
     how.format = o->format;
     how.merge_fixed = o->merge_fixed;
     how.free_base = o->free_base;
-    if (SE3D_FAILED(se3d_model_import_file(o->model, &how, &import, &error))) {
+    if (SE3D_FAILED(read_source(o, &how, &import, &error))) {
         report_failure(o, "", error.message);
         return EXIT_USAGE;
     }
@@ -120,6 +139,7 @@ static int import_model(const options *o, const char *folder)
     }
     if (code == EXIT_DONE) {
         if (o->json) {
+            outcome_tell();
             print_json(import);
         }
         code = se3d_model_import_count_lost(import) > 0 && !o->partial ? EXIT_FAILED : EXIT_DONE;
@@ -134,10 +154,6 @@ static int command_import(int count, char *const *words)
     int code = options_read(&o, &import_entry, count, words);
     if (code != EXIT_DONE || o.help) {
         return code;
-    }
-    if (o.json && !o.directory) {
-        fputs("se3d import: --json needs -o, standard output is for one of the two\n", stderr);
-        return EXIT_USAGE;
     }
     char *folder = o.directory ? folder_of(o.directory) : NULL;
     if (o.directory && !folder) {

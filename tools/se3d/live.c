@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "outcome.h"
 
 #if defined(SE3D_HAS_MICROHTTPD)
 
@@ -91,12 +92,19 @@ static int make_wake(live *l)
 /* @return false: nobody has learned the address. */
 static int tell_address(const options *o, const char *address)
 {
-    const int good = printf("%s\n", address) >= 0 &&
-                     (o->quiet || printf("shows %s in a browser on this machine until Ctrl-C\n",
-                                         o->model) >= 0) &&
-                     fflush(stdout) == 0;
+    if (o->json) {
+        outcome_tell();
+        fputs("{\"status\": \"running\", \"address\": ", stdout);
+        json_put_text(address);
+        fputs("}\n", stdout);
+    }
+    const int good =
+        (o->json || printf("%s\n", address) >= 0) &&
+        (o->quiet || o->json ||
+         printf("shows %s in a browser on this machine until Ctrl-C\n", o->model) >= 0) &&
+        fflush(stdout) == 0;
     if (!good) {
-        fprintf(stderr, "se3d live: the address cannot be written: %s\n", strerror(errno));
+        complain("se3d live: the address cannot be written: %s\n", strerror(errno));
     }
     return good;
 }
@@ -105,9 +113,8 @@ static void begin_watching(live *l)
 {
     l->watch = live_watch_create();
     if (l->watch < 0 || !live_loop_watch(l->loop, l->watch)) {
-        fprintf(stderr,
-                "se3d live: files that are saved may not be noticed (%s): `reset` reads them\n",
-                strerror(errno));
+        warn("se3d live: files that are saved may not be noticed (%s): `reset` reads them\n",
+             strerror(errno));
     }
 }
 
@@ -138,7 +145,7 @@ static int serve(live *l, const options *o, const char *page, size_t size)
     }
     begin_watching(l);
     if (!live_loop_begin(l->loop, l->server)) {
-        fputs("se3d live: out of memory, or the model cannot be drawn\n", stderr);
+        complain("se3d live: out of memory, or the model cannot be drawn\n");
     } else if (tell_address(o, address)) {
         loop(l);
         code = EXIT_DONE;
@@ -194,7 +201,7 @@ static int show_model(const options *o)
     if (l.loop) {
         code = serve(&l, o, page, size);
     } else {
-        fprintf(stderr, "%s\n", why);
+        complain("%s\n", why);
     }
     live_loop_destroy(l.loop);
     free(page);
@@ -206,10 +213,10 @@ static int show_model(const options *o)
 static int show_model(const options *o)
 {
     (void)o;
-    fputs(
+    complain(
         "se3d live: this program was built without libmicrohttpd; on Debian and Ubuntu: apt-get "
-        "install libmicrohttpd-dev, then build it again. `se3d run` and `se3d view` work without\n",
-        stderr);
+        "install libmicrohttpd-dev, then build it again. `se3d run` and `se3d view` work "
+        "without\n");
     return EXIT_FAILED;
 }
 
@@ -221,11 +228,11 @@ static int is_possible(const options *o)
     char *end = NULL;
     const long port = o->port ? strtol(o->port, &end, 10) : 0;
     if (o->port && (end == o->port || *end || port < 0 || port > 65535)) {
-        fprintf(stderr, "se3d live: --port %s: must be 0 to 65535; 0: one that is free\n", o->port);
+        complain("se3d live: --port %s: must be 0 to 65535; 0: one that is free\n", o->port);
         return 0;
     }
     if (strcmp(o->model, "-") == 0) {
-        fputs("se3d live: standard input cannot be read again; give a file\n", stderr);
+        complain("se3d live: standard input cannot be read again; give a file\n");
         return 0;
     }
     return 1;
@@ -255,10 +262,10 @@ const command_entry live_entry = {
     .options =
         (const command_option[]){
             {"--port", NULL, "N", "of 127.0.0.1 (default 0: one that is free)"},
+            {"--json", NULL, NULL, "print the address as JSON"},
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}"},
             COMMAND_OPTIONS_OF_SOLVERS,
-            COMMAND_OPTION_QUIET,
             {0}},
     .examples = (const command_example[]){{"live pendulum.yaml", "open the address that it prints"},
                                           {"live car.yaml --port 8000", "always the same port"},

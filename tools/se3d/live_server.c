@@ -7,6 +7,7 @@
 #define _XOPEN_SOURCE 700
 
 #include "live_server.h"
+#include "outcome.h"
 
 #if defined(SE3D_HAS_MICROHTTPD)
 
@@ -424,7 +425,7 @@ live_server *live_server_create(int port, const char *page, size_t size, int wak
 {
     live_server *s = calloc(1, sizeof *s);
     if (!s || !make_token(s->token)) {
-        fputs("se3d live: no memory, or no random numbers for the token\n", stderr);
+        complain("se3d live: no memory, or no random numbers for the token\n");
         free(s);
         return NULL;
     }
@@ -435,8 +436,8 @@ live_server *live_server_create(int port, const char *page, size_t size, int wak
     s->seen = now() - 1000;
     errno = 0;
     if (!listen_at(s, port)) {
-        fprintf(stderr, "se3d live: no server on port %d of 127.0.0.1: %s\n", port,
-                strerror(errno ? errno : EADDRNOTAVAIL));
+        complain("se3d live: no server on port %d of 127.0.0.1: %s\n", port,
+                 strerror(errno ? errno : EADDRNOTAVAIL));
         pthread_mutex_destroy(&s->lock);
         free(s);
         return NULL;

@@ -9,40 +9,70 @@
 
 #include "io/document/guess.h"
 #include "options.h"
+#include "outcome.h"
 
 int command_report_unknown(const char *name)
 {
     se3di_guess guess = se3di_guess_begin(name);
-    fprintf(stderr, "se3d: unknown command `%s`; there are:", name);
+    complain("se3d: unknown command `%s`; there are:", name);
     for (size_t k = 0; command_get(k); ++k) {
         se3di_guess_offer(&guess, command_get(k)->name);
-        fprintf(stderr, "%s %s", k > 0 ? "," : "", command_get(k)->name);
+        complain("%s %s", k > 0 ? "," : "", command_get(k)->name);
     }
     const char *best = se3di_guess_get(&guess);
     if (best) {
-        fprintf(stderr, "; did you mean `%s`?\n", best);
+        complain("; did you mean `%s`?\n", best);
     } else {
-        fputs("; see `se3d help`\n", stderr);
+        complain("; see `se3d help`\n");
     }
     return EXIT_USAGE;
 }
 
-static int dispatch(int count, char *const *words)
+static int run_command(int count, char **words)
 {
-    const char *name = words[0];
-    const command_entry *c = command_find(name);
-    if (c) {
-        return c->run(count - 1, words + 1);
+    const command_entry *c = command_find(words[0]);
+    if (!c) {
+        for (int k = 1; k < count; ++k) {
+            if (strcmp(words[k], "--json") == 0) {
+                outcome_want_json();
+            }
+        }
+        const int code = command_report_unknown(words[0]);
+        outcome_end(words[0], code);
+        return code;
     }
-    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
-        command_print_overview(stdout);
-        return EXIT_DONE;
+    const int code = c->run(count - 1, words + 1);
+    outcome_end(c->name, code);
+    return code;
+}
+
+/* Options that all commands have may stand before the command: they go behind its name. */
+static int dispatch(int count, char **words)
+{
+    int first = 0;
+    while (first < count && command_find_common(words[first])) {
+        ++first;
     }
-    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
-        printf("se3d %s\n", se3d_version_get_text());
-        return EXIT_DONE;
+    if (first == count || words[first][0] == '-') {
+        const char *word = words[first == count ? 0 : first];
+        if (first == count && (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)) {
+            command_print_overview(stdout);
+            return EXIT_DONE;
+        }
+        if (first == count && (strcmp(word, "--version") == 0 || strcmp(word, "-V") == 0)) {
+            printf("se3d %s\n", se3d_version_get_text());
+            return EXIT_DONE;
+        }
+        if (first < count) {
+            return command_report_unknown(word);
+        }
+        complain("se3d: which command? See `se3d help`\n");
+        return EXIT_USAGE;
     }
-    return command_report_unknown(name);
+    char *name = words[first];
+    memmove(words + 1, words, (size_t)first * sizeof *words);
+    words[0] = name;
+    return run_command(count, words);
 }
 
 /* The next file that is opened would take the number of a closed standard stream, and get its
@@ -68,7 +98,7 @@ int main(int argc, char **argv)
     }
     const int code = dispatch(argc - 1, argv + 1);
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        fputs("se3d: standard output cannot be written\n", stderr);
+        complain("se3d: standard output cannot be written\n");
         return EXIT_FAILED;
     }
     return code;

@@ -72,8 +72,8 @@ static void put_command(const command_entry *c)
 {
     printf(".SS se3d %s %s\n", c->name, c->operands);
     put_expanded(c->text);
-    for (const command_option *o = c->options; o->name; ++o) {
-        put_option(o);
+    for (size_t k = 0; command_get_option(c, k); ++k) {
+        put_option(command_get_option(c, k));
     }
     puts(".PP\nExit code:");
     put_roff(c->exits);
@@ -85,8 +85,7 @@ void manual_print_program(void)
     puts(".SH SYNOPSIS");
     for (size_t k = 0; command_get(k); ++k) {
         const command_entry *c = command_get(k);
-        printf(".B se3d %s\n%s%s\n.br\n", c->name, c->operands,
-               c->options->name ? " [OPTION]..." : "");
+        printf(".B se3d %s\n%s%s\n.br\n", c->name, c->operands, " [OPTION]...");
     }
     puts(".SH DESCRIPTION\n"
          "Reads mechanisms from model files, see\n.BR se3d\\-model (5),\n"

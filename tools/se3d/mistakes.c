@@ -9,6 +9,7 @@
 
 #include "file.h"
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 
 enum { LINE_MAX = 4096, WIDTH = 100 /* characters of a line that are shown */ };
@@ -90,7 +91,8 @@ static void show_line(const se3d_model_error *error, const char *line)
     part[length] = '\0';
     fprintf(stderr, "%6zu | ", error->line);
     text_put_plain(stderr, part);
-    fprintf(stderr, "\n       | %*s^\n", (int)(error->column - first), "");
+    fprintf(stderr, "\n       | %*s%s^%s\n", (int)(error->column - first), "",
+            colour_get(COLOUR_MARK), colour_get(COLOUR_NONE));
 }
 
 static int is_input(const options *o)
@@ -116,7 +118,7 @@ static void show_mistake(const options *o, const se3d_model_error *error)
     char path[1024];
     char line[LINE_MAX];
     size_t at = 0;
-    fprintf(stderr, "%s\n", error->message);
+    complain("%s\n", error->message);
     if (error->line == 0 || error->column == 0 || error->column >= LINE_MAX) {
         return;
     }
@@ -175,6 +177,7 @@ static void put_parts(const se3d_model_error *e)
 static void print_json(const options *o, const mistakes *m, const char *message)
 {
     char file[1024];
+    outcome_tell();
     fputs("{\"status\": \"error\", \"message\": ", stdout);
     json_put_text(message);
     fputs(", \"mistakes\": [", stdout);
@@ -191,8 +194,7 @@ static void print_json(const options *o, const mistakes *m, const char *message)
     fputs("]}\n", stdout);
 }
 
-/* All of standard input; free it. @return NULL: errno says why. */
-static char *read_input(size_t *length)
+char *options_read_input(size_t *length)
 {
     size_t capacity = 65536;
     char *text = malloc(capacity);
@@ -223,7 +225,7 @@ static se3d_status read_model(const options *o, const se3d_model_options *how, s
     if (!is_input(o)) {
         return se3d_model_read_file(o->model, how, model, error);
     }
-    char *text = read_input(&length);
+    char *text = options_read_input(&length);
     if (!text) {
         memset(error, 0, sizeof *error);
         snprintf(error->message, sizeof error->message, "%s: %s", input_name, strerror(errno));

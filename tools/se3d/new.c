@@ -6,6 +6,7 @@
 
 #include "file.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "text.h"
 
@@ -111,9 +112,7 @@ static int write_model(const options *o, const char *text)
         report_failure(o, o->model, strerror(errno));
         return EXIT_FAILED;
     }
-    if (!o->quiet) {
-        fputs("wrote ", stdout);
-        text_put_plain(stdout, o->model);
+    if (outcome_add_file(o->model, o->quiet, "")) {
         fputs("; next: se3d view ", stdout);
         text_put_plain(stdout, o->model);
         putchar('\n');
@@ -130,13 +129,19 @@ static int command_new(int count, char *const *words)
     }
     const char *text = find_kind(o.kind ? o.kind : kinds[0].kind);
     if (!text) {
-        fprintf(stderr, "se3d new: the kind is `%s`, must be pendulum, slider-crank or contact\n",
-                o.kind);
+        complain("se3d new: the kind is `%s`, must be pendulum, slider-crank or contact\n", o.kind);
         return EXIT_USAGE;
     }
     const size_t length = strlen(o.model);
+    if (strcmp(o.model, "-") == 0 && o.json) {
+        complain("se3d new: standard output is for the model or for --json, not for both\n");
+        return EXIT_USAGE;
+    }
+    if (strcmp(o.model, "-") == 0) {
+        return fputs(text, stdout) >= 0 ? EXIT_DONE : EXIT_FAILED;
+    }
     if (!path_is_model(o.model) || strcmp(o.model + length - 4, "json") == 0) {
-        fprintf(stderr, "se3d new: the file is `%s`, must end with .yaml or .yml\n", o.model);
+        complain("se3d new: the file is `%s`, must end with .yaml or .yml\n", o.model);
         return EXIT_USAGE;
     }
     return write_model(&o, text);
@@ -149,11 +154,10 @@ const command_entry new_entry = {
     .files = "yaml yml",
     .summary = "write a model to begin with",
     .text = "Writes a small model that runs as it is, to be changed. A file that is there is left "
-            "alone.",
+            "alone. With - it is printed.",
     .options = (const command_option[]){{"--kind", NULL, "K",
                                          "pendulum (default), slider-crank (a driven mechanism) or "
                                          "contact (balls on a table)"},
-                                        COMMAND_OPTION_QUIET,
                                         {0}},
     .examples = (const command_example[]){{"new first.yaml", "then `se3d view first.yaml`"},
                                           {"new engine.yaml --kind slider-crank",

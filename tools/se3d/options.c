@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Reading the command line. */
 #include "options.h"
+#include "outcome.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static int usage_error(const char *command, const char *what, const char *word)
 {
-    fprintf(stderr, "se3d %s: %s `%s`; see `se3d help %s`\n", command, what, word, command);
+    complain("se3d %s: %s `%s`; see `se3d help %s`\n", command, what, word, command);
     return EXIT_USAGE;
 }
 
@@ -97,6 +98,8 @@ static int *flag_target(options *o, const char *name)
                  {"--server", &o->server},
                  {"--sensitivities", &o->sensitivities},
                  {"--optimize", &o->optimize},
+                 {"--version", &o->version},
+                 {"-V", &o->version},
                  {"--help", &o->help},
                  {"-h", &o->help}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
@@ -152,8 +155,11 @@ static int read_option(options *o, const command_entry *c, int count, char *cons
     memcpy(name, word, length);
     name[length] = '\0';
     int *flag = flag_target(o, name);
-    if (flag == &o->help || (flag && !equals && command_find_option(c, name))) {
+    if (flag && !equals && command_find_option(c, name)) {
         *flag = 1;
+        if (flag == &o->json || flag == &o->json_lines) {
+            outcome_want_json();
+        }
         return 1;
     }
     if (flag || !command_find_option(c, name)) {
@@ -179,10 +185,21 @@ static int report_no_operand(const command_entry *c)
                  {"SHELL", "which shell? Give bash, zsh or fish"}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].operands, c->operands) == 0) {
-            fprintf(stderr, "se3d %s: %s; see `se3d help %s`\n", c->name, table[k].text, c->name);
+            complain("se3d %s: %s; see `se3d help %s`\n", c->name, table[k].text, c->name);
         }
     }
     return EXIT_USAGE;
+}
+
+/* Standard output is for one of the two. */
+static int check_json(const options *o, const command_entry *c)
+{
+    const char *target = o->directory ? o->directory : c->prints == 1 ? "-" : o->model;
+    if (o->json && c->prints && strcmp(target, "-") == 0) {
+        complain("se3d %s: --json needs -o, standard output is for one of the two\n", c->name);
+        return EXIT_USAGE;
+    }
+    return EXIT_DONE;
 }
 
 /* `-o -` is what a command prints without -o; it makes no file or folder of that name (-o ./-). */
@@ -197,6 +214,28 @@ static int check_output(options *o, const command_entry *c)
                                    "results are not for standard output, but the rows of one file "
                                    "are:",
                                    "--print -");
+}
+
+void options_take_common(const char *word, int *quiet, int *help)
+{
+    const char *name = command_find_common(word)->name;
+    *quiet = *quiet || strcmp(name, "--quiet") == 0;
+    *help = strcmp(name, "--help") == 0      ? 1
+            : strcmp(name, "--version") == 0 ? OPTIONS_VERSION
+                                             : *help;
+    if (strcmp(name, "--json") == 0) {
+        outcome_want_json();
+    }
+}
+
+void options_print_of(const command_entry *c, int version)
+{
+    outcome_tell();
+    if (version) {
+        printf("se3d %s\n", se3d_version_get_text());
+    } else {
+        command_print_help(c);
+    }
 }
 
 int options_read(options *o, const command_entry *c, int count, char *const *words)
@@ -222,11 +261,16 @@ int options_read(options *o, const command_entry *c, int count, char *const *wor
         }
     }
     o->json = o->json || o->json_lines;
-    if (o->help) {
-        command_print_help(c);
+    if (o->help || o->version) {
+        options_print_of(c, o->version);
+        o->help = 1;
         return EXIT_DONE;
     }
-    return !o->model && c->operands[0] != '[' ? report_no_operand(c) : check_output(o, c);
+    if (!o->model && c->operands[0] != '[') {
+        return report_no_operand(c);
+    }
+    const int code = check_output(o, c);
+    return code == EXIT_DONE ? check_json(o, c) : code;
 }
 
 int options_check_file(const options *o, const command_entry *c)
@@ -234,7 +278,7 @@ int options_check_file(const options *o, const command_entry *c)
     if (strcmp(o->model, "-") != 0) {
         return EXIT_DONE;
     }
-    fprintf(stderr, "se3d %s: the model must be a file, not standard input\n", c->name);
+    complain("se3d %s: the model must be a file, which is packed, not standard input\n", c->name);
     return EXIT_USAGE;
 }
 

@@ -58,19 +58,28 @@ typedef struct options {
     int optimize;
     int list;
     int unchecked;
-    int help; /* it was printed */
+    int version;
+    int help; /* it was printed, or the version */
 } options;
 
 /* Read the words after the command by its table; with --help among them, print the command's help.
  * @return EXIT_DONE, or EXIT_USAGE after a message. */
 int options_read(options *o, const command_entry *c, int count, char *const *words);
 
+/* Take a word that is an option of all commands; *help becomes 1, or OPTIONS_VERSION. */
+enum { OPTIONS_VERSION = 2 };
+void options_take_common(const char *word, int *quiet, int *help);
+/* Print the help of a command, or the version. */
+void options_print_of(const command_entry *c, int version);
+
 /* Not standard input. @return EXIT_DONE, or EXIT_USAGE after a message. */
 int options_check_file(const options *o, const command_entry *c);
 /* The model options that the command line asks for. */
 se3d_model_options options_get_model(const options *o);
 
-/* mistakes.c: read the model. @return EXIT_DONE, or EXIT_USAGE after its mistakes were shown. */
+/* mistakes.c: all of standard input; free it. @return NULL: errno says why. */
+char *options_read_input(size_t *length);
+/* Read the model. @return EXIT_DONE, or EXIT_USAGE after its mistakes were shown. */
 int options_read_model(const options *o, const se3d_model_options *how, se3d_model **model);
 
 /* Tell at a terminal what to do next with the results in a folder. */

@@ -11,6 +11,7 @@
 #include "child.h"
 #include "file.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 
 char *page_read_whole(const char *path, size_t *size)
@@ -80,7 +81,7 @@ static int put_file(FILE *out, const char *folder, const char *name)
     snprintf(path, sizeof path, "%.4000s/%s", folder, name);
     char *data = page_read_whole(path, &size);
     if (!data) {
-        fprintf(stderr, "se3d: %s: cannot be read\n", path);
+        complain("se3d: %s: cannot be read\n", path);
         return 0;
     }
     fwrite(data, 1, size, out);
@@ -94,10 +95,9 @@ static int check_own(const page_parts *p, const char *path)
     if (file_is_own(path)) {
         return 1;
     }
-    fprintf(stderr,
-            "se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
-            "folder of your own\n",
-            p->command, path);
+    complain("se3d %s: %s belongs to another user, or others can change it; set SE3D_CACHE to a "
+             "folder of your own\n",
+             p->command, path);
     return 0;
 }
 
@@ -112,7 +112,7 @@ static int make_three(const page_parts *p)
         return EXIT_FAILED;
     }
     if (process_run(NULL, words) != 0) {
-        fprintf(stderr, "se3d %s: three.js could not be made, see above\n", p->command);
+        complain("se3d %s: three.js could not be made, see above\n", p->command);
         return EXIT_FAILED;
     }
     snprintf(script, sizeof script, "%.4000s/three.js", p->cache);
@@ -125,10 +125,9 @@ int page_begin(page_parts *p, const char *command)
     p->command = command;
     p->is_passing = 0;
     if (!find_viewer(p->viewer, sizeof p->viewer)) {
-        fprintf(stderr,
-                "se3d %s: the parts of the page are not found; set SE3D_VIEWER to the folder "
-                "tools/viewer of the source\n",
-                command);
+        complain("se3d %s: the parts of the page are not found; set SE3D_VIEWER to the folder "
+                 "tools/viewer of the source\n",
+                 command);
         return EXIT_FAILED;
     }
     snprintf(script, sizeof script, "%.4000s/three.js", p->viewer);
@@ -139,7 +138,7 @@ int page_begin(page_parts *p, const char *command)
     if (!find_cache(p->cache, sizeof p->cache)) {
         p->is_passing = folder_make_temporary(p->cache, sizeof p->cache);
         if (!p->is_passing) {
-            fprintf(stderr, "se3d %s: no temporary folder: %s\n", command, strerror(errno));
+            complain("se3d %s: no temporary folder: %s\n", command, strerror(errno));
             return EXIT_FAILED;
         }
     }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "view.h"
 
@@ -17,7 +18,7 @@ static int join(const char *folder, const char *file, char *path)
     const int length = path_is_absolute(file) ? snprintf(path, PATH_SIZE, "%s", file)
                                               : snprintf(path, PATH_SIZE, "%s/%s", folder, file);
     if (length < 0 || length >= PATH_SIZE) {
-        fprintf(stderr, "se3d run: the path of %s is too long\n", file);
+        complain("se3d run: the path of %s is too long\n", file);
         return 0;
     }
     return 1;
@@ -66,11 +67,11 @@ static int make_scene(se3d_scene *scene, const char *folder, const char *path, i
     if (strlen(without) == strlen(path)) {
         code = view_write("run", folder, NULL, path);
     } else if (!scene || SE3D_FAILED(se3d_scene_write(scene, path, &error))) {
-        fprintf(stderr, "se3d run: %s\n", scene ? error.message : "out of memory");
+        complain("se3d run: %s\n", scene ? error.message : "out of memory");
         code = EXIT_FAILED;
     }
-    if (code == EXIT_DONE && !quiet) {
-        printf("wrote %s\n", path);
+    if (code == EXIT_DONE) {
+        outcome_add_file(path, quiet, "\n");
     }
     return code;
 }

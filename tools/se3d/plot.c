@@ -12,6 +12,7 @@
 #include "file.h"
 #include "interrupt.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "text.h"
 
@@ -21,7 +22,7 @@ static int take_style(plot *p, const char *value)
 {
     p->paper = strcmp(value, "paper") == 0;
     if (!p->paper && strcmp(value, "screen") != 0) {
-        fprintf(stderr, "se3d plot: the style is `%s`, must be screen or paper\n", value);
+        complain("se3d plot: the style is `%s`, must be screen or paper\n", value);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -33,7 +34,7 @@ static int take_width(plot *p, const char *value)
     p->width = strtod(value, &rest);
     if (rest == value || (*rest && strcmp(rest, "mm") != 0) ||
         !(p->width >= 30.0 && p->width <= 1000.0)) {
-        fprintf(stderr, "se3d plot: the width is `%s`, must be 30mm to 1000mm\n", value);
+        complain("se3d plot: the width is `%s`, must be 30mm to 1000mm\n", value);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -42,7 +43,7 @@ static int take_width(plot *p, const char *value)
 static int take_value(plot *p, const char *name, const char *value)
 {
     if (!value) {
-        fprintf(stderr, "se3d plot: a value is missing after `%s`; see `se3d help plot`\n", name);
+        complain("se3d plot: a value is missing after `%s`; see `se3d help plot`\n", name);
         return EXIT_USAGE;
     }
     if (strcmp(name, "-x") == 0) {
@@ -56,7 +57,7 @@ static int take_value(plot *p, const char *name, const char *value)
     } else if (p->channel_count < PLOT_CHANNELS_MAX) {
         p->channels[p->channel_count++] = value;
     } else {
-        fprintf(stderr, "se3d plot: more than %d channels\n", PLOT_CHANNELS_MAX);
+        complain("se3d plot: more than %d channels\n", PLOT_CHANNELS_MAX);
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -65,7 +66,7 @@ static int take_value(plot *p, const char *name, const char *value)
 static int add_file(plot *p, const char *word)
 {
     if (p->file_count == PLOT_FILES_MAX) {
-        fprintf(stderr, "se3d plot: more than %d files\n", PLOT_FILES_MAX);
+        complain("se3d plot: more than %d files\n", PLOT_FILES_MAX);
         return EXIT_USAGE;
     }
     p->files[p->file_count++] = word;
@@ -74,16 +75,14 @@ static int add_file(plot *p, const char *word)
 
 static int read_word(plot *p, const char *word)
 {
-    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-        p->help = 1;
+    if (command_find_common(word)) {
+        options_take_common(word, &p->quiet, &p->help);
     } else if (strcmp(word, "--fft") == 0) {
         p->fft = 1;
     } else if (strcmp(word, "--difference") == 0) {
         p->difference = 1;
-    } else if (strcmp(word, "--quiet") == 0 || strcmp(word, "-q") == 0) {
-        p->quiet = 1;
-    } else if (word[0] == '-') {
-        fprintf(stderr, "se3d plot: unknown option `%s`; see `se3d help plot`\n", word);
+    } else if (word[0] == '-' && word[1]) {
+        complain("se3d plot: unknown option `%s`; see `se3d help plot`\n", word);
         return EXIT_USAGE;
     } else {
         return add_file(p, word);
@@ -122,11 +121,11 @@ static int read_words(plot *p, int count, const char *const *words)
         }
     }
     if (p->file_count == 0 && !p->help) {
-        fputs("se3d plot: which results? Give a CSV file, see `se3d help plot`\n", stderr);
+        complain("se3d plot: which results? Give a CSV file, see `se3d help plot`\n");
         return EXIT_USAGE;
     }
     if (p->difference && !p->help && (p->file_count != 2 || p->x || p->fft)) {
-        fputs("se3d plot: --difference is of two files, without -x and --fft\n", stderr);
+        complain("se3d plot: --difference is of two files, without -x and --fft\n");
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -137,16 +136,16 @@ static int name_output(plot *p)
     static const char *const endings[] = {".svg", ".png", ".pdf", ".gp"};
     if (!path_cut(p->output ? p->output : p->files[0], p->output ? "" : ".csv", p->base,
                   sizeof p->base - 64)) {
-        fputs("se3d plot: the name of the picture is too long\n", stderr);
+        complain("se3d plot: the name of the picture is too long\n");
         return 0;
     }
     for (size_t k = 0; p->output && k < sizeof endings / sizeof *endings; ++k) {
         path_cut(p->base, endings[k], p->base, sizeof p->base);
     }
     if (!text_is_plain(path_get_name(p->base))) {
-        fputs("se3d plot: the name of the picture has control characters or is not UTF-8; choose "
-              "one with -o\n",
-              stderr);
+        complain(
+            "se3d plot: the name of the picture has control characters or is not UTF-8; choose "
+            "one with -o\n");
         return 0;
     }
     return 1;
@@ -180,11 +179,11 @@ static int keep(const plot *p, const char *folder, const char *ending)
     snprintf(name, sizeof name, "%s%s", p->base, ending);
     errno = 0;
     if (!file_copy(made, name)) {
-        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", name, strerror(errno));
+        complain("se3d plot: %s: cannot be written: %s\n", name, strerror(errno));
         return 0;
     }
-    if (!p->quiet && strcmp(ending, ".gp") != 0) {
-        printf("wrote %s\n", name);
+    if (strcmp(ending, ".gp") != 0) {
+        outcome_add_file(name, p->quiet, "\n");
     }
     return 1;
 }
@@ -198,8 +197,7 @@ static int draw_in(plot *p, const char *folder)
     snprintf(path, sizeof path, "%s/plot.gp", folder);
     errno = 0;
     if (!plot_write_script(p, path)) {
-        fprintf(stderr, "se3d plot: %s: cannot be written: %s\n", path,
-                strerror(errno ? errno : ENOMEM));
+        complain("se3d plot: %s: cannot be written: %s\n", path, strerror(errno ? errno : ENOMEM));
         return 0;
     }
     if (!keep(p, folder, ".gp")) {
@@ -213,8 +211,8 @@ static int draw_in(plot *p, const char *folder)
     snprintf(path, sizeof path, "%s/plot.pdf", folder);
     whole = whole && is_whole(path, "%%EOF");
     if (!whole || interrupt_came()) {
-        fprintf(stderr, "se3d plot: %s on %s.gp\n",
-                interrupt_came() ? "interrupted" : "gnuplot failed", p->base);
+        complain("se3d plot: %s on %s.gp\n", interrupt_came() ? "interrupted" : "gnuplot failed",
+                 p->base);
         return 0;
     }
     return keep(p, folder, ".svg") && keep(p, folder, ".png") && keep(p, folder, ".pdf");
@@ -224,7 +222,7 @@ static int draw(plot *p)
 {
     char folder[PATH_SIZE];
     if (!folder_make_temporary(folder, sizeof folder)) {
-        fprintf(stderr, "se3d plot: no temporary folder: %s\n", strerror(errno));
+        complain("se3d plot: no temporary folder: %s\n", strerror(errno));
         return EXIT_FAILED;
     }
     const int good = draw_in(p, folder);
@@ -279,13 +277,14 @@ int plot_files(int count, const char *const *words)
 {
     plot *p = calloc(1, sizeof *p);
     if (!p) {
-        fputs("se3d plot: out of memory\n", stderr);
+        complain("se3d plot: out of memory\n");
         return EXIT_FAILED;
     }
     int code = read_words(p, count, words);
     if (code == EXIT_DONE && p->help) {
-        command_print_help(&plot_entry);
+        options_print_of(&plot_entry, p->help == OPTIONS_VERSION);
     } else if (code == EXIT_DONE) {
+        p->quiet = p->quiet || outcome_wants_json();
         code = run_models(p);
         if (code == EXIT_DONE && !p->done) {
             code = plot_all(p);
@@ -330,7 +329,6 @@ const command_entry plot_entry = {
              "FILE.difference.csv"},
             {"--style", NULL, "STYLE", "screen (default), or paper: small letters, thin lines"},
             {"--width", NULL, "WIDTH", "of the picture, 30mm to 1000mm (of paper: 85mm)"},
-            COMMAND_OPTION_QUIET,
             {0}},
     .examples =
         (const command_example[]){

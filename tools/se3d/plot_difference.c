@@ -7,11 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "outcome.h"
 #include "plot.h"
 
 static int fail(const table *t, const char *why, const char *name)
 {
-    fprintf(stderr, "se3d plot: %s %s%s\n", t->path, why, name);
+    complain("se3d plot: %s %s%s\n", t->path, why, name);
     return 0;
 }
 
@@ -61,7 +62,7 @@ static int write_difference(plot *p, double *a, double *b, size_t rows)
     snprintf(p->spectra[0], sizeof p->spectra[0], "%s.difference.csv", p->base);
     errno = 0;
     if (!plot_write_curves(p, &made, p->spectra[0])) {
-        fprintf(stderr, "se3d plot: %s: %s\n", p->spectra[0], strerror(errno));
+        complain("se3d plot: %s: %s\n", p->spectra[0], strerror(errno));
         return 0;
     }
     return 1;
@@ -73,7 +74,7 @@ int plot_subtract(plot *p)
     const size_t size = (plot_count_curves(p) + 1) * rows;
     double *values = malloc(2 * size * sizeof *values);
     if (!values) {
-        fputs("se3d plot: out of memory\n", stderr);
+        complain("se3d plot: out of memory\n");
         return 0;
     }
     const int good = write_difference(p, values, values + size, rows);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "file.h"
+#include "outcome.h"
 #include "plot.h"
 #include "process.h"
 #include "text.h"
@@ -79,11 +80,11 @@ static int choose_named(plot *p)
             }
         }
         if (!found) {
-            fprintf(stderr, "se3d plot: %s has no channel `%s`, it has:", t->path, p->channels[c]);
+            complain("se3d plot: %s has no channel `%s`, it has:", t->path, p->channels[c]);
             for (size_t k = 0; k < t->count; ++k) {
-                fprintf(stderr, "%s %s", k > 0 ? "," : "", t->names[k]);
+                complain("%s %s", k > 0 ? "," : "", t->names[k]);
             }
-            fputc('\n', stderr);
+            complain("\n");
             return 0;
         }
     }
@@ -163,7 +164,7 @@ static int drop_zeros(plot *p)
     size_t dropped = 0;
     double *values = malloc(ROWS_MAX * sizeof *values);
     if (!values) {
-        fputs("se3d plot: out of memory\n", stderr);
+        complain("se3d plot: out of memory\n");
         return 0;
     }
     for (size_t k = 0; k < p->panel_count; ++k) {
@@ -181,7 +182,7 @@ int plot_choose(plot *p)
     const table *t = &p->tables[0];
     p->x = p->x ? p->x : t->names[0];
     if (table_find(t, p->x) == t->count) {
-        fprintf(stderr, "se3d plot: %s has no column `%s` for -x\n", t->path, p->x);
+        complain("se3d plot: %s has no column `%s` for -x\n", t->path, p->x);
         return 0;
     }
     make_title(p, p->x, p->x_title, sizeof p->x_title);
@@ -198,7 +199,7 @@ int plot_choose(plot *p)
         choose_usual(p);
     }
     if (p->panel_count == 0) {
-        fprintf(stderr, "se3d plot: %s has no column but `%s`\n", t->path, t->names[0]);
+        complain("se3d plot: %s has no column but `%s`\n", t->path, t->names[0]);
         return 0;
     }
     if (!drop_zeros(p)) {
@@ -206,8 +207,8 @@ int plot_choose(plot *p)
     }
     for (size_t k = 0; k < p->panel_count && !p->quiet; ++k) {
         if (p->panels[k].dropped > 0) {
-            fprintf(stderr, "se3d plot: %s: there is no room for %zu more curves, choose with -y\n",
-                    p->panels[k].title, p->panels[k].dropped);
+            complain("se3d plot: %s: there is no room for %zu more curves, choose with -y\n",
+                     p->panels[k].title, p->panels[k].dropped);
         }
     }
     return 1;

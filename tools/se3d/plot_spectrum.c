@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "file.h"
+#include "outcome.h"
 #include "plot.h"
 
 enum { SAMPLES_MAX = 1 << 18 };
@@ -159,10 +160,10 @@ static int transform_table(plot *p, size_t k, char *path, size_t size)
         "frequency", values ? values + curves * n : NULL, values, n, n / 2, 9};
     errno = 0;
     if (!good || !plot_write_curves(p, &made, path)) {
-        fprintf(stderr, "se3d plot: %s: %s\n", good ? path : t->path,
-                good     ? strerror(errno)
-                : values ? "a spectrum needs at least three rows of increasing time"
-                         : "out of memory");
+        complain("se3d plot: %s: %s\n", good ? path : t->path,
+                 good     ? strerror(errno)
+                 : values ? "a spectrum needs at least three rows of increasing time"
+                          : "out of memory");
         free(values);
         return 0;
     }
@@ -199,7 +200,7 @@ int plot_take_files(plot *p, const char *what)
             return 0;
         }
         if (k == 0 && !take_names(p, &spectrum)) {
-            fprintf(stderr, "se3d plot: %s: was changed by another program\n", p->spectra[k]);
+            complain("se3d plot: %s: was changed by another program\n", p->spectra[k]);
             table_destroy(&spectrum);
             return 0;
         }

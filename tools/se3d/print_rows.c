@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "print_rows.h"
+#include "outcome.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -18,8 +19,8 @@ const char *print_rows_find(const options *o, const se3d_model *model)
             return output.file;
         }
     }
-    fprintf(stderr, "se3d run: --print %s: the model's `output` has no %s\n", o->print,
-            is_any ? "file of channels" : "such file");
+    complain("se3d run: --print %s: the model's `output` has no %s\n", o->print,
+             is_any ? "file of channels" : "such file");
     return NULL;
 }
 
@@ -28,7 +29,7 @@ int print_rows(const char *folder, const char *file)
     char path[4096], block[4096];
     FILE *from = se3di_file_join(folder, file, path, sizeof path) ? se3di_file_open(path) : NULL;
     if (!from) {
-        fprintf(stderr, "se3d run: --print %s: %s\n", file, se3di_file_get_text(errno));
+        complain("se3d run: --print %s: %s\n", file, se3di_file_get_text(errno));
         return EXIT_FAILED;
     }
     size_t used = fread(block, 1, sizeof block, from);

@@ -5,6 +5,7 @@
 #endif
 
 #include "process.h"
+#include "file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@
 #include <string.h>
 
 #include "options.h"
+#include "outcome.h"
 
 enum { PATH_SIZE = 4096 };
 
@@ -119,10 +121,9 @@ int process_is_found(const char *name)
 
 int process_report_missing(const char *command, const char *name, const char *package)
 {
-    fprintf(stderr,
-            "se3d %s: the program `%s` is not installed; on Debian and Ubuntu:\n"
-            "    apt-get install --no-install-recommends %s\n",
-            command, name, package);
+    complain("se3d %s: the program `%s` is not installed; on Debian and Ubuntu:\n"
+             "    apt-get install --no-install-recommends %s\n",
+             command, name, package);
     return EXIT_FAILED;
 }
 
@@ -163,6 +164,9 @@ int path_is_model(const char *path)
 {
     static const char *const endings[] = {".yaml", ".yml", ".json"};
     const size_t length = strlen(path);
+    if (strcmp(path, "-") == 0) {
+        return file_is_missing(path); /* standard input, unless there are results of that name */
+    }
     for (size_t k = 0; k < sizeof endings / sizeof *endings; ++k) {
         const size_t tail = strlen(endings[k]);
         if (length > tail && strcmp(path + length - tail, endings[k]) == 0) {

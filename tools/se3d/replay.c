@@ -6,6 +6,7 @@
 
 #include "file.h"
 #include "options.h"
+#include "outcome.h"
 
 #if defined(SE3D_HAS_RECORD)
 #include "player.h"
@@ -51,11 +52,11 @@ static void print_call(void *ctx, size_t number, const char *name, int is_after,
 static void print_report(const options *o, player_verdict verdict, const player_report *report)
 {
     if (verdict != PLAYER_SAME && report->name) {
-        fprintf(stderr, "se3d replay: %s: call %zu, %s: %s\n", o->model, report->number,
-                report->name, report->message);
+        complain("se3d replay: %s: call %zu, %s: %s\n", o->model, report->number, report->name,
+                 report->message);
     } else if (verdict != PLAYER_SAME) {
-        fprintf(stderr, "se3d replay: %s: %s\n", o->model, report->message);
-    } else if (!o->quiet) {
+        complain("se3d replay: %s: %s\n", o->model, report->message);
+    } else if (!o->quiet && !o->json) {
         put_count(report->calls - report->left_out, "call", "calls", ", ");
         put_count(report->callbacks, "callback", "callbacks", ", ");
         put_count(report->hashes, "hash", "hashes",
@@ -77,7 +78,7 @@ static int replay(const options *o)
     size_t size;
     unsigned char *data = read_whole(o->model, &size);
     if (!data) {
-        fprintf(stderr, "se3d replay: %s: %s\n", o->model, strerror(errno ? errno : ENOMEM));
+        complain("se3d replay: %s: %s\n", o->model, strerror(errno ? errno : ENOMEM));
         return EXIT_USAGE;
     }
     const player_verdict verdict = player_play(data, size, &how, &report);
@@ -91,7 +92,7 @@ static int replay(const options *o)
 static int replay(const options *o)
 {
     (void)o;
-    fputs("se3d replay: this program was built without recordings (Linux, python3)\n", stderr);
+    complain("se3d replay: this program was built without recordings (Linux, python3)\n");
     return EXIT_USAGE;
 }
 #endif
@@ -100,6 +101,10 @@ static int command_replay(int count, char *const *words)
 {
     options o;
     const int code = options_read(&o, &replay_entry, count, words);
+    if (code == EXIT_DONE && !o.help && o.list && o.json) {
+        complain("se3d replay: standard output is for --list or for --json, not for both\n");
+        return EXIT_USAGE;
+    }
     return code != EXIT_DONE || o.help ? code : replay(&o);
 }
 
@@ -119,7 +124,6 @@ const command_entry replay_entry = {
                                  {"--unchecked", NULL, NULL,
                                   "compare nothing, and leave out calls whose objects are "
                                   "missing: for recordings of which calls were taken away"},
-                                 COMMAND_OPTION_QUIET,
                                  {0}},
     .examples = (const command_example[]){{"replay bug.se3drec", "whether it happens here, too"},
                                           {"replay --list bug.se3drec", "its calls"},

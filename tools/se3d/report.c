@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 
 #if defined(_WIN32)
@@ -51,7 +52,7 @@ void report_next(const options *o, const char *folder)
 {
     if (!o->quiet && !o->json && is_terminal()) {
         fflush(stdout);
-        fputs("next: se3d view ", stderr);
+        fprintf(stderr, "%snext:%s se3d view ", colour_get(COLOUR_NEXT), colour_get(COLOUR_NONE));
         text_put_plain(stderr, folder);
         fputs("\n", stderr);
     }
@@ -59,10 +60,13 @@ void report_next(const options *o, const char *folder)
 
 void report_failure(const options *o, const char *command, const char *message)
 {
-    fprintf(stderr, "%s%s%s\n", command, command[0] ? ": " : "", message);
+    complain("%s%s%s\n", command, command[0] ? ": " : "", message);
     if (o->json) {
+        outcome_tell();
+        char text[2000];
+        snprintf(text, sizeof text, "%s%s%s", command, command[0] ? ": " : "", message);
         fputs("{\"status\": \"error\", \"message\": ", stdout);
-        json_put_text(message);
+        json_put_text(text);
         fputs("}\n", stdout);
     }
 }

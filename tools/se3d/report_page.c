@@ -13,6 +13,7 @@
 #include "io/write/sketch.h"
 #include "io/write/svg.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "report.h"
 #include "se3d/study.h"
@@ -45,9 +46,7 @@ typedef struct report {
 
 static int usage(const char *what, const char *word)
 {
-    fprintf(stderr, "se3d report: %s `", what);
-    text_put_plain(stderr, word);
-    fputs("`; see `se3d help report`\n", stderr);
+    complain("se3d report: %s `%s`; see `se3d help report`\n", what, word);
     return EXIT_USAGE;
 }
 
@@ -585,7 +584,7 @@ static int report_model(report *r, size_t index)
     se3d_model *model = NULL;
     int code = read_model(r, path, &model);
     if (code == EXIT_DONE && se3d_model_count_analyses(model) == 0) {
-        fprintf(stderr, "se3d report: %s: there is nothing to run\n", path);
+        complain("se3d report: %s: there is nothing to run\n", path);
         code = EXIT_USAGE;
     }
     if (code == EXIT_DONE) {
@@ -597,7 +596,7 @@ static int report_model(report *r, size_t index)
         code = code == EXIT_DONE ? run_study(r, path, model, folder, &study) : code;
     }
     if (code == EXIT_DONE && !put_model(r, model, path, folder, below, study)) {
-        fputs("se3d report: out of memory, or of room for temporary files\n", stderr);
+        complain("se3d report: out of memory, or of room for temporary files\n");
         code = EXIT_FAILED;
     }
     se3d_model_destroy(model);
@@ -677,13 +676,11 @@ static int write_page(report *r)
     }
     const int good = r->page && file_end(r->page, path, code == EXIT_DONE && !ferror(r->page));
     if (!good && code == EXIT_DONE) {
-        fprintf(stderr, "se3d report: %s: cannot be written: %s\n", path, strerror(errno));
+        complain("se3d report: %s: cannot be written: %s\n", path, strerror(errno));
         code = EXIT_FAILED;
     }
-    if (code == EXIT_DONE && !r->quiet) {
-        fputs("wrote ", stdout);
-        text_put_plain(stdout, path);
-        putchar('\n');
+    if (code == EXIT_DONE) {
+        outcome_add_file(path, r->quiet, "\n");
     }
     return code;
 }
@@ -714,7 +711,7 @@ static int add_model(report *r, char *word)
         return usage("too many models, no room for", word);
     }
     if (strcmp(word, "-") == 0) {
-        return usage("a model must be a file, not", word);
+        return usage("a model must be a file, which is run by itself, not", word);
     }
     r->models[r->count++] = word;
     return EXIT_DONE;
@@ -733,10 +730,8 @@ static int takes_value(const char *word)
 
 static int read_flag(report *r, const char *word)
 {
-    if (strcmp(word, "-q") == 0 || strcmp(word, "--quiet") == 0) {
-        r->quiet = 1;
-    } else if (strcmp(word, "-h") == 0 || strcmp(word, "--help") == 0) {
-        r->help = 1;
+    if (command_find_common(word)) {
+        options_take_common(word, &r->quiet, &r->help);
     } else {
         return usage("unknown option", word);
     }
@@ -763,7 +758,7 @@ static int read_words(report *r, int count, char *const *words)
         }
     }
     if (r->count == 0 && !r->help) {
-        fputs("se3d report: which model? Give a file; see `se3d help report`\n", stderr);
+        complain("se3d report: which model? Give a file; see `se3d help report`\n");
         return EXIT_USAGE;
     }
     return EXIT_DONE;
@@ -773,14 +768,15 @@ static int command_report(int count, char *const *words)
 {
     report *r = calloc(1, sizeof *r);
     if (!r) {
-        fputs("se3d report: out of memory\n", stderr);
+        complain("se3d report: out of memory\n");
         return EXIT_FAILED;
     }
     interrupt_begin();
     int code = read_words(r, count, words);
     if (code == EXIT_DONE && r->help) {
-        command_print_help(&report_entry);
+        options_print_of(&report_entry, r->help == OPTIONS_VERSION);
     } else if (code == EXIT_DONE) {
+        r->quiet = r->quiet || outcome_wants_json();
         code = find_place(r);
         code = code == EXIT_DONE ? write_page(r) : code;
     }
@@ -811,7 +807,6 @@ const command_entry report_entry = {
              "horizontal axis of the files that have it; of a study, the parameter"},
             {"--jobs", NULL, "N", "run studies by this many processes, or `all`"},
             COMMAND_OPTION_SET,
-            COMMAND_OPTION_QUIET,
             {0}},
     .examples =
         (const command_example[]){

@@ -10,6 +10,7 @@
 #include "interrupt.h"
 #include "notes.h"
 #include "options.h"
+#include "outcome.h"
 #include "pictures.h"
 #include "print_rows.h"
 #include "process.h"
@@ -381,6 +382,7 @@ typedef struct told {
 static void print_json(const options *o, const se3d_model *model, const se3d_run *run,
                        const char *message, const told *n)
 {
+    outcome_tell();
     printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
     json_put_text(o->model);
     fputs(", \"message\": ", stdout);
@@ -556,10 +558,10 @@ static int run_into(const warnings *warned, se3d_model *model, const char *folde
     print_result(warned, model, run, error.message);
     if (failed || !drawn) {
         fflush(stdout);
-        fprintf(stderr, "%s: %s\n", o->model, error.message);
+        complain("%s: %s\n", o->model, error.message);
     }
     if (failed && !drawn) {
-        fprintf(stderr, "%s: %s\n", o->model, lost.message);
+        complain("%s: %s\n", o->model, lost.message);
     }
     se3d_run_destroy(run);
     if (status == SE3D_ERR_UNSUPPORTED || (SE3D_FAILED(status) && nothing) || ended) {
@@ -626,17 +628,20 @@ static int read_for(const char *path, int quiet, options *o, warnings *warned, s
 {
     memset(o, 0, sizeof *o);
     o->model = path;
-    o->quiet = quiet;
+    o->quiet = quiet || outcome_wants_json();
+    o->json = outcome_wants_json();
     *warned = (warnings){.o = o};
     se3d_model_options how = options_get_model(o);
     how.log = warnings_add;
     how.log_ctx = warned;
-    return options_read_model(o, &how, model);
+    const int code = options_read_model(o, &how, model);
+    o->json = 0; /* what follows is the other command's */
+    return code;
 }
 
 static int fail_nothing(const char *command, const char *path)
 {
-    fprintf(stderr, "se3d %s: %s: there is nothing to run and draw\n", command, path);
+    complain("se3d %s: %s: there is nothing to run and draw\n", command, path);
     return EXIT_USAGE;
 }
 
@@ -698,8 +703,7 @@ static int is_checkpoint(const options *o)
     if (!o->checkpoint || (end != o->checkpoint && !*end && seconds >= 0.0 && seconds <= DBL_MAX)) {
         return 1;
     }
-    fprintf(stderr, "se3d run: --checkpoint %s: must be a number of seconds, 0 or more\n",
-            o->checkpoint);
+    complain("se3d run: --checkpoint %s: must be a number of seconds, 0 or more\n", o->checkpoint);
     return 0;
 }
 
@@ -715,7 +719,7 @@ static int command_run(int count, char *const *words)
         return EXIT_USAGE;
     }
     if (o.print && o.json) {
-        fprintf(stderr, "se3d run: standard output is for --print or for --json, not for both\n");
+        complain("se3d run: standard output is for --print or for --json, not for both\n");
         return EXIT_USAGE;
     }
     o.quiet = o.quiet || o.print; /* of what is not an error or a warning */
@@ -776,7 +780,6 @@ const command_entry run_entry = {
              "do not estimate the error of a given step of methods that control none, which takes "
              "half as much time again"},
             COMMAND_OPTION_STRICT,
-            COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON, with the warnings"},
             {"--json-lines", NULL, NULL,
              "print JSON, an object a line: how far the run is, at last the summary"},

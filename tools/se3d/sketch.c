@@ -8,6 +8,7 @@
 #include "file.h"
 #include "io/write/sketch.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "view.h"
 
@@ -39,17 +40,16 @@ static int write_sketch(const options *o, se3d_model *model, const double *view,
     errno = file && SE3D_FAILED(status) ? EINVAL : errno;
     const int good = file && !SE3D_FAILED(status) && !ferror(file);
     if (prints ? good && fflush(stdout) == 0 : file && file_end(file, path, good)) {
-        if (!o->quiet && !prints) {
-            printf("wrote %s\n", path);
+        if (!prints) {
+            outcome_add_file(path, o->quiet, "\n");
         }
         return EXIT_DONE;
     }
     if (file && SE3D_FAILED(status)) {
         const char *why = se3d_system_get_error(se3d_model_get_system(model));
-        fprintf(stderr, "se3d sketch: %s: %s\n", o->model,
-                why[0] ? why : se3d_status_get_text(status));
+        complain("se3d sketch: %s: %s\n", o->model, why[0] ? why : se3d_status_get_text(status));
     } else {
-        fprintf(stderr, "se3d sketch: %s: cannot be written: %s\n", path, strerror(errno));
+        complain("se3d sketch: %s: cannot be written: %s\n", path, strerror(errno));
     }
     return EXIT_FAILED;
 }
@@ -95,7 +95,6 @@ const command_entry sketch_entry = {
              "where to (default: MODEL.svg, here), - for standard output"},
             {"--view", NULL, "A,E", "azimuth and elevation of the eye [degrees]"},
             COMMAND_OPTION_SET,
-            COMMAND_OPTION_QUIET,
             {0}},
     .examples =
         (const command_example[]){{"sketch fourbar.yaml", "fourbar.svg"},

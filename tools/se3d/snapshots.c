@@ -2,6 +2,7 @@
 /* Snapshots of particles: read two or three times, so that a file of any length needs the memory of
  * one. */
 #include "snapshots.h"
+#include "outcome.h"
 
 #include <errno.h>
 #include <math.h>
@@ -295,7 +296,7 @@ int snapshots_put(FILE *out, const char *command, const char *path)
     memset(&p, 0, sizeof p);
     errno = 0;
     if (!survey(&p, path)) {
-        fprintf(stderr, "se3d %s: %s: %s\n", command, path, strerror(errno));
+        complain("se3d %s: %s: %s\n", command, path, strerror(errno));
         return 0;
     }
     if (p.snapshots == 0 || !(p.last - p.first < PARTICLES_MAX)) {
@@ -310,9 +311,9 @@ int snapshots_put(FILE *out, const char *command, const char *path)
     double *times = malloc(p.snapshots * sizeof *times);
     const int good = p.radii && p.places && p.forces && p.set && times;
     if (!good) {
-        fprintf(stderr, "se3d %s: %s: out of memory\n", command, path);
+        complain("se3d %s: %s: out of memory\n", command, path);
     } else if (!put_all(out, &p, path, times)) {
-        fprintf(stderr, "se3d %s: %s: cannot be read\n", command, path);
+        complain("se3d %s: %s: cannot be read\n", command, path);
     }
     free(p.radii);
     free(p.places);

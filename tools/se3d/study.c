@@ -12,6 +12,7 @@
 
 #include "interrupt.h"
 #include "options.h"
+#include "outcome.h"
 #include "se3d/study.h"
 #include "study_derive.h"
 #include "study_jobs.h"
@@ -35,10 +36,7 @@ typedef struct job {
 
 static int usage(const char *format, const char *text)
 {
-    fputs("se3d study: ", stderr);
-    fprintf(stderr, "%s `", format);
-    text_put_plain(stderr, text);
-    fputs("`; see `se3d help study`\n", stderr);
+    complain("se3d study: %s `%s`; see `se3d help study`\n", format, text);
     return EXIT_USAGE;
 }
 
@@ -194,6 +192,7 @@ static int list_missing(job *j, sample_list *list)
 static void print_end(const job *j, const char *path, uint64_t samples, uint64_t failed)
 {
     if (j->o->json) {
+        outcome_tell();
         printf("{\"status\": \"%s\", \"file\": ", failed > 0 ? "failed" : "done");
         json_put_text(path);
         printf(", \"samples\": %" PRIu64 ", \"failed\": %" PRIu64 "}\n", samples, failed);
@@ -306,8 +305,7 @@ static int list_shards(const char *folder, path_list *list)
 static void put_problem(void *ctx, const se3d_model_error *error)
 {
     (void)ctx;
-    text_put_plain(stderr, error->message);
-    fputc('\n', stderr);
+    complain("%s\n", error->message);
 }
 
 static int merge(job *j)
@@ -332,7 +330,7 @@ static int merge(job *j)
             print_end(j, j->path, se3d_study_count_samples(j->study), failed);
             code = SE3D_FAILED(status) || failed > 0 ? EXIT_FAILED : EXIT_DONE;
         } else if (status == SE3D_ERR_STATE) {
-            fputs("not merged; --partial writes what is there\n", stderr);
+            complain("not merged; --partial writes what is there\n");
         } else {
             code = fail(j, j->error.message);
         }
@@ -409,17 +407,21 @@ static int command_study(int count, char *const *words)
     j.o = &o;
     const int others = o.merge + o.server + o.sensitivities + o.optimize;
     if (others > 1 || (others > 0 && (o.shard || o.resume))) {
-        fputs("se3d study: --merge, --server, --sensitivities and --optimize go with none of each "
-              "other, --shard, --resume\n",
-              stderr);
+        complain(
+            "se3d study: --merge, --server, --sensitivities and --optimize go with none of each "
+            "other, --shard, --resume\n");
         return EXIT_USAGE;
     }
     if (o.jobs && (o.merge || o.server)) {
-        fputs("se3d study: --jobs goes with neither --merge nor --server\n", stderr);
+        complain("se3d study: --jobs goes with neither --merge nor --server\n");
         return EXIT_USAGE;
     }
-    code = options_check_file(&o, &study_entry);
-    code = code == EXIT_DONE ? read_shard(&j) : code;
+    if (o.server && strcmp(o.model, "-") == 0) {
+        complain("se3d study: standard input is for the requests of --server; give the model as a "
+                 "file\n");
+        return EXIT_USAGE;
+    }
+    code = read_shard(&j);
     code = code == EXIT_DONE ? read_jobs(&j) : code;
     if (code != EXIT_DONE) {
         return code;
@@ -469,7 +471,6 @@ const command_entry study_entry = {
             COMMAND_OPTION_SET,
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}"},
             COMMAND_OPTIONS_OF_SOLVERS,
-            COMMAND_OPTION_QUIET,
             {"--json", NULL, NULL, "print the summary as JSON"},
             {0}},
     .examples =

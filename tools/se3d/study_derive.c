@@ -2,6 +2,8 @@
 /* se3d study MODEL --sensitivities: derivatives of all measures, as a table and as a file. */
 #include "study_derive.h"
 
+#include "outcome.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -218,6 +220,7 @@ static void print_table(const derivation *d)
 static void print_end(const derivation *d)
 {
     if (d->o->json) {
+        outcome_tell();
         printf("{\"status\": \"%s\", \"file\": ", d->missing > 0 ? "failed" : "done");
         json_put_text(d->path);
         printf(", \"measures\": %zu, \"parameters\": %zu}\n", d->measures, d->parameters);

@@ -3,6 +3,8 @@
  * limits that are about 1 in size; what is written is in the units of the study. */
 #include "study_optimize.h"
 
+#include "outcome.h"
+
 #include <stdio.h>
 
 #if !defined(SE3D_HAS_NLOPT)
@@ -567,6 +569,7 @@ static int run(search *s, double *u)
                            : nlopt_get_errmsg(s->opt)      ? nlopt_get_errmsg(s->opt)
                                                            : "the method has failed");
         } else if (s->o->json) {
+            outcome_tell();
             print_json(s, how, code);
         } else if (!s->o->quiet) {
             print_text(s, how);

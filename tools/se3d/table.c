@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Results files as `se3d plot` and `se3d view` see them. */
 #include "table.h"
+#include "outcome.h"
 
 #include <errno.h>
 #include <math.h>
@@ -139,7 +140,7 @@ int table_read(table *t, const char *command, const char *path)
     t->header = file ? read_header(file, &t->remark) : NULL;
     if (!file || !t->header || !split_header(t)) {
         const char *why = !file && errno ? strerror(errno) : "is empty";
-        fprintf(stderr, "se3d %s: %s: %s\n", command, path, why);
+        complain("se3d %s: %s: %s\n", command, path, why);
         if (file) {
             fclose(file);
         }
@@ -152,10 +153,10 @@ int table_read(table *t, const char *command, const char *path)
     char *end = NULL;
     strtod(t->names[0], &end);
     if (bad || t->rows == 0 || t->names[0][0] == '\0' || end != t->names[0]) {
-        fprintf(stderr, "se3d %s: %s: %s\n", command, path,
-                bad            ? "cannot be read"
-                : t->rows == 0 ? "has no rows, only a header: there is nothing to show"
-                               : "does not begin with the names of its columns");
+        complain("se3d %s: %s: %s\n", command, path,
+                 bad            ? "cannot be read"
+                 : t->rows == 0 ? "has no rows, only a header: there is nothing to show"
+                                : "does not begin with the names of its columns");
         table_destroy(t);
         return 0;
     }

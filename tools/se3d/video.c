@@ -12,6 +12,7 @@
 #include "file.h"
 #include "interrupt.h"
 #include "options.h"
+#include "outcome.h"
 #include "process.h"
 #include "text.h"
 #include "view.h"
@@ -37,7 +38,7 @@ typedef struct film {
 static int fail(const char *text, const char *detail)
 {
     if (!interrupt_came()) {
-        fprintf(stderr, "se3d video: %s%s\n", text, detail);
+        complain("se3d video: %s%s\n", text, detail);
     }
     return 0;
 }
@@ -102,15 +103,14 @@ static int check_words(const options *o)
     for (size_t k = 0; k < o->caption_count; ++k) {
         double from = 0.0, to = 0.0;
         if (!read_caption(o->captions[k], &from, &to)) {
-            fprintf(stderr,
-                    "se3d video: the caption is `%s`, must be FROM,TO,TEXT: seconds of the motion "
-                    "and at most %d bytes of text\n",
-                    o->captions[k], TEXT_MOST);
+            complain("se3d video: the caption is `%s`, must be FROM,TO,TEXT: seconds of the motion "
+                     "and at most %d bytes of text\n",
+                     o->captions[k], TEXT_MOST);
             return 0;
         }
     }
     if (o->title && (strlen(o->title) > TEXT_MOST || !text_is_plain(o->title))) {
-        fprintf(stderr, "se3d video: the title must be a text of at most %d bytes\n", TEXT_MOST);
+        complain("se3d video: the title must be a text of at most %d bytes\n", TEXT_MOST);
         return 0;
     }
     for (const char *word = o->hide; word; word = strchr(word, ',')) {
@@ -119,7 +119,7 @@ static int check_words(const options *o)
         const size_t length = strcspn(word, ",");
         snprintf(one, sizeof one, ",%.*s,", length < 30 ? (int)length : 30, word);
         if (one[1] == ',' || !strstr(known, one) || strlen(o->hide) > TEXT_MOST) {
-            fprintf(stderr, "se3d video: hidden is `%s`, must be of title, time, plots\n", o->hide);
+            complain("se3d video: hidden is `%s`, must be of title, time, plots\n", o->hide);
             return 0;
         }
     }
@@ -162,10 +162,10 @@ static int plan(film *f)
 {
     const double frames = f->end > f->start ? round((f->end - f->start) / f->speed * RATE) : RATE;
     if (!(frames <= FRAMES_MAX)) {
-        fprintf(stderr,
-                "se3d video: %g s of motion at speed %g make a film of more than an hour; choose a "
-                "larger --speed\n",
-                f->end - f->start, f->speed);
+        complain(
+            "se3d video: %g s of motion at speed %g make a film of more than an hour; choose a "
+            "larger --speed\n",
+            f->end - f->start, f->speed);
         return 0;
     }
     f->count = frames >= 1.0 ? (size_t)frames : 1;
@@ -285,7 +285,7 @@ static int finish(film *f, int good)
     }
     const int kept = file_end(f->file, f->path, good && file_append(f->file, f->made));
     if (good && !kept) {
-        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
+        complain("se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
     }
     return kept;
 }
@@ -296,11 +296,11 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     interrupt_hold();
     f->file = se3di_partial_open(f->path);
     if (!f->file) {
-        fprintf(stderr, "se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
+        complain("se3d video: %s: cannot be written: %s\n", f->path, strerror(errno));
         return EXIT_FAILED;
     }
     if (!folder_make_temporary(f->folder, sizeof f->folder)) {
-        fprintf(stderr, "se3d video: no temporary folder: %s\n", strerror(errno));
+        complain("se3d video: no temporary folder: %s\n", strerror(errno));
         file_end(f->file, f->path, 0);
         return EXIT_FAILED;
     }
@@ -317,7 +317,7 @@ static int make_film(film *f, const char *chromium, const char *results, int qui
     good = finish(f, good);
     folder_remove(f->folder);
     if (!good && interrupt_came()) {
-        fputs("se3d video: interrupted\n", stderr);
+        complain("se3d video: interrupted\n");
     }
     return good ? EXIT_DONE : EXIT_FAILED;
 }
@@ -329,7 +329,7 @@ static int write_film(const char *results, const char *path, double speed, const
     film *f = calloc(1, sizeof *f);
     int code = EXIT_FAILED;
     if (!f) {
-        fputs("se3d video: out of memory\n", stderr);
+        complain("se3d video: out of memory\n");
     } else if (!chromium) {
         process_report_missing("video", "chromium", "chromium");
     } else if (!process_is_found("ffmpeg")) {
@@ -342,8 +342,7 @@ static int write_film(const char *results, const char *path, double speed, const
         f->view[1] = view[1];
         code = make_film(f, chromium, results, quiet);
     }
-    if (code == EXIT_DONE && !quiet) {
-        printf("wrote %s: ", path);
+    if (code == EXIT_DONE && outcome_add_file(path, quiet, ": ")) {
         put_count(f->count, "picture", "pictures", "\n");
     }
     free(f);
@@ -368,8 +367,8 @@ int view_read_angles(const char *command, const char *text, double view[2])
     const char *second = good ? rest + 1 : "";
     view[1] = strtod(second, &rest);
     if (!good || rest == second || *rest || !(fabs(view[0]) <= 360.0 && fabs(view[1]) < 90.0)) {
-        fprintf(stderr, "se3d %s: the view is `%s`, must be AZIMUTH,ELEVATION in degrees\n",
-                command, text);
+        complain("se3d %s: the view is `%s`, must be AZIMUTH,ELEVATION in degrees\n", command,
+                 text);
         return 0;
     }
     return 1;
@@ -386,9 +385,10 @@ static int command_video(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
+    o.quiet = o.quiet || o.json;
     const double speed = o.speed ? strtod(o.speed, &rest) : 1.0;
     if (!(speed > 0.0 && speed <= 1e12) || (rest && *rest)) {
-        fprintf(stderr, "se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
+        complain("se3d video: the speed is `%s`, must be a number > 0\n", o.speed);
         return EXIT_USAGE;
     }
     if (!view_read_angles("video", o.view, view) || !check_words(&o)) {
@@ -423,7 +423,6 @@ const command_entry video_entry = {
             {"--caption", NULL, "FROM,TO,TEXT",
              "a text below, from and to these times of the motion [s]; may be repeated"},
             {"--hide", NULL, "WORDS", "of title, time, plots: what is left out"},
-            {"--quiet", "-q", NULL, "print nothing but errors, show no progress"},
             {0}},
     .examples =
         (const command_example[]){

@@ -14,6 +14,7 @@
 #include "file.h"
 #include "interrupt.h"
 #include "options.h"
+#include "outcome.h"
 #include "page.h"
 #include "snapshots.h"
 #include "table.h"
@@ -176,8 +177,8 @@ static int write_page(const page *p, const char *path)
 {
     FILE *file = se3di_partial_open(path);
     if (!file || !file_end(file, path, put_page(file, p) && !interrupt_came())) {
-        fprintf(stderr, "se3d %s: %s: cannot be written: %s\n", p->parts.command, path,
-                interrupt_came() ? "interrupted" : strerror(errno ? errno : ENOSPC));
+        complain("se3d %s: %s: cannot be written: %s\n", p->parts.command, path,
+                 interrupt_came() ? "interrupted" : strerror(errno ? errno : ENOSPC));
         return EXIT_FAILED;
     }
     return EXIT_DONE;
@@ -192,8 +193,8 @@ static char *read_scene(const char *command, const char *folder, size_t *size)
     if (glb && *size >= 28) {
         return glb;
     }
-    fprintf(stderr, "se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command, name,
-            folder);
+    complain("se3d %s: %s: cannot be read; `se3d run MODEL -o %s` makes it\n", command, name,
+             folder);
     free(glb);
     return NULL;
 }
@@ -239,14 +240,15 @@ static int command_view(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
+    o.quiet = o.quiet || o.json;
     code = run_for_view("view", o.model, o.quiet, folder, sizeof folder);
     if (code != EXIT_DONE) {
         return code;
     }
     snprintf(path, sizeof path, "%.4000s/scene.html", folder);
     code = view_write("view", folder, o.with, o.directory ? o.directory : path);
-    if (code == EXIT_DONE && !o.quiet) {
-        printf("wrote %s\n", o.directory ? o.directory : path);
+    if (code == EXIT_DONE) {
+        outcome_add_file(o.directory ? o.directory : path, o.quiet, "\n");
     }
     return code;
 }
@@ -267,7 +269,6 @@ const command_entry view_entry = {
         (const command_option[]){
             {"--output", "-o", "FILE.html", "where to (default: DIR/scene.html)"},
             {"--with", NULL, "DIR", "results of another run, as a ghost or beside (key g)"},
-            COMMAND_OPTION_QUIET,
             {0}},
     .examples = (const command_example[]){{"view results/pendulum", "results/pendulum/scene.html"},
                                           {"view pendulum.yaml", "run, then show"},

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "warnings.h"
+#include "outcome.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -41,9 +42,9 @@ void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const cha
     if (!w->o->quiet && !w->o->json && !is_reported(kind)) {
         progress_clear();
         if (kind == SE3D_LOG_MODEL) { /* it begins with its place */
-            fprintf(stderr, "warning: %s\n", message);
+            warn("warning: %s\n", message);
         } else {
-            fprintf(stderr, "%s: warning: %s\n", w->o->model, message);
+            warn("%s: warning: %s\n", w->o->model, message);
         }
     }
 }
@@ -51,7 +52,7 @@ void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const cha
 void warnings_conclude(const warnings *w)
 {
     if (w->more > 0 && !w->o->quiet && !w->o->json) {
-        fprintf(stderr, "%s: warning: %zu more warnings like these\n", w->o->model, w->more);
+        warn("%s: warning: %zu more warnings like these\n", w->o->model, w->more);
     }
 }
 
@@ -61,8 +62,8 @@ int warnings_forbid(const warnings *w, int code)
     if (!w->o->strict || count == 0 || code != EXIT_DONE) {
         return code;
     }
-    fprintf(stderr, "%s: --strict: %zu warning%s, must be none\n", w->o->model, count,
-            count == 1 ? "" : "s");
+    complain("%s: --strict: %zu warning%s, must be none\n", w->o->model, count,
+             count == 1 ? "" : "s");
     return EXIT_FAILED;
 }
 

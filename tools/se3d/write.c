@@ -8,6 +8,7 @@
 #include "file.h"
 #include "io/write/save_source.h"
 #include "options.h"
+#include "outcome.h"
 #include "text.h"
 
 static int print_model(const options *o, const se3d_model *model, const se3d_write_options *how)
@@ -44,6 +45,7 @@ static int write_model(const options *o, const se3d_model *model)
         report_failure(o, "", error.message);
         return EXIT_FAILED;
     }
+    outcome_add_file(o->directory, 1, "");
     return EXIT_DONE;
 }
 
