@@ -4,6 +4,7 @@
  * Arguments: states and threads (4096 1); peers/mujoco_batch.c does the same. */
 #define _POSIX_C_SOURCE 200809L
 #include "arm.h"
+#include "clock.h"
 
 #include "se3d/se3d.h"
 
@@ -11,16 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 9, STEPS = 25 };
-
-static double read_clock(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void need(se3d_status status, const char *what, const char *why)
 {
@@ -97,12 +90,12 @@ static void measure(work *w, void (*compute)(work *), const char *what)
 {
     double cpu = HUGE_VAL, wall = HUGE_VAL;
     for (int round = 0; round < ROUNDS; ++round) {
-        const double c = read_clock(CLOCK_PROCESS_CPUTIME_ID), t = read_clock(CLOCK_MONOTONIC);
+        const double c = bench_clock(), t = bench_clock_of(CLOCK_MONOTONIC);
         for (int k = 0; k < STEPS; ++k) {
             compute(w);
         }
-        cpu = fmin(cpu, read_clock(CLOCK_PROCESS_CPUTIME_ID) - c);
-        wall = fmin(wall, read_clock(CLOCK_MONOTONIC) - t);
+        cpu = fmin(cpu, bench_clock() - c);
+        wall = fmin(wall, bench_clock_of(CLOCK_MONOTONIC) - t);
     }
     const double scale = 1e9 / STEPS / (double)w->count;
     printf("  %-14s %8.1f ns CPU, %8.1f ns wall a state: %.3g a second and core\n", what,

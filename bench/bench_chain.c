@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "clock.h"
 #include "mechanisms.h"
 
 typedef struct bench_case {
@@ -33,13 +33,6 @@ static void must(const bench_case *c, se3d_status status, const char *what)
         printf("%s: %d %s\n", what, status, c->system ? se3d_system_get_error(c->system) : "");
         exit(1);
     }
-}
-
-static double cpu_time(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* The tip at the end of the run; four-bars: all bars turn alike,
@@ -92,9 +85,9 @@ static bench_result run_once(bench_case c, const se3d_solver_def *def)
     must(&c, se3d_solver_create(c.system, def, &solver), "solver");
     must(&c, se3d_solver_run(solver, 0.0), "start");
     must(&c, se3d_system_get_energy(c.system, &start), "energy");
-    double begin = cpu_time();
+    double begin = bench_clock();
     se3d_status status = se3d_solver_run(solver, c.duration);
-    r.seconds = cpu_time() - begin;
+    r.seconds = bench_clock() - begin;
     if (status < 0) {
         printf("failed: %s\n", se3d_system_get_error(c.system));
     }

@@ -4,6 +4,7 @@
  * interface; peers/mujoco_query.c asks MuJoCo the same, and prints the same accelerations. Then a
  * loop of control: a step of rk4 of 1 ms with new efforts against its four evaluations alone. */
 #define _POSIX_C_SOURCE 200809L
+#include "clock.h"
 #include "robots.h"
 
 #include "se3d/se3d.h"
@@ -11,16 +12,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { ROUNDS = 15, QUERIES = 2000 };
-
-static double read_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void need(se3d_status status, const se3d_system *system)
 {
@@ -133,11 +126,11 @@ static double measure(robot *r, void (*ask)(robot *))
 {
     double least = HUGE_VAL;
     for (int round = 0; round < ROUNDS; ++round) {
-        const double start = read_clock();
+        const double start = bench_clock();
         for (int k = 0; k < QUERIES / ROUNDS; ++k) {
             ask(r);
         }
-        least = fmin(least, read_clock() - start);
+        least = fmin(least, bench_clock() - start);
     }
     return 1e9 * least / (QUERIES / ROUNDS);
 }

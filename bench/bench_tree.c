@@ -6,6 +6,7 @@
  * `reactions`: multipliers of all joints on top of that; `lanes`: accelerations under gravity of 4
  * and of 8 states at once, a link and state. Arguments: counts of links. */
 #define _POSIX_C_SOURCE 200809L
+#include "clock.h"
 #include "mechanisms.h"
 
 #include "assembly/loads.h"
@@ -17,7 +18,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #define ROUNDS 15
 
@@ -26,13 +26,6 @@ typedef struct work {
     se3di_tree tree;
     double *q, *qdot, *qddot, *wrench, *joint, *lambda;
 } work;
-
-static double cpu_time(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void find_state(work *w)
 {
@@ -92,13 +85,13 @@ static double measure_lanes(const work *w, int width)
     }
     se3di_lanes_load(&lanes, gravity, 0);
     for (int round = 0; round < ROUNDS; ++round) {
-        const double begin = cpu_time();
+        const double begin = bench_clock();
         for (int k = 0; k < count; ++k) {
             core->place(&lanes, q, qdot);
             se3di_lanes_accelerate(&lanes, NULL, qddot);
             qdot[0] += 1e-12 * qddot[0];
         }
-        least = fmin(least, cpu_time() - begin);
+        least = fmin(least, bench_clock() - begin);
     }
     free(memory);
     se3di_lanes_destroy(&lanes);
@@ -111,12 +104,12 @@ static double measure(work *w, void (*compute)(work *))
     const int count = 20 + 40000 / (int)w->tree.count;
     double least = 1e300;
     for (int round = 0; round < ROUNDS; ++round) {
-        const double begin = cpu_time();
+        const double begin = bench_clock();
         for (int k = 0; k < count; ++k) {
             compute(w);
             w->qdot[0] += 1e-12 * w->qddot[0];
         }
-        least = fmin(least, cpu_time() - begin);
+        least = fmin(least, bench_clock() - begin);
     }
     return 1e9 * least / count / w->tree.count;
 }

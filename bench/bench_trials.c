@@ -3,12 +3,12 @@
  * time of all runs and the largest error of some of them against a solver at 1e-12.
  * Arguments: runs, threads and steps of dop853 (100000 1 40). */
 #define _POSIX_C_SOURCE 200809L
+#include "clock.h"
 #include "se3d/se3d.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { BARS = 3, GROUP = 4096, CHECKED = 16 };
 
@@ -17,13 +17,6 @@ static const double ends[BARS + 1][2] = {{0.0, 0.0}, {0.1, 0.4}, {1.2, 0.8}, {1.
 typedef struct trial {
     double mass[BARS], gravity[3];
 } trial;
-
-static double read_clock(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void need(se3d_status status, const char *why)
 {
@@ -169,7 +162,7 @@ int main(int argc, char **argv)
         return 1;
     }
     need(se3d_batch_get_state(batch, 0, GROUP, q, qdot), "state");
-    const double c = read_clock(CLOCK_PROCESS_CPUTIME_ID), t = read_clock(CLOCK_MONOTONIC);
+    const double c = bench_clock(), t = bench_clock_of(CLOCK_MONOTONIC);
     for (size_t first = 0; first < runs; first += GROUP) {
         const size_t count = runs - first < GROUP ? runs - first : GROUP;
         set_group(batch, bar, q, qdot, first, count);
@@ -181,9 +174,9 @@ int main(int argc, char **argv)
     }
     printf("se3d, %zu four-bars for 1 s, %d steps of dop853, %d threads, %zu lanes:\n"
            "  %.2f s CPU, %.2f s wall, %.2f us CPU a run; off by %.2g m at most (%d runs)\n",
-           runs, steps, threads, se3d_batch_count_lanes(batch),
-           read_clock(CLOCK_PROCESS_CPUTIME_ID) - c, read_clock(CLOCK_MONOTONIC) - t,
-           1e6 * (read_clock(CLOCK_PROCESS_CPUTIME_ID) - c) / (double)runs, error, CHECKED);
+           runs, steps, threads, se3d_batch_count_lanes(batch), bench_clock() - c,
+           bench_clock_of(CLOCK_MONOTONIC) - t, 1e6 * (bench_clock() - c) / (double)runs, error,
+           CHECKED);
     free(q);
     free(qdot);
     se3d_batch_destroy(batch);

@@ -16,10 +16,11 @@
 #ifndef BENCH_DRIVER_H
 #define BENCH_DRIVER_H
 
+#include "clock.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct bench_request {
     char kind;
@@ -39,13 +40,6 @@ typedef struct bench_answer {
     double steps, evaluations, iterations, factorizations;
     char failure[160]; /* "" if all went well */
 } bench_answer;
-
-static inline double bench_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Number of equal steps of at most `setting` over `duration`. */
 static inline long bench_steps(double duration, double setting)

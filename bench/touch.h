@@ -7,10 +7,11 @@
 #ifndef BENCH_TOUCH_H
 #define BENCH_TOUCH_H
 
+#include "clock.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
-#include <time.h>
 
 #define BENCH_TOUCH_DENSITY  1000.0
 #define BENCH_TOUCH_FRICTION 0.5
@@ -23,13 +24,6 @@ typedef struct bench_box {
     double turn[4]; /* Euler parameters */
     double speed;   /* along x [m/s] */
 } bench_box;
-
-static inline double bench_touch_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Uniform in -1 .. 1. */
 static inline double bench_touch_random(uint64_t *seed)

@@ -4,22 +4,15 @@
  * step. Argument: states (64; more of them no longer fit into the cache). */
 #define _POSIX_C_SOURCE 200809L
 #include "../arm.h"
+#include "../clock.h"
 
 #include <math.h>
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 9, STEPS = 225 };
-
-static double read_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static mjModel *load(void)
 {
@@ -89,11 +82,11 @@ static void measure(work *w, void (*compute)(work *), const char *what)
 {
     double least = HUGE_VAL;
     for (int round = 0; round < ROUNDS; ++round) {
-        const double begin = read_clock();
+        const double begin = bench_clock();
         for (int k = 0; k < STEPS; ++k) {
             compute(w);
         }
-        least = fmin(least, read_clock() - begin);
+        least = fmin(least, bench_clock() - begin);
     }
     const double each = 1e9 * least / STEPS / w->count;
     printf("  %-14s %8.1f ns CPU a state: %.3g a second and core\n", what, each, 1e9 / each);

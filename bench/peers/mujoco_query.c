@@ -2,6 +2,7 @@
 /* What bench_query measures, by MuJoCo: the state and the applied forces are set, mj_forward; the
  * state and the accelerations, mj_inverse; without contact and constraints. */
 #define _POSIX_C_SOURCE 200809L
+#include "../clock.h"
 #include "../robots.h"
 
 #include <math.h>
@@ -9,16 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 15, QUERIES = 2000 };
-
-static double read_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* A link with all that hang on it. */
 static size_t write_link(const bench_robot *r, int k, char *text, size_t room)
@@ -122,11 +115,11 @@ static double measure(robot *r, void (*ask)(robot *))
 {
     double least = HUGE_VAL;
     for (int round = 0; round < ROUNDS; ++round) {
-        const double start = read_clock();
+        const double start = bench_clock();
         for (int k = 0; k < QUERIES / ROUNDS; ++k) {
             ask(r);
         }
-        least = fmin(least, read_clock() - start);
+        least = fmin(least, bench_clock() - start);
     }
     return 1e9 * least / (QUERIES / ROUNDS);
 }
