@@ -506,19 +506,17 @@ static bool find_marker(const se3d_model *model, const se3di_body_entry *body, c
  * name. */
 static bool find_flow(const se3d_model *model, const char *head, se3di_channel *channel, offer *o)
 {
-    const struct {
-        size_t (*find)(const se3di_tagged *particles, const char *name);
-        const quantity_name *names;
-    } kinds[] = {{se3di_tagged_find_set, set_names},       {se3di_tagged_find_sink, sink_names},
-                 {se3di_tagged_find_region, region_names}, {se3di_tagged_find_flow, flow_names},
-                 {se3di_tagged_find_servo, servo_names},   {se3di_tagged_find_bond, bond_names}};
-    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
-        const size_t index = kinds[k].find(model->particles, head);
+    static const quantity_name *const names[] = {
+        [SE3DI_TAGGED_SET] = set_names,       [SE3DI_TAGGED_SINK] = sink_names,
+        [SE3DI_TAGGED_REGION] = region_names, [SE3DI_TAGGED_FLOW] = flow_names,
+        [SE3DI_TAGGED_SERVO] = servo_names,   [SE3DI_TAGGED_BOND] = bond_names};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        const size_t index = se3di_tagged_find(model->particles, (se3di_tagged_kind)k, head);
         if (index != SIZE_MAX) {
             channel->tagged = model->particles;
             channel->particles = model->particles->set;
             channel->index = (uint32_t)index;
-            offer_names(o, kinds[k].names);
+            offer_names(o, names[k]);
             return true;
         }
     }

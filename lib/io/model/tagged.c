@@ -1,54 +1,46 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Sets and sinks by their names. */
+/* Sets, sinks and what else particles have by name. */
 #include "io/model/tagged.h"
 
 #include <stdint.h>
 #include <string.h>
 
-static size_t find_name(const char *const *names, size_t count, const char *name)
+static const char *get_name(const se3di_tagged *particles, se3di_tagged_kind kind, size_t k)
 {
-    for (size_t k = 0; k < count; ++k) {
-        if (names[k] && strcmp(names[k], name) == 0) {
-            return k;
-        }
+    switch (kind) {
+    case SE3DI_TAGGED_SET:
+        return particles->sets[k];
+    case SE3DI_TAGGED_SINK:
+        return particles->sinks[k];
+    case SE3DI_TAGGED_REGION:
+        return particles->regions[k].name;
+    case SE3DI_TAGGED_FLOW:
+        return particles->flows[k];
+    case SE3DI_TAGGED_SERVO:
+        return particles->servos[k];
+    case SE3DI_TAGGED_BOND:
+        return particles->bonds[k];
+    case SE3DI_TAGGED_CLUMP:
+        return particles->clumps[k];
     }
-    return SIZE_MAX;
+    return NULL;
 }
 
-size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name)
+size_t se3di_tagged_find(const se3di_tagged *particles, se3di_tagged_kind kind, const char *name)
 {
-    return particles ? find_name(particles->sets, particles->set_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name)
-{
-    return particles ? find_name(particles->sinks, particles->sink_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name)
-{
-    return particles ? find_name(particles->flows, particles->flow_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_servo(const se3di_tagged *particles, const char *name)
-{
-    return particles ? find_name(particles->servos, particles->servo_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_bond(const se3di_tagged *particles, const char *name)
-{
-    return particles ? find_name(particles->bonds, particles->bond_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name)
-{
-    return particles ? find_name(particles->clumps, particles->clump_count, name) : SIZE_MAX;
-}
-
-size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name)
-{
-    for (size_t k = 0; particles && k < particles->region_count; ++k) {
-        if (strcmp(particles->regions[k].name, name) == 0) {
+    if (!particles) {
+        return SIZE_MAX;
+    }
+    const size_t counts[] = {[SE3DI_TAGGED_SET] = particles->set_count,
+                             [SE3DI_TAGGED_SINK] = particles->sink_count,
+                             [SE3DI_TAGGED_REGION] = particles->region_count,
+                             [SE3DI_TAGGED_FLOW] = particles->flow_count,
+                             [SE3DI_TAGGED_SERVO] = particles->servo_count,
+                             [SE3DI_TAGGED_BOND] = particles->bond_count,
+                             [SE3DI_TAGGED_CLUMP] = particles->clump_count};
+    for (size_t k = 0; k < counts[kind]; ++k) {
+        const char *own = get_name(particles, kind, k);
+        if (own && strcmp(own, name) == 0) {
             return k;
         }
     }

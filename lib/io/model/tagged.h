@@ -39,13 +39,18 @@ typedef struct se3di_tagged {
     size_t clump_count;
 } se3di_tagged;
 
-/* The index of a name, SIZE_MAX: none. */
-size_t se3di_tagged_find_set(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_sink(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_flow(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_servo(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_bond(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_region(const se3di_tagged *particles, const char *name);
-size_t se3di_tagged_find_clump(const se3di_tagged *particles, const char *name);
+/* What has names. Those before clumps are asked for as channels: no two of them share a name. */
+typedef enum se3di_tagged_kind {
+    SE3DI_TAGGED_SET = 0,
+    SE3DI_TAGGED_SINK = 1,
+    SE3DI_TAGGED_REGION = 2,
+    SE3DI_TAGGED_FLOW = 3,
+    SE3DI_TAGGED_SERVO = 4,
+    SE3DI_TAGGED_BOND = 5,
+    SE3DI_TAGGED_CLUMP = 6
+} se3di_tagged_kind;
+
+/* The index of a name, SIZE_MAX: none. `particles` NULL: there are none. */
+size_t se3di_tagged_find(const se3di_tagged *particles, se3di_tagged_kind kind, const char *name);
 
 #endif

@@ -111,7 +111,7 @@ static bool read_clump(se3di_reader *reader, const se3di_node *node)
     if (!se3di_read_name(reader, child, &name)) {
         return false;
     }
-    if (se3di_tagged_find_clump(particles, name) != SIZE_MAX) {
+    if (se3di_tagged_find(particles, SE3DI_TAGGED_CLUMP, name) != SIZE_MAX) {
         return se3di_reader_fail(reader, child, "`%.60s` is taken, must differ from other clumps",
                                  name);
     }
@@ -157,7 +157,7 @@ bool se3di_read_key_clump(se3di_reader *reader, const se3di_node *map, uint32_t 
     if (!se3di_read_text(reader, node, &name)) {
         return false;
     }
-    const size_t k = se3di_tagged_find_clump(reader->model->particles, name);
+    const size_t k = se3di_tagged_find(reader->model->particles, SE3DI_TAGGED_CLUMP, name);
     if (k == SIZE_MAX) {
         return se3di_reader_fail(reader, node, "no clump is named `%.60s`; list it under `clumps`",
                                  name);

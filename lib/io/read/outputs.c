@@ -224,7 +224,7 @@ static bool read_snapshots(se3di_reader *reader, const se3di_node *node, se3di_o
     int32_t wanted = 0;
     output->set = -1;
     if (child && child->kind == SE3DI_NODE_SCALAR && model->particles) {
-        const size_t set = se3di_tagged_find_set(model->particles, child->text);
+        const size_t set = se3di_tagged_find(model->particles, SE3DI_TAGGED_SET, child->text);
         output->set = set == SIZE_MAX ? -1 : (int32_t)set;
         wanted = output->set >= 0;
     }

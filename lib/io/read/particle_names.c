@@ -15,14 +15,13 @@ bool se3di_check_free_name(se3di_reader *reader, const se3di_node *node, const c
     static const char words[] =
         " particles contacts bonds cell dissipation energy violation work steps iterations ";
     const se3d_model *model = reader->model;
-    if (se3di_keys_contain(words, name) || se3di_ionames_find(&model->body_names, name, NULL) ||
-        se3di_ionames_find(&model->element_names, name, NULL) ||
-        se3di_tagged_find_set(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_sink(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_bond(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_flow(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_servo(model->particles, name) != SIZE_MAX ||
-        se3di_tagged_find_region(model->particles, name) != SIZE_MAX) {
+    bool taken = se3di_keys_contain(words, name) ||
+                 se3di_ionames_find(&model->body_names, name, NULL) ||
+                 se3di_ionames_find(&model->element_names, name, NULL);
+    for (int kind = 0; kind < SE3DI_TAGGED_CLUMP && !taken; ++kind) {
+        taken = se3di_tagged_find(model->particles, (se3di_tagged_kind)kind, name) != SIZE_MAX;
+    }
+    if (taken) {
         return se3di_reader_fail(reader, node, "`%.60s` is taken, must differ from other names",
                                  name);
     }
@@ -52,7 +51,7 @@ bool se3di_read_key_set(se3di_reader *reader, const se3di_node *map, const char 
     if (!se3di_read_text(reader, set, &name)) {
         return false;
     }
-    const size_t known = se3di_tagged_find_set(reader->model->particles, name);
+    const size_t known = se3di_tagged_find(reader->model->particles, SE3DI_TAGGED_SET, name);
     if (known == SIZE_MAX) {
         return se3di_reader_fail(reader, set, "no `particles` are named `%.60s`", name);
     }

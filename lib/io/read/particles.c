@@ -279,7 +279,7 @@ static bool read_set(se3di_reader *reader, const se3di_node *node, uint32_t *tag
     if (!se3di_read_name(reader, child, &name)) {
         return false;
     }
-    const size_t known = se3di_tagged_find_set(particles, name);
+    const size_t known = se3di_tagged_find(particles, SE3DI_TAGGED_SET, name);
     if (known != SIZE_MAX) {
         *tag = (uint32_t)known;
         return true;
