@@ -50,19 +50,19 @@ def sets(path):
 series = sets(folder + "/vtk/motion.pvd")
 assert [s[0] for s in series] == [k * 0.125 for k in range(9)], series
 rows = {round(float(r["time"]), 9): r for r in csv.DictReader(open(folder + "/vtk/all.csv"))}
-sphere, box, cylinder, cone, spring = 17 * 33, 24, 2 * 33 + 2 * 32, 2 * 33 + 32, 131 * 6
+sphere, ball, box, cylinder, cone, spring = 17 * 33, 11 * 21, 24, 2 * 33 + 2 * 32, 2 * 33 + 32, 131 * 6
 round_faces, cone_faces = 2 * 32 + 2 * 30, 2 * 32 + 30
 ground = 2 * cylinder + 3 * (cone + box)
 checks = 0
 for time, name, path in series:
     data = read(path)
-    # ground: eye, rail and three feet; bar: box, sphere, pin; block: box, slide, and a bar with a round end from one to
-    # the other; the spring: a wire of rings of 6
-    assert data.GetNumberOfPoints() == ground + 3 * box + 2 * sphere + 2 * cylinder + spring, data.GetNumberOfPoints()
+    # ground: eye, rail and three feet; bar: box, sphere, pin; block: box, slide, and a bar with a round end, a small
+    # sphere, from one to the other; the spring: a wire of rings of 6
+    assert data.GetNumberOfPoints() == ground + 3 * box + sphere + ball + 2 * cylinder + spring, data.GetNumberOfPoints()
     assert data.GetNumberOfLines() == data.GetNumberOfVerts() == 0
-    assert data.GetNumberOfPolys() == 6 * 12 + 2 * 2 * 16 * 32 + 4 * round_faces + 3 * cone_faces + 130 * 12, data.GetNumberOfPolys()
+    assert data.GetNumberOfPolys() == 6 * 12 + 2 * 16 * 32 + 2 * 10 * 20 + 4 * round_faces + 3 * cone_faces + 130 * 12, data.GetNumberOfPolys()
     bodies = [data.GetCellData().GetArray("body").GetValue(k) for k in range(data.GetNumberOfCells())]
-    assert set(bodies) == {-1, 0, 1, 2} and bodies.count(2) == 2 * 12 + round_faces + 2 * 16 * 32 and bodies.count(-1) == 130 * 12, bodies.count(2)
+    assert set(bodies) == {-1, 0, 1, 2} and bodies.count(2) == 2 * 12 + round_faces + 2 * 10 * 20 and bodies.count(-1) == 130 * 12, bodies.count(2)
     points = data.GetPoints()
     near = [r for t, r in rows.items() if abs(t - time) < 1e-9]
     if near:  # the bar's box is first: its corners' middle is the bar's origin, its first corner turns with it
