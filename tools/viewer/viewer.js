@@ -194,7 +194,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const least = new THREE.Vector3(1e9, 1e9, 1e9), most = least.clone().negate();
     const isOfGround = (o) => { while (o && o.userData.body === undefined) o = o.parent; return !o || o.userData.body === 0; };
     const reckon = (o) => {
-      if (!o.isMesh || !o.visible) return;
+      if (!o.isMesh || !o.visible || o.name === "road") return; // a road goes on beyond the picture
       if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
         if (!o.userData.isPlane) planes.push(o);
         o.userData.isPlane = true;
