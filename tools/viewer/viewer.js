@@ -748,7 +748,8 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   set({ dark: matchMedia("(prefers-color-scheme: dark)").matches, second: "ghost", follow: isFar ? heaviest : -1 });
   set(recall());
   // Of a file that is saved again the same things are seen through at first: the first picture does not wait for rays.
-  const isAlike = !!live && se3dClear !== null && se3dClear.count === solids.length;
+  const alike = solids.map((o) => `${o.parent.name} ${o.name}`).join();
+  const isAlike = !!live && se3dClear !== null && se3dClear.alike === alike;
   let isLate = isAlike && !state.solid;
   if (isAlike) { se3dClear.list.forEach((k) => clear.add(solids[k])); glaze(); }
   if (!isLate) see();
@@ -830,7 +831,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     closing.abort();
     controls.dispose();
     plots.close();
-    se3dClear = { count: solids.length, list: solids.flatMap((o, k) => (clear.has(o) ? [k] : [])) };
+    se3dClear = { alike, list: solids.flatMap((o, k) => (clear.has(o) ? [k] : [])) };
     return () => {
       light.close();
       scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
