@@ -40,6 +40,7 @@ void se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *allocator)
     const se3d_allocator standard = {malloc_alloc, malloc_realloc, malloc_free, NULL};
     pool->allocator = allocator ? *allocator : standard;
     pool->blocks = NULL;
+    pool->is_short = false;
 }
 
 void se3di_iopool_destroy(se3di_iopool *pool)
@@ -57,19 +58,25 @@ static size_t round_up(size_t size)
     return (size + unit - 1) / unit * unit;
 }
 
+static void *refuse(se3di_iopool *pool)
+{
+    pool->is_short = true;
+    return NULL;
+}
+
 void *se3di_iopool_alloc(se3di_iopool *pool, size_t size)
 {
     struct se3di_iopool_block *block = pool->blocks;
     const size_t head = round_up(sizeof *block);
     if (size > SIZE_MAX / 2) {
-        return NULL;
+        return refuse(pool);
     }
     size = round_up(size ? size : 1);
     if (!block || block->size - block->used < size) {
         const size_t total = head + size > block_size ? head + size : block_size;
         struct se3di_iopool_block *added = pool->allocator.alloc(pool->allocator.ctx, total);
         if (!added) {
-            return NULL;
+            return refuse(pool);
         }
         added->size = total;
         added->used = head;
@@ -83,7 +90,7 @@ void *se3di_iopool_alloc(se3di_iopool *pool, size_t size)
 
 void *se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size)
 {
-    return count > SIZE_MAX / 2 / size ? NULL : se3di_iopool_alloc(pool, count * size);
+    return count > SIZE_MAX / 2 / size ? refuse(pool) : se3di_iopool_alloc(pool, count * size);
 }
 
 char *se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length)

@@ -17,6 +17,7 @@
 typedef struct se3di_iopool {
     se3d_allocator allocator;
     struct se3di_iopool_block *blocks;
+    bool is_short; /* memory was refused: what was made since may lack something */
 } se3di_iopool;
 
 /* `allocator` NULL: malloc. */

@@ -59,6 +59,9 @@ fail_about(se3di_reader *reader, const se3di_node *node, const char *key, const 
 {
     char path[256];
     char text[640];
+    if (reader->pool->is_short) { /* what is wrong is that something is missing */
+        return se3di_reader_fail_memory(reader);
+    }
     vsnprintf(text, sizeof text, format, arguments);
     const se3di_node *child = key ? se3di_node_get(node, key) : NULL;
     const se3di_node *at = child ? child : node;

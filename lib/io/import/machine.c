@@ -24,6 +24,9 @@ bool se3di_machine_fail_memory(se3di_machine *m)
 bool se3di_machine_fail(se3di_machine *m, size_t line, size_t column, const char *format, ...)
 {
     char text[900];
+    if (m->pool->is_short) {
+        return se3di_machine_fail_memory(m);
+    }
     if (m->status >= 0) {
         va_list list;
         va_start(list, format);

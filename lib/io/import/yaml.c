@@ -442,7 +442,7 @@ se3d_status se3di_machine_write(se3di_machine *m, const char **text, size_t *len
     put(&w, "}\n");
     *text = w.text;
     *length = w.used;
-    if (w.failed || m->status < 0) {
+    if (m->pool->is_short || m->status < 0) {
         se3di_machine_fail_memory(m);
         return m->status;
     }

@@ -270,7 +270,8 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .value_count = attempt->value_count,
                            .study = attempt->study};
     const bool good = read_model(&reader, attempt->library, model->root) &&
-                      (!attempt->warns || se3di_warn_of_model(&reader));
+                      (!attempt->warns || se3di_warn_of_model(&reader)) &&
+                      (!model->pool.is_short || se3di_reader_fail_memory(&reader));
     attempt->fault = reader.fault;
     attempt->attached = reader.attached;
     (void)se3d_system_set_kept(model->system, 1); /* who is handed it does not destroy it */

@@ -136,8 +136,7 @@ static bool read_number_of(se3di_reader *reader, const se3di_node *node, se3di_s
                                                          &to->component, problem, sizeof problem)) {
         return true;
     }
-    return strcmp(problem, "out of memory") == 0 ? se3di_reader_fail_memory(reader)
-                                                 : se3di_reader_fail(reader, node, "%s", problem);
+    return se3di_reader_fail(reader, node, "%s", problem);
 }
 
 /* The points that a channel is to go through. */

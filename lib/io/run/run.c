@@ -432,6 +432,9 @@ static se3d_status run_analysis(se3di_runner *r, size_t index)
     status = collect_events(r, index, status);
     se3di_run_record(r, entry, cpu_time(r), done);
     se3di_estimate_end(r, done);
+    if (r->run->pool.is_short && status >= 0) { /* a text of the record is missing */
+        status = se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
     done->status = (int32_t)status;
     se3di_guests_close(r->guests);
     r->guests = NULL;

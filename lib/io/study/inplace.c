@@ -82,7 +82,7 @@ static prototype *create(se3d_study *study, const se3di_named *values, size_t co
     for (size_t k = 0; k < count && p->names; ++k) {
         p->names[k] = se3di_iopool_copy(&p->pool, values[k].name, strlen(values[k].name));
     }
-    if (!p->names || (count > 0 && !p->names[count - 1])) {
+    if (p->pool.is_short) {
         pool = p->pool;
         se3di_iopool_destroy(&pool);
         return NULL;

@@ -142,7 +142,8 @@ se3d_status se3d_study_create(se3d_model *model, se3d_study **out, se3d_model_er
         se3di_iopool_init(&study->reply_pool, &model->pool.allocator);
     }
     if (!study || !fill(study)) {
-        se3di_iopool_destroy(study ? &study->pool : &pool);
+        pool = study ? study->pool : pool; /* the study itself lies in it */
+        se3di_iopool_destroy(&pool);
         return fail(error, model->file, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     *out = study;

@@ -61,7 +61,8 @@ static se3d_status make_text(se3di_save *s, const se3d_write_options *options,
     const se3di_floats host = se3di_floats_set();
     save_all(s);
     se3di_floats_restore(host);
-    if (s->status == SE3D_ERR_NO_MEMORY) {
+    if (s->status == SE3D_ERR_NO_MEMORY || s->pool.is_short) {
+        s->status = SE3D_ERR_NO_MEMORY;
         return fail(error, s->status, "", "out of memory");
     }
     return s->status < 0 ? fail(error, s->status, "", s->problem) : SE3D_OK;

@@ -1,0 +1,366 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Whatever path of calls asks for memory while a model is read, listed, run, drawn, saved, studied
+ * or imported: it is refused once on each, which is reported and leaks nothing. A model's own
+ * memory is cut from large blocks; here each piece of it is refused by itself, as the functions of
+ * the pool are replaced when the test is linked. Paths are told apart by the innermost calls. */
+#define _POSIX_C_SOURCE 200809L
+#include <dirent.h>
+#if defined(__GLIBC__)
+#include <execinfo.h>
+#endif
+
+#include "check.h"
+#include "io/base/pool.h"
+#include "se3d/import.h"
+#include "se3d/io.h"
+#include "se3d/study.h"
+#include "support/counting.h"
+
+#define DEPTH 6 /* calls that tell paths apart */
+#define PATHS (1u << 16)
+#define CALLS (1u << 20) /* for memory, of one use */
+
+static struct {
+    size_t count;   /* of calls so far */
+    size_t refused; /* the call that is refused, from 1; 0: none */
+    size_t reached; /* calls that were refused */
+    int looks;      /* new paths are noted */
+    int tells;      /* the path that is refused is told */
+    uint64_t seen[PATHS];
+    size_t seen_count;
+    size_t fresh[CALLS]; /* calls on new paths */
+    size_t fresh_count;
+} calls;
+
+static uint64_t path_of_calls(void)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+#if defined(__GLIBC__)
+    void *frames[DEPTH + 3];
+    const int count = backtrace(frames, DEPTH + 3);
+    for (int k = 3; k < count; ++k) { /* not this function, is_refused() and its caller */
+        hash = (hash ^ (uint64_t)(uintptr_t)frames[k]) * UINT64_C(1099511628211);
+    }
+#else
+    hash += calls.count; /* all calls */
+#endif
+    return hash | 1u;
+}
+
+static int is_new(uint64_t path)
+{
+    size_t k = path % PATHS;
+    while (calls.seen[k] != 0 && calls.seen[k] != path) {
+        k = (k + 1) % PATHS;
+    }
+    if (calls.seen[k] == path || calls.seen_count + 1 >= PATHS) {
+        return 0;
+    }
+    calls.seen[k] = path;
+    ++calls.seen_count;
+    return 1;
+}
+
+static void tell_path(void)
+{
+#if defined(__GLIBC__)
+    void *frames[20];
+    const int count = backtrace(frames, 20);
+    backtrace_symbols_fd(frames + 2, count - 2, 2);
+#endif
+}
+
+static __attribute__((noinline)) int is_refused(void)
+{
+    ++calls.count;
+    if (calls.looks && calls.fresh_count < CALLS && is_new(path_of_calls())) {
+        calls.fresh[calls.fresh_count++] = calls.count;
+    }
+    const int hit = calls.count == calls.refused;
+    calls.reached += hit ? 1 : 0;
+    if (hit && calls.tells) {
+        tell_path();
+    }
+    return hit;
+}
+
+void *__real_se3di_iopool_alloc(se3di_iopool *pool, size_t size);
+void *__real_se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size);
+char *__real_se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length);
+void *__real_se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *capacity,
+                               size_t size);
+bool __real_se3di_ionames_add(se3di_ionames *names, se3di_iopool *pool, const char *name,
+                              size_t index);
+void *__wrap_se3di_iopool_alloc(se3di_iopool *pool, size_t size);
+void *__wrap_se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size);
+char *__wrap_se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length);
+void *__wrap_se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *capacity,
+                               size_t size);
+bool __wrap_se3di_ionames_add(se3di_ionames *names, se3di_iopool *pool, const char *name,
+                              size_t index);
+
+/* As the pool does it. */
+static int is_short(se3di_iopool *pool)
+{
+    const int hit = is_refused();
+    pool->is_short = pool->is_short || hit;
+    return hit;
+}
+
+void *__wrap_se3di_iopool_alloc(se3di_iopool *pool, size_t size)
+{
+    return is_short(pool) ? NULL : __real_se3di_iopool_alloc(pool, size);
+}
+
+void *__wrap_se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size)
+{
+    return is_short(pool) ? NULL : __real_se3di_iopool_array(pool, count, size);
+}
+
+char *__wrap_se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length)
+{
+    return is_short(pool) ? NULL : __real_se3di_iopool_copy(pool, text, length);
+}
+
+void *__wrap_se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *capacity,
+                               size_t size)
+{
+    return count >= *capacity && is_short(pool)
+               ? NULL
+               : __real_se3di_iopool_grow(pool, array, count, capacity, size);
+}
+
+bool __wrap_se3di_ionames_add(se3di_ionames *names, se3di_iopool *pool, const char *name,
+                              size_t index)
+{
+    return !is_short(pool) && __real_se3di_ionames_add(names, pool, name, index);
+}
+
+/* ---- the allocator of the model and its system ---- */
+
+static support_counting counting;
+
+static void *refusing_alloc(void *ctx, size_t size)
+{
+    const se3d_allocator inner = support_counting_allocator(&counting);
+    (void)ctx;
+    return is_refused() ? NULL : inner.alloc(inner.ctx, size);
+}
+
+static void *refusing_realloc(void *ctx, void *memory, size_t old_size, size_t new_size)
+{
+    const se3d_allocator inner = support_counting_allocator(&counting);
+    (void)ctx;
+    return is_refused() ? NULL : inner.realloc(inner.ctx, memory, old_size, new_size);
+}
+
+static void counting_free(void *ctx, void *memory, size_t size)
+{
+    const se3d_allocator inner = support_counting_allocator(&counting);
+    (void)ctx;
+    inner.free(inner.ctx, memory, size);
+}
+
+static const se3d_allocator allocator = {refusing_alloc, refusing_realloc, counting_free, NULL};
+
+/* ---- what is done with a file ---- */
+
+static const char *results(void)
+{
+    static char folder[800];
+    const char *build = getenv("SE3D_BUILD_DIR");
+    snprintf(folder, sizeof folder, "%s/out-of-memory", build ? build : "/tmp");
+    return folder;
+}
+
+static int fails_anyway; /* the analysis of the file */
+
+/* Stops the run at its second row. */
+static int stop(void *ctx, size_t analysis, double time, double fraction)
+{
+    (void)analysis, (void)time, (void)fraction;
+    return ++*(int *)ctx > 1;
+}
+
+static se3d_status run(se3d_model *model, se3d_model_error *error)
+{
+    int rows = 0;
+    se3d_run *report = NULL;
+    se3d_run_options how = se3d_run_options_default();
+    how.directory = results();
+    how.progress = stop;
+    how.ctx = &rows;
+    const se3d_status status = se3d_model_run(model, &how, &report, error);
+    se3d_run_destroy(report);
+    fails_anyway |= status < 0 && status != SE3D_ERR_NO_MEMORY && status != SE3D_ERR_INTERRUPTED;
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_IO ? status : SE3D_OK;
+}
+
+static se3d_status draw(se3d_model *model, se3d_model_error *error)
+{
+    char path[900];
+    se3d_scene *scene = NULL;
+    snprintf(path, sizeof path, "%s/paths.glb", results());
+    snprintf(error->message, sizeof error->message, "no scene");
+    se3d_status status = se3d_scene_create(model, &scene);
+    if (status >= 0) {
+        status = se3d_scene_record(scene);
+    }
+    if (status >= 0) {
+        status = se3d_scene_write(scene, path, error);
+    }
+    se3d_scene_destroy(scene);
+    return status;
+}
+
+static se3d_status save(se3d_model *model, se3d_model_error *error)
+{
+    size_t length = 0;
+    se3d_write_options how = se3d_write_options_default();
+    how.partial = 1;
+    snprintf(error->message, sizeof error->message, "not written");
+    return se3d_model_write_text(model, &how, NULL, 0, &length, error);
+}
+
+static se3d_status examine(se3d_model *model, se3d_model_error *error)
+{
+    const char *row = NULL;
+    se3d_study *study = NULL;
+    se3d_status status = se3d_study_create(model, &study, error);
+    if (status == SE3D_ERR_STATE || status == SE3D_ERR_MODEL) {
+        return SE3D_OK; /* the file has none */
+    }
+    snprintf(error->message, sizeof error->message, "no row");
+    if (status >= 0) {
+        status = se3d_study_run_sample(study, 0, &row);
+    }
+    se3d_study_destroy(study);
+    return status == SE3D_ERR_NO_MEMORY ? status : SE3D_OK;
+}
+
+static se3d_status use_model(const char *path, se3d_model_error *error)
+{
+    se3d_model *model = NULL;
+    size_t listed = 0;
+    se3d_model_options options = se3d_model_options_default();
+    options.allocator = &allocator;
+    options.mass_optional = 1;
+    se3d_status status = se3d_model_read_file(path, &options, &model, error);
+    if (status >= 0) {
+        snprintf(error->message, sizeof error->message, "no list");
+        status = se3d_model_list_channels(model, &listed);
+    }
+    status = status < 0 ? status : save(model, error);
+    status = status < 0 ? status : run(model, error);
+    status = status < 0 ? status : draw(model, error);
+    status = status < 0 ? status : examine(model, error);
+    se3d_model_destroy(model);
+    return status;
+}
+
+static se3d_status use_import(const char *path, se3d_model_error *error)
+{
+    se3d_model_import *made = NULL;
+    se3d_model_import_options options = se3d_model_import_options_default();
+    options.allocator = &allocator;
+    const se3d_status status = se3d_model_import_file(path, &options, &made, error);
+    se3d_model_import_destroy(made);
+    return status;
+}
+
+typedef se3d_status (*use)(const char *path, se3d_model_error *error);
+
+static se3d_status attempt(use what, const char *path, size_t refused, se3d_model_error *error)
+{
+    calls.count = calls.reached = 0;
+    calls.refused = refused;
+    counting = (support_counting){.fail_at = 0};
+    *error = (se3d_model_error){0, 0, ""};
+    const se3d_status status = what(path, error);
+    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    return status;
+}
+
+/* @return how many calls were refused */
+static size_t refuse_each(use what, const char *path)
+{
+    static size_t chosen[CALLS];
+    se3d_model_error error;
+    const int before = check_failures;
+    fails_anyway = 0;
+    calls.looks = 1;
+    calls.fresh_count = 0;
+    const se3d_status whole = attempt(what, path, 0, &error);
+    calls.looks = 0;
+    if (whole < 0) {
+        fprintf(stderr, "%s: %s\n", path, error.message);
+    }
+    CHECK(whole >= 0);
+    const size_t count = calls.fresh_count;
+    memcpy(chosen, calls.fresh, count * sizeof *chosen);
+    for (size_t k = 0; k < count; ++k) {
+        const se3d_status status = attempt(what, path, chosen[k], &error);
+        CHECK(calls.reached == 1);
+        CHECK(status == SE3D_ERR_NO_MEMORY || (fails_anyway && status >= 0)); /* told of that */
+        CHECK(error.message[0] != '\0');
+        if (check_failures > before) {
+            fprintf(stderr, "%s: call %zu for memory: status %d: %s\n", path, chosen[k],
+                    (int)status, error.message);
+            calls.tells = 1;
+            attempt(what, path, chosen[k], &error);
+            calls.tells = 0;
+            break;
+        }
+    }
+    return count;
+}
+
+static size_t refuse_in_folder(use what, const char *folder, const char *const *endings)
+{
+    char path[900];
+    size_t sum = 0;
+    DIR *directory = opendir(folder);
+    CHECK(directory != NULL);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        const size_t length = strlen(entry->d_name);
+        int is_one = 0;
+        for (const char *const *e = endings; *e; ++e) {
+            is_one |= length > strlen(*e) && strcmp(entry->d_name + length - strlen(*e), *e) == 0;
+        }
+        if (is_one) {
+            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+            const size_t count = refuse_each(what, path);
+            if (getenv("SE3D_SHOW")) {
+                fprintf(stderr, "%s: %zu\n", path, count);
+            }
+            sum += count;
+        }
+    }
+    if (directory) {
+        closedir(directory);
+    }
+    return sum;
+}
+
+static void every_path_of_models_survives_a_refusal(void)
+{
+    static const char *const endings[] = {".yaml", NULL};
+    static const char *const some[] = {"electronic_cam.yaml",  "planar_slider_crank_inverse.yaml",
+                                       "quarter_car.yaml",     "gear_train.yaml",
+                                       "bar_equilibrium.yaml", NULL};
+    CHECK(refuse_in_folder(use_model, "fuzz/seeds/model", endings) > 100);
+    CHECK(refuse_in_folder(use_model, "examples/models", check_is_long() ? endings : some) > 40);
+}
+
+static void every_path_of_imports_survives_a_refusal(void)
+{
+    static const char *const endings[] = {".urdf", ".sdf", ".adm", ".mdl", ".xml", ".yaml", NULL};
+    CHECK(refuse_in_folder(use_import, "fuzz/seeds/import", endings) > 100);
+}
+
+int main(void)
+{
+    RUN(every_path_of_imports_survives_a_refusal);
+    RUN(every_path_of_models_survives_a_refusal);
+    return check_finish();
+}
