@@ -215,15 +215,6 @@ void se3di_law_keep_own(const se3di_function *function, double *gradient)
     }
 }
 
-int se3di_force_has_signals(const se3di_model *model, const se3di_force *force)
-{
-    int has = 0;
-    for (int c = 0; c < 3; ++c) {
-        has |= force->function[c] >= 0 && model->functions[force->function[c]].signal_count > 0;
-    }
-    return has;
-}
-
 /* Component c of a load, or of a torque, on body j. */
 static void load_gain(const se3di_model *model, const se3di_force *force, int c, double gain[12])
 {

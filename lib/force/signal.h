@@ -33,8 +33,6 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
                            const double *own, double jet[3], double *gradient);
 /* Slopes to the three own variables: those to signals, which may stand there, become zero. */
 void se3di_law_keep_own(const se3di_function *function, double *gradient);
-/* Whether some function of the element has signals. */
-int se3di_force_has_signals(const se3di_model *model, const se3di_force *force);
 /* d wrench / d (value of its function c), c = 0, 1, 2. */
 void se3di_force_gain(const se3di_model *model, const se3di_force *force, int c, double gain[12]);
 

@@ -129,12 +129,6 @@ const char *se3di_live_get_file(const se3di_live *live, size_t k)
     return NULL;
 }
 
-const char *se3di_live_get_title(const se3di_live *live)
-{
-    const se3d_model *model = live->now->model;
-    return model->title[0] ? model->title : model->name;
-}
-
 bool se3di_live_has_motion(const se3di_live *live)
 {
     return live->now->solver != NULL;

@@ -50,7 +50,6 @@ uint64_t se3di_live_count_readings(const se3di_live *live);
 void se3di_live_take_back(se3di_live *live);
 /* Paths of the files that the model was read from, NULL behind the last; one may be there twice. */
 const char *se3di_live_get_file(const se3di_live *live, size_t k);
-const char *se3di_live_get_title(const se3di_live *live);
 
 /* Whether it has an analysis in which time passes. */
 bool se3di_live_has_motion(const se3di_live *live);
