@@ -14,7 +14,7 @@ cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 se3d_help "$@"
 smoke=
-stages="tests long memory gcc asan tsan fuzz unset analyzer tidy coverage mutation kills bits playground"
+stages="tests long memory gcc asan tsan msan fuzz unset analyzer tidy coverage mutation kills bits playground"
 if [ "${1:-}" = --smoke ]; then
     smoke=1
     shift
@@ -95,6 +95,14 @@ whole() {
 with_gcc() { whole ci-gcc; }
 asan() { whole asan; }
 tsan() { whole tsan; }
+msan() {
+    sh tools/check_msan.sh
+    status=$?
+    line=$(sed -n 's/^\([0-9]*% tests passed, .*\)$/\1/p' "$out/msan.log" | tail -n 1)
+    rm -rf build/msan
+    echo "${line:-no test was run}"
+    return $status
+}
 fuzz() { sh tools/check_fuzz.sh "${SE3D_FUZZ_SECONDS:-86400}"; }
 
 some_files() { find lib/base lib/joint -name '*.c' | sort; }
@@ -181,6 +189,7 @@ for each in $stages; do
     gcc) stage gcc 'ctest --preset ci-gcc' with_gcc ;;
     asan) stage asan 'ctest --preset asan' asan ;;
     tsan) stage tsan 'ctest --preset tsan' tsan ;;
+    msan) stage msan 'sh tools/check_msan.sh' msan ;;
     fuzz) stage fuzz 'sh tools/check_fuzz.sh 86400' fuzz ;;
     unset) stage unset 'sh tools/check_uninitialised.sh' unset_variables ;;
     analyzer) stage analyzer 'sh tools/check_analyzer.sh' analyzer ;;

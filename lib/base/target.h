@@ -12,6 +12,12 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 
 #define SE3DI_TARGETS
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer) /* which does not know what some instructions leave unset */
+#undef SE3DI_TARGETS
+#endif
+#endif
+
 #define SE3DI_PRAGMA_TEXT(text) _Pragma(#text)
 #define SE3DI_PRAGMA(text)      SE3DI_PRAGMA_TEXT(text)
 #if defined(__clang__)
@@ -43,6 +49,10 @@ static inline int se3di_has_avx512(void)
     return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("fma");
 }
+
+#endif
+
+#if defined(SE3DI_TARGETS)
 
 #define SE3DI_TARGET_FINDER(type, finder, has, table)                                              \
     const type *finder(void)                                                                       \
