@@ -49,6 +49,11 @@ typedef struct packer {
 
 static se3d_status fail(packer *k, se3d_status status, const char *path, const char *text)
 {
+    if (k->pool.is_short) { /* whatever came of that */
+        status = SE3D_ERR_NO_MEMORY;
+        path = "";
+        text = "out of memory";
+    }
     se3di_document_report(k->error, "", 0, 0, path, text);
     return status;
 }
