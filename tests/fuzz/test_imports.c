@@ -137,9 +137,53 @@ static void damaged_texts_never_crash_an_importer(void)
     CHECK(accepted > iterations / 100 && accepted < iterations);
 }
 
+/* The length of the word or number at the beginning. */
+static size_t word_length(const char *text)
+{
+    return strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.+-");
+}
+
+/* Another word in place of the one of `size` at `at`. */
+static size_t put_word(const char *text, size_t length, size_t at, size_t size, const char *word,
+                       char *out)
+{
+    const size_t more = strlen(word);
+    memcpy(out, text, at);
+    memcpy(out + at, word, more);
+    memcpy(out + at + more, text + at + size, length - at - size);
+    return length - size + more;
+}
+
+/* Each word of each text, in turn: it is missing, no number, of the wrong sign, zero, too large,
+ * two, a list. SE3D_LONG: each of them all. */
+static void every_word_may_be_wrong(void)
+{
+    static const char *const words[] = {"", "x", "-1", "0", "1e40", "1 2", "[]", "nan"};
+    enum { WORDS = sizeof words / sizeof *words };
+    static char text[TEXT_MAX], out[TEXT_MAX + 8];
+    size_t tried = 0, turn = 0, accepted = 0;
+    for (size_t k = 0; k < SEEDS; ++k) {
+        const size_t length = read_seed(&seeds[k], text);
+        text[length] = '\0';
+        for (size_t at = 0; at < length;) {
+            const size_t size = word_length(text + at);
+            for (size_t w = 0; size > 0 && w < (check_is_long() ? WORDS : 2); ++w) {
+                const size_t made =
+                    put_word(text, length, at, size, words[(turn + 3 * w) % WORDS], out);
+                accepted += (size_t)try_text(seeds[k].name, out, made);
+                ++tried;
+            }
+            turn += size > 0;
+            at += size > 0 ? size : 1;
+        }
+    }
+    CHECK(tried > 1000 && accepted > tried / 20 && accepted < tried);
+}
+
 int main(void)
 {
     RUN(undamaged_texts_are_imported);
     RUN(damaged_texts_never_crash_an_importer);
+    RUN(every_word_may_be_wrong);
     return check_finish();
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/document/document.h"
+#include "io/import/scan.h"
 
 enum { TEXT_SIZE = 65536, NOTES_MAX = 1000, NAME_MAX_LENGTH = 100 };
 
@@ -114,10 +115,17 @@ void se3di_machine_note_of(se3di_machine *m, int32_t kind, size_t line, const ch
     m->last_note = note;
 }
 
-/* "%.15g" with a point. */
-static void format_number(double value, char text[40])
+/* "%.15g" with a point. What units or a change of frames made too large for a model is refused. */
+static void format_number(se3di_machine *m, double value, char text[40])
 {
     const char *point = localeconv()->decimal_point;
+    if (!(fabs(value) <= SE3DI_SCAN_LARGEST)) {
+        se3di_machine_fail(
+            m, 0, 0,
+            "a number becomes %g in SI units and the model's frames, must be at most "
+            "1e40 in magnitude",
+            value);
+    }
     snprintf(text, 40, "%.15g", value == 0.0 ? 0.0 : value);
     char *at = point[0] && strcmp(point, ".") != 0 ? strstr(text, point) : NULL;
     if (at) {
@@ -130,7 +138,7 @@ static void format_number(double value, char text[40])
 const char *se3di_machine_number(se3di_machine *m, double value)
 {
     char text[40];
-    format_number(value, text);
+    format_number(m, value, text);
     return se3di_machine_text(m, "%s", text);
 }
 
@@ -144,7 +152,7 @@ const char *se3di_machine_numbers(se3di_machine *m, const double *values, size_t
     }
     for (size_t k = 0; k < count && k < 36; ++k) {
         char number[40];
-        format_number(fabs(values[k]) > 1e-15 * largest ? values[k] : 0.0, number);
+        format_number(m, fabs(values[k]) > 1e-15 * largest ? values[k] : 0.0, number);
         used +=
             (size_t)snprintf(text + used, sizeof text - used, "%s%s", k > 0 ? ", " : "", number);
     }

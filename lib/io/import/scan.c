@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST  1e40  /* of a number in a model file */
 #define SMALLEST 1e-40 /* what is closer to 0 is 0 */
 
 static const char digits[] = "0123456789";
@@ -55,7 +54,7 @@ size_t se3di_scan_number(const char *text, bool fortran, double *value)
     copy[used] = '\0';
     *value = length > 0 ? strtod(copy, NULL) : 0.0;
     *value = fabs(*value) < SMALLEST ? 0.0 : *value;
-    return length > 0 && fabs(*value) <= LARGEST ? length : 0;
+    return length > 0 && fabs(*value) <= SE3DI_SCAN_LARGEST ? length : 0;
 }
 
 int se3di_scan_numbers(const char *text, double *values, int room)

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#define SE3DI_SCAN_LARGEST 1e40 /* of a number in a model file */
+
 /* Read a decimal number at the start of `text`; D for the exponent is fine if `fortran`.
  * @return its length, 0: there is none, or it is not finite or beyond 1e40. */
 size_t se3di_scan_number(const char *text, bool fortran, double *value);
