@@ -170,6 +170,42 @@ static void a_mesh_stands_on_a_plane(void)
     scene_end(&s);
 }
 
+#define RIM 24
+
+/* A cone of triangles whose rim is in a plane touches it all around. */
+static void a_round_mesh_stands_on_its_whole_rim(void)
+{
+    scene s = begin(0.5, 0.3);
+    const double J[3] = {0.01, 0.01, 0.01}, r[3] = {0.0, 0.0, 0.049};
+    double points[3 * (RIM + 2)] = {0.0, 0.0, 0.05, 0.0, 0.0, -0.05};
+    uint32_t faces[6 * RIM];
+    se3d_contact contacts[16];
+    for (uint32_t k = 0; k < RIM; ++k) {
+        const double turn = 2.0 * PI * k / RIM;
+        const uint32_t here = 2 + k, next = 2 + (k + 1) % RIM;
+        const uint32_t two[6] = {0, here, next, 1, next, here};
+        points[3 * here] = 0.2 * cos(turn);
+        points[3 * here + 1] = 0.2 * sin(turn);
+        points[3 * here + 2] = -0.05;
+        memcpy(faces + 6 * k, two, sizeof two);
+    }
+    scene_mesh_on(&s, scene_body(&s, 2.0, J, r, scene_zero), points, RIM + 2, faces, 2 * RIM);
+    floor_on(&s, 0);
+    run(&s, SE3D_METHOD_DOP853, 0.0, 0.0);
+    const size_t count = se3d_system_count_contacts(s.system);
+    CHECK(count >= 8 && count <= 16);
+    CHECK(se3d_system_get_contacts(s.system, count, contacts) == SE3D_OK);
+    for (double turn = 0.0; turn < 2.0 * PI && count <= 16; turn += 0.1) {
+        double most = 0.0;
+        for (size_t k = 0; k < count; ++k) {
+            const double *at = contacts[k].point;
+            most = fmax(most, at[0] * cos(turn) + at[1] * sin(turn));
+        }
+        CHECK(most > 0.2 * cos(0.3 * PI / 2.0)); /* no gap of more than 54 degrees */
+    }
+    scene_end(&s);
+}
+
 #define RINGS 24
 #define TURNS 48
 
@@ -210,6 +246,7 @@ int main(void)
     RUN(a_box_rests_on_a_block_of_triangles);
     RUN(a_box_rests_in_a_corner_of_three_faces);
     RUN(a_mesh_stands_on_a_plane);
+    RUN(a_round_mesh_stands_on_its_whole_rim);
     RUN(a_ball_swings_in_a_bowl);
     return check_finish();
 }

@@ -120,6 +120,7 @@ static void run_long(int32_t method, size_t count)
                "%.1e m/s, %zu bytes, %.2f us a step\n",
                se3d_method_get_name(method), count, drift, most[0], most[1], bytes,
                1e6 * (double)(clock() - begun) / CLOCKS_PER_SEC / (double)count);
+        fflush(stdout);
     }
     world_destroy(&w);
     CHECK(counting.live == 0 && counting.wrong == 0);
