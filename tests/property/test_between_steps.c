@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What is shown between two steps is one smooth motion through both of their ends: velocities are
- * the derivatives of the poses that are shown, what is dissipated that of the damper's power, and
- * nothing jumps where steps meet. */
+ * the derivatives of the poses that are shown and accelerations those of velocities, what is
+ * dissipated that of the power of damper and friction, and nothing jumps where steps meet. */
+#include <stddef.h>
+
 #include "support/mechanisms.h"
 #include "support/methods.h"
 
@@ -10,6 +12,7 @@
 #define APART 1e-5 /* of the differences that are compared with velocities */
 
 #define DAMPING 0.5
+#define RUBBING 0.3 /* N m */
 #define BODIES  2
 
 typedef struct pose {
@@ -18,15 +21,20 @@ typedef struct pose {
 
 typedef struct scene {
     pose body[BODIES];
-    double lost; /* what the damper has taken up [J] */
+    double lost;            /* what damper and friction have taken up [J] */
+    double a[BODIES][2][3]; /* accelerations, angular ones in the body frame */
+    double reaction[3];     /* of the joint [N] */
 } scene;
 
 typedef struct result {
-    double jump, off, lost; /* the largest: where steps meet, of velocities, of the power */
+    /* the largest: where steps meet, of velocities, of accelerations, of the power, of the
+     * reaction where steps meet */
+    double jump, off, bent, lost, kick;
 } result;
 
-/* A body that tumbles and falls, and one that swings on a ball joint with a spring between them. */
-static void build(world *w, se3d_body bodies[BODIES])
+/* A body that tumbles and falls, and one that swings on a ball joint, or on a pin with friction,
+ * with a spring between them. */
+static se3d_constraint build(world *w, int rubs, se3d_body bodies[BODIES])
 {
     const double ball[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0};
     const double spin[3] = {1.0, 3.0, -2.0}, velocity[3] = {0.3, 1.0, -0.5};
@@ -36,7 +44,16 @@ static void build(world *w, se3d_body bodies[BODIES])
     se3d_force force;
     *w = world_create();
     bodies[0] = add_bar(w, "bar", corner, 0.2, 1.0, 1.5);
-    add_joint(w, se3d_joint_create_spherical, "ball", w->ground, bodies[0], ball, axis);
+    const se3d_constraint joint =
+        add_joint(w, rubs ? se3d_joint_create_revolute : se3d_joint_create_spherical, "pin",
+                  w->ground, bodies[0], ball, axis);
+    if (rubs) {
+        se3d_friction_def friction = se3d_friction_def_default();
+        friction.joint = joint;
+        friction.coordinate = SE3D_JOINT_COORDINATE_ANGLE;
+        friction.limit = RUBBING;
+        MUST(w, se3d_force_create_friction(w->system, &friction, &force));
+    }
     def.name = "tumbler";
     def.mass = 2.0;
     def.inertia[0] = 0.2;
@@ -55,9 +72,10 @@ static void build(world *w, se3d_body bodies[BODIES])
     spring.c = DAMPING;
     spring.l0 = 1.0;
     MUST(w, se3d_force_create_tsda(w->system, &spring, &force));
+    return joint;
 }
 
-static scene show(world *w, const se3d_body bodies[BODIES], double t)
+static scene show(world *w, const se3d_body bodies[BODIES], se3d_constraint joint, double t)
 {
     scene now;
     se3d_energy energy;
@@ -68,18 +86,21 @@ static scene show(world *w, const se3d_body bodies[BODIES], double t)
         MUST(w, se3d_body_get_orientation(w->system, bodies[k], x->p));
         MUST(w, se3d_body_get_velocity(w->system, bodies[k], x->v));
         MUST(w, se3d_body_get_angular_velocity(w->system, bodies[k], x->w));
+        MUST(w, se3d_body_get_acceleration(w->system, bodies[k], now.a[k][0]));
+        MUST(w, se3d_body_get_angular_acceleration(w->system, bodies[k], now.a[k][1]));
     }
+    MUST(w, se3d_constraint_get_reaction(w->system, joint, now.reaction, NULL));
     MUST(w, se3d_system_get_energy(w->system, &energy));
     now.lost = energy.dissipated;
     return now;
 }
 
-/* The largest change of anything. */
+/* The largest change of anything but accelerations. */
 static double gap(const scene *a, const scene *b)
 {
     const double *x = a->body[0].r, *y = b->body[0].r;
     double most = 0.0;
-    for (size_t k = 0; k < sizeof *a / sizeof *x; ++k) {
+    for (size_t k = 0; k < offsetof(scene, a) / sizeof *x; ++k) {
         most = fmax(most, fabs(x[k] - y[k]));
     }
     return most;
@@ -99,6 +120,20 @@ static double mismatch(const pose *a, const pose *mid, const pose *b, double tim
     for (int k = 0; k < 3; ++k) {
         most = fmax(most, fabs((b->r[k] - a->r[k]) / time - mid->v[k]));
         most = fmax(most, fabs(turn[k] - mid->w[k]));
+    }
+    return most;
+}
+
+/* How far accelerations are from the differences of velocities over `time`. */
+static double bend(const scene *a, const scene *mid, const scene *b, double time)
+{
+    double most = 0.0;
+    for (int j = 0; j < BODIES; ++j) {
+        for (int k = 0; k < 3; ++k) {
+            const double v = (b->body[j].v[k] - a->body[j].v[k]) / time;
+            const double w = (b->body[j].w[k] - a->body[j].w[k]) / time;
+            most = fmax(most, fmax(fabs(v - mid->a[j][0][k]), fabs(w - mid->a[j][1][k])));
+        }
     }
     return most;
 }
@@ -131,34 +166,40 @@ static double power_of(const scene *x, double damping)
     return damping * product * product / length;
 }
 
-static result follow(int32_t method, int32_t formulation)
+static result follow(int32_t method, int32_t formulation, int rubs)
 {
     world w;
     se3d_body bodies[BODIES];
     se3d_solver_def def = se3d_solver_def_default();
-    result most = {0.0, 0.0, 0.0};
-    build(&w, bodies);
+    result most = {0.0, 0.0, 0.0, 0.0, 0.0};
+    const se3d_constraint joint = build(&w, rubs, bodies);
     def.method = method;
     def.formulation = formulation;
     def.step = STEP;
     MUST(&w, se3d_solver_create(w.system, &def, &w.solver));
-    show(&w, bodies, 0.0);
+    show(&w, bodies, joint, 0.0);
     for (int k = 0; k < 6; ++k) {
         for (double s = 0.17; s < 1.0; s += 0.24) {
             const double t = STEP * (k + s);
-            const scene a = show(&w, bodies, t);
-            const scene mid = show(&w, bodies, t + 0.5 * APART);
-            const scene b = show(&w, bodies, t + APART);
+            const scene a = show(&w, bodies, joint, t);
+            const scene mid = show(&w, bodies, joint, t + 0.5 * APART);
+            const scene b = show(&w, bodies, joint, t + APART);
             const double lost = (b.lost - a.lost) / APART;
             for (int j = 0; j < BODIES; ++j) {
                 most.off = fmax(most.off, mismatch(&a.body[j], &mid.body[j], &b.body[j], APART));
             }
-            most.lost = fmax(most.lost, fabs(lost - power_of(&mid, DAMPING)));
+            const double rubbed = rubs ? RUBBING * fabs(mid.body[0].w[2]) : 0.0;
+            most.lost = fmax(most.lost, fabs(lost - power_of(&mid, DAMPING) - rubbed));
+            most.bent = fmax(most.bent, bend(&a, &mid, &b, APART));
         }
-        const scene before = show(&w, bodies, STEP * (k + 1) - NEAR);
-        const scene at = show(&w, bodies, STEP * (k + 1));
-        const scene after = show(&w, bodies, STEP * (k + 1) + NEAR);
+        const scene before = show(&w, bodies, joint, STEP * (k + 1) - NEAR);
+        const scene at = show(&w, bodies, joint, STEP * (k + 1));
+        const scene after = show(&w, bodies, joint, STEP * (k + 1) + NEAR);
         most.jump = fmax(most.jump, fmax(gap(&before, &at), gap(&at, &after)));
+        for (int j = 0; j < 3; ++j) {
+            most.kick = fmax(most.kick, fabs(before.reaction[j] - at.reaction[j]));
+            most.kick = fmax(most.kick, fabs(after.reaction[j] - at.reaction[j]));
+        }
     }
     world_destroy(&w);
     return most;
@@ -167,18 +208,27 @@ static result follow(int32_t method, int32_t formulation)
 static void motion_between_steps_is_smooth_and_one_with_its_velocities(void)
 {
     for (int32_t method = 0; method < method_count(); ++method) {
-        for (int32_t formulation = 0; formulation < 3; ++formulation) {
-            const result most = follow(method, formulation);
-            /* the powers of newmark's steps go along a straight line */
+        for (int k = 0; k < 6; ++k) {
+            const int32_t formulation = k % 3;
+            const int rubs = k / 3;
+            /* accelerations and powers of newmark's steps go along straight lines */
             const int is_straight =
                 method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT;
+            if (rubs && method == SE3D_METHOD_CONVEX) {
+                continue; /* it knows no friction in joints */
+            }
+            const result most = follow(method, formulation, rubs);
             CHECK(most.jump < 2e-6);
             CHECK(most.off < 2e-6);
+            CHECK(most.bent < (is_straight ? 0.25 : 1e-4));
+            CHECK(most.kick < 1e-3);
             CHECK(most.lost < (is_straight ? 1e-2 : 2e-5));
             if (check_failures) {
-                fprintf(stderr, "%s, formulation %d: jumps %.2e, velocities %.2e, power %.2e\n",
-                        se3d_method_get_name(method), (int)formulation, most.jump, most.off,
-                        most.lost);
+                fprintf(stderr,
+                        "%s, formulation %d, %s: jumps %.2e, velocities %.2e, accelerations %.2e, "
+                        "power %.2e, reactions %.2e\n",
+                        se3d_method_get_name(method), (int)formulation, rubs ? "pin" : "ball",
+                        most.jump, most.off, most.bent, most.lost, most.kick);
                 return;
             }
         }
