@@ -19,6 +19,7 @@ for model in column drum hopper; do
         fi
     done
 done
+holds "the shell is pressed" awk -F, 'NR > 1 && $5 > 0 {++n} END {exit !(n > 2)}' "$dir/drum.1/shell.csv"
 holds "particles changed hands" grep -q '[1-9]' "$dir/changed"
 
 share 2 run "$source/tests/mpi/column.yaml" -o "$dir/threads" --set contact.threads=2

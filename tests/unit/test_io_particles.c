@@ -231,6 +231,77 @@ static void tables_that_were_written_are_read_back(void)
     CHECK(rows > 20);
 }
 
+static se3d_particles *set_of(se3d_model *model)
+{
+    se3d_particles *set = NULL;
+    CHECK(!se3d_particles_find(se3d_model_get_system(model), "particles", &set));
+    return set;
+}
+
+static double kinetic_of(const se3d_particles *set)
+{
+    se3d_particles_energy energy;
+    CHECK(!se3d_particles_get_energy(set, &energy));
+    return energy.translation + energy.rotation;
+}
+
+/* Clumps, some of them scaled, and spheres, in a period that they lie across. */
+static void clumps_that_were_written_are_read_back(void)
+{
+#define CLUMPS                                                                                     \
+    TWO "clumps:\n  - {name: rod, spheres: [{position: [0, 0, 0], radius: 0.01},\n"                \
+        "      {position: [0.01, 0, 0], radius: 0.008}]}\n"                                        \
+        "  - {name: hook, spheres: [{position: [0, 0, 0], radius: 0.01}, {position: [0.01, 0, "    \
+        "0], "                                                                                     \
+        "radius: 0.01},\n      {position: [0.01, 0.012, 0.003], radius: 0.009}]}\n"                \
+        "contact: {boundary: [periodic, periodic, open], lower: [0, 0, 0], upper: [0.2, 0.2, "     \
+        "1]}\n"
+    enum { MOST = 1000 };
+    static double was[3][3 * MOST], now[3][3 * MOST];
+    static uint32_t clumps[2][MOST], tags[2][MOST];
+    char text[3000];
+    se3d_status status = SE3D_OK;
+    se3d_particles *set = NULL;
+    se3d_model *model = run_model(
+        CLUMPS
+        "particles:\n  - {material: glass, radius: 0.01, lower: [0, 0, 0.1], upper: [0.2, 0.2, "
+        "0.14]}\n"
+        "  - {name: rods, clump: rod, material: steel, lower: [0, 0, 0.14], upper: [0.2, 0.2, "
+        "0.2], velocity: [3, 2, -1]}\n"
+        "  - {name: hooks, clump: hook, radius: [0.015, 0.02], material: glass, packing: random, "
+        "count: 25, lower: [0, 0, 0.2], upper: [0.2, 0.2, 0.6], velocity: [1, 0, -4], seed: 3}\n"
+        "analysis: {type: dynamics, duration: 0.02}\n"
+        "output: [{file: clumps.csv, every: 0.02, particles: true}]\n",
+        results_folder(), &status);
+    CHECK(status >= 0 && (set = set_of(model)) != NULL);
+    const size_t n = se3d_particles_count(set), clump_count = se3d_particles_count_clumps(set);
+    CHECK(n > 100 && n < MOST && clump_count > 50);
+    CHECK(!se3d_particles_get_all(set, n, was[0], was[1], was[2]));
+    CHECK(!se3d_particles_get_clump_of(set, n, clumps[0]));
+    const double energy = kinetic_of(set);
+    se3d_model_destroy(model);
+    snprintf(text, sizeof text,
+             CLUMPS "particles: [{material: glass, name: all, file: %s/clumps.csv}]\n",
+             results_folder());
+    se3d_model_error error;
+    CHECK(!se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error));
+    CHECK((set = set_of(model)) != NULL && se3d_particles_count(set) == n);
+    CHECK(se3d_particles_count_clumps(set) == clump_count);
+    CHECK(!se3d_particles_get_all(set, n, now[0], now[1], now[2]));
+    CHECK(!se3d_particles_get_clump_of(set, n, clumps[1]));
+    CHECK(!se3d_particles_get_tags(set, n, tags[1]));
+    for (size_t k = 0; k < 3 * n; ++k) {
+        const double off = now[0][k] - was[0][k]; /* a period is no difference */
+        CHECK_NEAR(k % 3 < 2 ? off - 0.2 * floor(off / 0.2 + 0.5) : off, 0.0, 1e-14);
+        CHECK_NEAR(now[1][k], was[1][k], 1e-12);
+        CHECK_NEAR(now[2][k], was[2][k], 1e-9);
+        CHECK(clumps[0][k / 3] == clumps[1][k / 3] && tags[1][k / 3] == 1);
+    }
+    CHECK_NEAR(kinetic_of(set) / energy, 1.0, 1e-10);
+    se3d_model_destroy(model);
+#undef CLUMPS
+}
+
 static void tables_are_refused_with_line_and_column(void)
 {
     static const struct {
@@ -245,7 +316,9 @@ static void tables_are_refused_with_line_and_column(void)
         {"x,y,z,radius\n0,0,0\n", "line 2, column 4: `radius` is missing: the row is too short"},
         {"x,y,z,radius\n0,0,0,1,5\n", "line 2, column 5: `5` is beyond the last"},
         {"x,y,z,radius,material\n0,0,0,1,wood\n", "line 2, column 5: `wood` is not a material"},
-        {"x,y,z,radius\n0,0,0,\n", "line 2, column 4: `` is not a number"}};
+        {"x,y,z,radius\n0,0,0,\n", "line 2, column 4: `` is not a number"},
+        {"x,y,z,radius,clump\n0,0,0,1,-1\n0,0,0,1,2\n0,0,0,1,2\n0,0,0,1,3\n",
+         "line 3, column 1: `clump` begins a clump of 2 spheres as no entry of `clumps` has them"}};
     char text[2000];
     for (size_t k = 0; k < sizeof bad / sizeof *bad; ++k) {
         se3d_model *model = NULL;
@@ -591,6 +664,7 @@ static void clumps_and_regions_are_refused_by_name_and_line(void)
 int main(void)
 {
     RUN(tables_that_were_written_are_read_back);
+    RUN(clumps_that_were_written_are_read_back);
     RUN(tables_are_refused_with_line_and_column);
     RUN(contacts_are_listed_with_their_forces);
     RUN(chute_counts_what_flows);

@@ -37,6 +37,8 @@ typedef struct se3di_tagged {
     bool audit;          /* where energy goes is told */
     const char **clumps; /* names of the templates of clumps */
     size_t clump_count;
+    struct se3di_clump_entry *clump_entries; /* [clump_count], see read/particle_clumps.h */
+    double period[3];                        /* of the axes; 0: none */
 } se3di_tagged;
 
 /* What has names. Those before clumps are asked for as channels: no two of them share a name. */

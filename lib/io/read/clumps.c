@@ -12,6 +12,7 @@
 #include "io/model/tagged.h"
 #include "io/read/inertia.h"
 #include "io/read/objects.h"
+#include "io/read/particle_clumps.h"
 #include "se3d/clump.h"
 
 /* clang-format off */
@@ -54,7 +55,7 @@ static bool read_spheres(se3di_reader *reader, const se3di_node *node, se3d_clum
             reader, node, "spheres",
             "is missing, must be a list of {position: [x, y, z], radius: r}");
     }
-    double *numbers = se3di_iopool_array(reader->pool, 4 * list->count, sizeof *numbers);
+    double *numbers = se3di_iopool_array(&reader->model->pool, 4 * list->count, sizeof *numbers);
     if (!numbers) {
         return se3di_reader_fail_memory(reader);
     }
@@ -118,7 +119,13 @@ static bool read_clump(se3di_reader *reader, const se3di_node *node)
     if (!read_spheres(reader, node, &def) || !read_mass(reader, node, &def)) {
         return false;
     }
-    const se3d_status status = se3d_particles_add_clump_template(particles->set, &def, NULL);
+    se3di_clump_entry *entry = &particles->clump_entries[particles->clump_count];
+    uint32_t index = 0;
+    se3d_status status = se3d_particles_add_clump_template(particles->set, &def, &index);
+    if (status >= 0) {
+        entry->def = def;
+        status = se3d_particles_get_clump_template(particles->set, index, &entry->info);
+    }
     if (status < 0) {
         return se3di_reader_fail_system(reader, node, status);
     }
@@ -135,7 +142,9 @@ bool se3di_read_clumps(se3di_reader *reader, const se3di_node *root)
     }
     particles->clumps =
         se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->clumps);
-    if (!particles->clumps) {
+    particles->clump_entries = se3di_iopool_array(&reader->model->pool, list ? list->count : 1,
+                                                  sizeof *particles->clump_entries);
+    if (!particles->clumps || !particles->clump_entries) {
         return se3di_reader_fail_memory(reader);
     }
     for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {

@@ -5,6 +5,7 @@
 #include "io/read/particle_table.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "io/base/number.h"
@@ -15,6 +16,7 @@
 #include "io/model/model.h"
 #include "io/model/tagged.h"
 #include "io/read/materials.h"
+#include "io/read/particle_clumps.h"
 
 enum {
     FIELD_X = 0, /* x y z vx vy vz wx wy wz: three vectors */
@@ -24,14 +26,15 @@ enum {
     FIELD_ID = 12,
     FIELD_SET = 13, /* what an output has besides is passed over */
     FIELD_FORCE = 14,
-    FIELD_COUNT = 15,
+    FIELD_CLUMP = 15,
+    FIELD_COUNT = 16,
     COLUMNS_MAX = 32,
     QUOTE_MAX = 24 /* of a file that may not have been meant to be shown */
 };
 
 static const char *const fields[FIELD_COUNT + 1] = {
-    "x",  "y",      "z",    "vx",       "vy", "vz",  "wx",    "wy",
-    "wz", "radius", "time", "material", "id", "set", "force", NULL};
+    "x",      "y",    "z",        "vx", "vy",  "vz",    "wx",    "wy", "wz",
+    "radius", "time", "material", "id", "set", "force", "clump", NULL};
 
 typedef struct table {
     se3di_reader *reader;
@@ -42,7 +45,8 @@ typedef struct table {
     size_t line, column; /* of the cell that is read, from 1 */
     int field[COLUMNS_MAX];
     size_t columns;
-    double *r, *v, *w, *radius;
+    double *r, *v, *w, *radius, *clump; /* clump: of the same number are spheres of one; -1: none */
+    size_t *lines;                      /* of the rows */
     se3d_material *materials;
     se3d_material material; /* of rows that name none */
     size_t count, room;
@@ -83,7 +87,7 @@ static bool read_header(table *t)
         if (!fields[k]) {
             return fail(t, cell,
                         "is not a column: x, y, z, radius are required; vx, vy, vz, wx, wy, wz, "
-                        "material, time, id, set, force are optional");
+                        "material, time, id, set, force, clump are optional");
         }
         if (seen >> k & 1u) {
             return fail(t, cell, "appears twice");
@@ -127,6 +131,8 @@ static bool read_cell(table *t, int field, const char *cell, double *time)
     }
     if (field == FIELD_TIME) {
         *time = value;
+    } else if (field == FIELD_CLUMP) {
+        t->clump[t->count] = value;
     } else if (field == FIELD_RADIUS) {
         t->radius[t->count] = value;
         return value > 0.0 || fail(t, cell, "is a radius, must be > 0");
@@ -144,6 +150,8 @@ static bool read_row(table *t, double *time)
     memset(t->v + 3 * t->count, 0, 3 * sizeof *t->v);
     memset(t->w + 3 * t->count, 0, 3 * sizeof *t->w);
     t->materials[t->count] = t->material;
+    t->clump[t->count] = -1.0;
+    t->lines[t->count] = t->line;
     for (size_t k = 0; k < t->columns; ++k) {
         if (last) {
             ++t->column;
@@ -170,6 +178,8 @@ static void start_again(table *t)
     memmove(t->w, t->w + 3 * k, 3 * sizeof *t->w);
     t->radius[0] = t->radius[k];
     t->materials[0] = t->materials[k];
+    t->clump[0] = t->clump[k];
+    t->lines[0] = t->lines[k];
     t->count = 0;
 }
 
@@ -205,30 +215,114 @@ static bool allocate(table *t)
     t->w = se3di_iopool_array(t->pool, lines, 3 * sizeof *t->w);
     t->radius = se3di_iopool_array(t->pool, lines, sizeof *t->radius);
     t->materials = se3di_iopool_array(t->pool, lines, sizeof *t->materials);
-    return (t->r && t->v && t->w && t->radius && t->materials) ||
+    t->clump = se3di_iopool_array(t->pool, lines, sizeof *t->clump);
+    t->lines = se3di_iopool_array(t->pool, lines, sizeof *t->lines);
+    return (t->r && t->v && t->w && t->radius && t->materials && t->clump && t->lines) ||
            se3di_reader_fail_memory(t->reader);
 }
 
-/* Rows of one material after the other, in the order of the file. */
-static bool add_rows(const table *t, uint32_t tag)
+static bool is_same(double a, double b)
+{
+    return !(a < b || a > b);
+}
+
+/* Rows from `begin` on of one material that are spheres by themselves, or one clump. */
+static size_t end_of_run(const table *t, size_t begin)
+{
+    size_t end = begin + 1;
+    while (end < t->count && t->materials[end].index1 == t->materials[begin].index1 &&
+           is_same(t->clump[end], t->clump[begin])) {
+        ++end;
+    }
+    return end;
+}
+
+static bool add_clump(table *t, size_t begin, size_t end, se3di_clump_pose *pose)
+{
+    const se3di_tagged *particles = t->reader->model->particles;
+    char text[160];
+    const se3di_clump_rows rows = {end - begin, t->r + 3 * begin, t->radius + begin,
+                                   t->v + 3 * begin, t->w + 3 * begin};
+    if (!se3di_clump_recognise(particles, &rows, pose)) {
+        t->line = t->lines[begin];
+        t->column = 1;
+        snprintf(text, sizeof text,
+                 "begins a clump of %zu sphere%s as no entry of `clumps` has them, in its order",
+                 end - begin, end - begin == 1 ? "" : "s");
+        return fail(t, "clump", text);
+    }
+    const se3d_status status = se3di_clump_add(particles, t->materials[begin], pose);
+    return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
+}
+
+/* Those that were scaled are not where they shall be yet. */
+static bool place_clumps(const table *t, const se3di_clump_pose *poses, size_t count)
+{
+    enum { NUMBERS = 13 };
+    se3d_particles *set = t->reader->model->particles->set;
+    const size_t all = se3d_particles_count_clumps(set);
+    double *r = se3di_iopool_array(t->pool, all + 1, NUMBERS * sizeof *r);
+    if (!r) {
+        return se3di_reader_fail_memory(t->reader);
+    }
+    double *e = r + 3 * all, *v = e + 4 * all, *w = v + 3 * all;
+    se3d_status status = se3d_particles_get_clumps(set, all, r, e, v, w);
+    for (size_t k = 0; k < count && status >= 0; ++k) {
+        const size_t to = all - count + k;
+        memcpy(r + 3 * to, poses[k].r, sizeof poses[k].r);
+        memcpy(e + 4 * to, poses[k].e, sizeof poses[k].e);
+        memcpy(v + 3 * to, poses[k].v, sizeof poses[k].v);
+        memcpy(w + 3 * to, poses[k].w, sizeof poses[k].w);
+    }
+    status = status < 0 ? status : se3d_particles_set_clumps(set, all, r, e, v, w);
+    return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
+}
+
+/* The particles from `before` on, of ascending ids, are of the set. */
+static bool tag_all(const table *t, size_t before, uint32_t tag)
 {
     se3d_particles *set = t->reader->model->particles->set;
+    const size_t all = se3d_particles_count(set);
+    uint32_t *ids = tag > 0 ? se3di_iopool_array(t->pool, all + 1, sizeof *ids) : NULL;
+    if (tag > 0 && !ids) {
+        return se3di_reader_fail_memory(t->reader);
+    }
+    se3d_status status = tag > 0 ? se3d_particles_get_ids(set, all, ids) : SE3D_OK;
+    if (tag > 0 && status >= 0) {
+        status = se3d_particles_set_tags(set, all - before, ids + before, tag);
+    }
+    return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
+}
+
+/* In the order of the file. */
+static bool add_rows(table *t, uint32_t tag)
+{
+    se3d_particles *set = t->reader->model->particles->set;
+    se3di_clump_pose *poses = se3di_iopool_array(t->pool, t->count + 1, sizeof *poses);
+    const size_t before = se3d_particles_count(set);
+    size_t clumps = 0;
+    bool scaled = false;
+    if (!poses) {
+        return se3di_reader_fail_memory(t->reader);
+    }
     for (size_t begin = 0, end; begin < t->count; begin = end) {
-        uint32_t first = 0;
-        for (end = begin + 1;
-             end < t->count && t->materials[end].index1 == t->materials[begin].index1; ++end) {
-        }
-        se3d_status status =
-            se3d_particles_add(set, t->materials[begin], end - begin, t->r + 3 * begin,
-                               t->radius + begin, t->v + 3 * begin, t->w + 3 * begin, &first);
-        for (uint32_t id = first; status >= 0 && tag > 0 && id < first + (end - begin); ++id) {
-            status = se3d_particles_set_tags(set, 1, &id, tag);
+        se3d_status status = SE3D_OK;
+        end = end_of_run(t, begin);
+        if (t->clump[begin] < 0.0) {
+            status =
+                se3d_particles_add(set, t->materials[begin], end - begin, t->r + 3 * begin,
+                                   t->radius + begin, t->v + 3 * begin, t->w + 3 * begin, NULL);
+        } else if (!add_clump(t, begin, end, &poses[clumps])) {
+            return false;
+        } else {
+            scaled = scaled || poses[clumps].scale < 1.0 || poses[clumps].scale > 1.0;
+            ++clumps;
         }
         if (status < 0) {
             return se3di_reader_fail_system(t->reader, t->node, status);
         }
     }
-    return true;
+    return (!scaled || place_clumps(t, poses, clumps)) && tag_all(t, before, tag);
 }
 
 bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3d_material material,

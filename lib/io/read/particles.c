@@ -181,6 +181,10 @@ static bool create_set(se3di_reader *reader, const se3di_node *contact)
     def.threads = (int32_t)threads;
     def.name = "particles";
     reader->model->particles->audit = def.audit != 0;
+    for (int a = 0; a < 3; ++a) {
+        const bool periodic = def.boundary[a] == SE3D_DOMAIN_BOUNDARY_PERIODIC;
+        reader->model->particles->period[a] = periodic ? def.upper[a] - def.lower[a] : 0.0;
+    }
     const se3d_status status =
         se3d_particles_create(reader->system, &def, &reader->model->particles->set);
     return status < 0
