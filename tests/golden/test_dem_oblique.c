@@ -179,9 +179,36 @@ static void sliding_impacts_obey_coulomb_exactly(void)
     }
 }
 
+/* With kt = 2/7 kn a linear contact of a solid sphere swings as fast across as along the normal, so
+ * that the ratio of the forces stays what it was: whoever slips less than 7/2 mu vn sticks, and the
+ * point of contact comes back with the opposite velocity; whoever slips more slides to the end. The
+ * impacts at all angles and spins of Chung and Ooi (2011), tests 4 to 8, in closed form. */
+static void linear_impacts_at_any_angle_and_spin_are_in_closed_form(void)
+{
+    const double mu = 0.3, vn = 0.01; /* slow: the arm stays R */
+    int sticks = 0, slides = 0;
+    for (int k = -30; k <= 30; ++k) {
+        const impact c = kind(0, mu);
+        const double slip = 0.08 * k * vn * (1.0 + 1e-3); /* of the point of contact */
+        const double part = (k & 3) / 3.0;                /* of it by spin */
+        state start = {0.0, RADIUS, (1.0 - part) * slip, -vn, -part * slip / RADIUS, 0.0};
+        const double most = 2.0 * mu * vn, stuck = 4.0 / 7.0 * slip;
+        const double change = fabs(stuck) < most ? stuck : copysign(most, slip);
+        double step;
+        state end = library(&c, start, 16.0, &step);
+        CHECK_NEAR(end.vz / vn, 1.0, 1e-4);
+        CHECK_NEAR((start.vx - end.vx) / vn, change / vn, 1e-3);
+        CHECK_NEAR(0.4 * RADIUS * (end.w - start.w) / vn, change / vn, 1e-3);
+        sticks += fabs(stuck) < most;
+        slides += fabs(stuck) > most;
+    }
+    CHECK(sticks > 10 && slides > 10);
+}
+
 int main(void)
 {
     RUN(oblique_impacts_are_those_of_a_finer_integrator);
     RUN(sliding_impacts_obey_coulomb_exactly);
+    RUN(linear_impacts_at_any_angle_and_spin_are_in_closed_form);
     return check_finish();
 }
