@@ -8,7 +8,9 @@
  *     steps=3000    steps that are timed    repeats=1              so often, the best is told
  *     tilt=0        degrees that gravity turns by before the lead: an avalanche
  *     drum=0        rad/s: the box is a drum of 24 planes about the y axis instead
+ *     mesh=0        1: these planes are 48 triangles
  *     funnel=0      1: the box is a conical hopper of 192 triangles, opened below before the lead
+ *     gate=0        1: it stays shut, a silo
  *     state=FILE    the settled state as a LAMMPS data file: read if there is one, written
  *                   otherwise, so that others start from the same
  *     tiles=1       the state is one of (edge/tiles)^3 spheres, put side by side and on top of each
@@ -46,6 +48,7 @@ typedef struct bench {
     double turned; /* angle of the drum */
     int hertz, reserved;
     double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles, funnel;
+    double mesh, shut;
     se3d_shape gate;
     const char *file;
 } bench;
@@ -63,8 +66,6 @@ static double width_of(const bench *b)
     return (double)b->edge * SPACING;
 }
 
-/* A floor and four sides; or planes around the y axis through the middle, on a body that turns,
- * and two ends. */
 static se3d_shape add_plane(bench *b, se3d_body body, se3d_material material, const double point[3],
                             const double normal[3])
 {
@@ -113,6 +114,37 @@ static void add_funnel(bench *b, se3d_material material)
                         (double[3]){0.0, 0.0, 1.0});
 }
 
+/* The planes of the drum, two triangles each, a little longer than it is. */
+static void add_shell(bench *b, se3d_material material)
+{
+    const double corner = DRUM_RADIUS * width_of(b) / cos(PI / DRUM_PLANES);
+    const double ends[2] = {-0.009, 1.2 * width_of(b)};
+    double vertices[2 * DRUM_PLANES][3];
+    uint32_t triangles[2 * DRUM_PLANES][3];
+    se3d_shape_def wall = se3d_shape_def_default();
+    se3d_shape handle;
+    for (uint32_t k = 0; k < DRUM_PLANES; ++k) {
+        const double angle = 2.0 * PI * (k + 0.5) / DRUM_PLANES;
+        const uint32_t at = 2 * k, next = 2 * ((k + 1) % DRUM_PLANES);
+        for (uint32_t end = 0; end < 2; ++end) {
+            vertices[at + end][0] = corner * cos(angle);
+            vertices[at + end][1] = ends[end];
+            vertices[at + end][2] = corner * sin(angle);
+        }
+        memcpy(triangles[at], (uint32_t[3]){at, next, next + 1}, sizeof *triangles);
+        memcpy(triangles[at + 1], (uint32_t[3]){at, next + 1, at + 1}, sizeof *triangles);
+    }
+    wall.body = b->drum;
+    wall.material = material;
+    wall.vertices = vertices[0];
+    wall.vertex_count = sizeof vertices / sizeof *vertices;
+    wall.triangles = triangles[0];
+    wall.triangle_count = sizeof triangles / sizeof *triangles;
+    must(b, se3d_shape_create_mesh(b->system, &wall, &handle));
+}
+
+/* A floor and four sides; or planes around the y axis through the middle, on a body that turns,
+ * and two ends. */
 static void add_walls(bench *b, se3d_material material)
 {
     static const double normals[5][3] = {
@@ -135,7 +167,10 @@ static void add_walls(bench *b, se3d_material material)
     def.position[0] = def.position[2] = 0.5 * width;
     def.angular_velocity[1] = b->drum_rate;
     must(b, se3d_body_create(b->system, &def, &b->drum));
-    for (int k = 0; k < DRUM_PLANES; ++k) {
+    if (b->mesh > 0.0) {
+        add_shell(b, material);
+    }
+    for (int k = 0; k < DRUM_PLANES && !(b->mesh > 0.0); ++k) {
         double angle = 2.0 * PI * k / DRUM_PLANES;
         const double normal[3] = {-cos(angle), 0.0, -sin(angle)};
         const double point[3] = {-DRUM_RADIUS * width * normal[0], 0.0,
@@ -281,7 +316,7 @@ static int read_state(bench *b)
 
 static void tilt(bench *b)
 {
-    if (b->funnel > 0.0) {
+    if (b->funnel > 0.0 && !(b->shut > 0.0)) {
         must(b, se3d_shape_destroy(b->system, b->gate));
     }
     double angle = b->tilt * PI / 180.0;
@@ -367,7 +402,8 @@ static int parse(bench *b, const char *text)
         double *value;
     } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
                    {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
-                   {"drum", &b->drum_rate},  {"tiles", &b->tiles},     {"funnel", &b->funnel}};
+                   {"drum", &b->drum_rate},  {"tiles", &b->tiles},     {"funnel", &b->funnel},
+                   {"mesh", &b->mesh},       {"gate", &b->shut}};
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {

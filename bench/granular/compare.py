@@ -3,7 +3,7 @@
 """Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states.
 
     compare.py BENCH [--quick] [--edges 20 32 50] [--laws hooke hertz] [--avalanche 20] [--drum 20]
-               [--funnel 21] [--repeats 3] [--processes 1 2] [--keep FOLDER]
+               [--funnel 21] [--silo 19] [--repeats 3] [--processes 1 2] [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -76,10 +76,11 @@ def write_shell(name, radius, width):
 
 
 class Case:
-    """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), a drum that turns, or a
-    hopper of triangles that empties."""
+    """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), a drum that turns, of
+    planes or of triangles, a hopper of triangles that empties, or a silo, which is one that does
+    not."""
 
-    LEADS = {"avalanche": 10000, "drum": 20000, "funnel": 5000}
+    LEADS = {"avalanche": 10000, "drum": 20000, "shell": 20000, "funnel": 5000, "silo": 300}
     TILT = 45.0
     RATE = 2.0  # of the drum [rad/s]
 
@@ -88,15 +89,18 @@ class Case:
         self.count = edge ** 3
         self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
         self.steps = max(100, self.LEADS.get(kind, 0) // 2, round(options.work / self.count))
-        bed = kind if kind in ("drum", "funnel") else "column"
+        self.drum, self.hopper = kind in ("drum", "shell"), kind in ("funnel", "silo")
+        bed = "drum" if self.drum else "funnel" if self.hopper else "column"
         self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
         self.own = [options.bench, f"edge={edge}", f"law={law}", f"state={self.state}"]
-        self.own += [f"drum={self.RATE}"] if kind == "drum" else []
-        self.own += ["funnel=1"] if kind == "funnel" else []
+        self.own += [f"drum={self.RATE}"] if self.drum else []
+        self.own += ["mesh=1"] if kind == "shell" else []
+        self.own += ["funnel=1"] if self.hopper else []
+        self.own += ["gate=1"] if kind == "silo" else []
 
     def settle(self):
         if not os.path.exists(self.state):
-            more = ["settle=120000"] if self.kind == "funnel" else []
+            more = ["settle=120000"] if self.hopper else []
             run(self.own + more + ["steps=1", "lead=0"])
         with open(self.state, encoding="ascii") as source, \
                 open(self.state + ".plain", "w", encoding="ascii") as target:
@@ -114,19 +118,20 @@ class Case:
     def peer_inputs(self, program):
         """Name of the input, and its variables."""
         width = self.edge * PITCH
-        if self.kind == "drum" and program == "lammps":
+        if self.drum and program == "lammps":
             # the round shell about the places that our planes leave to the centres
             radius = 0.005 + (0.75 * width - 0.005) / math.cos(math.pi / PLANES)
             return "drum", ["-var", "radius", repr(radius), "-var", "rate", repr(-self.RATE)]
-        if self.kind == "drum":
+        if self.drum:
             shell = self.state + ".stl"
             write_shell(shell, 0.75 * width, width)
             return "drum", ["-var", "shell", shell, "-var", "period",
                             repr(-2.0 * math.pi / self.RATE)]
-        if self.kind == "funnel":
+        if self.hopper:
             shell = self.state + ".stl"
+            gate = ["-var", "gate", repr(RINGS[-1][1] * width)] if self.kind == "silo" else []
             write_funnel(shell, width)
-            return "funnel", ["-var", "shell", shell]
+            return "funnel", ["-var", "shell", shell] + gate
         angle = math.radians(self.TILT if self.kind == "avalanche" else 0.0)
         return self.law, ["-var", "gx", repr(math.sin(angle)), "-var", "gz",
                           repr(-math.cos(angle))]
@@ -196,6 +201,7 @@ def main():
     parser.add_argument("--avalanche", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--drum", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--funnel", type=int, nargs="*", default=[21], help="edges")
+    parser.add_argument("--silo", type=int, nargs="*", default=[19], help="edges")
     parser.add_argument("--quick", action="store_true",
                         help="8,000 spheres only, each program once, for a short time")
     parser.add_argument("--repeats", type=int, default=3)
@@ -217,12 +223,13 @@ def main():
     print("|---" * (len(heads) + 1 + both) + "|", flush=True)
     cases = [("column", e, l) for e in options.edges for l in options.laws]
     cases += [("avalanche", e, l) for e in options.avalanche for l in options.laws]
-    cases += [("drum", e, "hooke") for e in options.drum]
+    cases += [(kind, e, "hooke") for kind in ("drum", "shell") for e in options.drum]
     cases += [("funnel", e, "hooke") for e in options.funnel]
+    cases += [("silo", e, "hooke") for e in options.silo]
     for kind, edge, law in cases:
         case = Case(options, kind, edge, law)
         case.settle()
-        may = [p for p in programs if kind != "funnel" or p != "lmp"]  # no triangles in LAMMPS 2021
+        may = [p for p in programs if not case.hopper or p != "lmp"]  # no triangles in LAMMPS 2021
         report(case, measure(case, may, options), programs, options.processes)
 
 
