@@ -190,8 +190,13 @@ class Run:
         return found
 
     def table(self, file=None):
-        """Return the columns of a results file, the first one by default: name -> array."""
+        """Return the columns of a results file, the first one by default: name -> array. HDF5 is
+        read by h5py."""
         path = self.files[0] if file is None else os.path.join(self.directory, file)
+        if path.endswith((".h5", ".hdf5")):
+            import h5py
+            with h5py.File(path) as source:
+                return {name: column[:] for name, column in source["/"].items()}
         with open(path, encoding="utf-8", newline="") as source:
             names = next(csv.reader(source))
             rows = numpy.loadtxt(source, delimiter=",", ndmin=2)

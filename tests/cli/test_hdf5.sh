@@ -161,6 +161,8 @@ bad "{average: a.vtp, $fields}" 'must end with .vti, .vtkhdf, .h5 or .csv'
 bad "{vtk: a.h5}" 'must end with .pvd or .vtkhdf'
 bad "{file: a.h5}" "{file: a.h5.csv}" 'written by two outputs'
 bad "{file: a.h5}" "{plot: a.svg, from: a.h5}" 'is HDF5: plots are made of CSV files'
+expect 'a plot of HDF5' 1 "$program" plot "$run/r.h5"
+says 'r.h5: is HDF5, must be CSV'
 mkdir -p "$dir/full/p.h5"
 expect 'a folder in the place of a file' 1 "$program" run "$dir/all.yaml" -o "$dir/full"
 says "full/p.h5: cannot be written: Is a directory; its rows are in $dir/full/p.h5.csv"

@@ -362,6 +362,18 @@ output:
   - {file: r.csv, every: 0.1, channels: [pin.angle, bar.position]}
 """
 
+    def test_tables_are_read_from_hdf5(self):
+        try:
+            import h5py  # noqa: F401
+        except ImportError:
+            self.skipTest("no h5py")
+        with tempfile.TemporaryDirectory() as folder:
+            text = self.TEXT + "  - {file: r.h5, every: 0.1, channels: [pin.angle, energy.kinetic]}\n"
+            run = se3d.Model(text=text, parameters={"m": 3}).run(folder)
+            table = run.table("r.h5")
+            self.assertEqual(list(table), ["time", "pin.angle", "energy.kinetic"])
+            numpy.testing.assert_array_equal(table["pin.angle"], run.table("r.csv")["pin.angle"])
+
     def test_text_runs_and_its_table_is_read(self):
         with tempfile.TemporaryDirectory() as folder:
             model = se3d.Model(text=self.TEXT, parameters={"m": 3}, method="radau")

@@ -138,8 +138,11 @@ int table_read(table *t, const char *command, const char *path)
     errno = 0;
     FILE *file = se3di_file_open(path);
     t->header = file ? read_header(file, &t->remark) : NULL;
-    if (!file || !t->header || !split_header(t)) {
-        const char *why = !file && errno ? strerror(errno) : "is empty";
+    const int is_hdf5 = t->header && strncmp(t->header, "\211HDF", 4) == 0;
+    if (!file || !t->header || is_hdf5 || !split_header(t)) {
+        const char *why = !file && errno ? strerror(errno)
+                          : is_hdf5      ? "is HDF5, must be CSV, such as an output `results.csv`"
+                                         : "is empty";
         complain("se3d %s: %s: %s\n", command, path, why);
         if (file) {
             fclose(file);
