@@ -153,6 +153,9 @@ static se3d_status advance(verlet *m, double t1)
 
 static se3d_status finish(verlet *m, se3d_status status)
 {
+    if (status == SE3D_ERR_NO_MEMORY) {
+        se3di_sets_give_up(m->model, "memory is missing");
+    }
     close_kick(m);
     m->bodies.assembly->push = NULL;
     se3di_sets_end(m->model);

@@ -283,6 +283,15 @@ se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
     return status;
 }
 
+void se3di_sets_give_up(const se3di_model *model, const char *why)
+{
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        if (se3di_share_is_spread(set)) {
+            set->share->give_up(set, why);
+        }
+    }
+}
+
 se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error)
 {
     for (se3di_particles *set = model->sets; set; set = set->next) {

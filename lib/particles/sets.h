@@ -32,6 +32,9 @@ se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error);
 se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error,
                               se3d_status *late);
 void se3di_sets_kick(se3di_model *model, double h);
+/* One process fails alone: sets that are spread over processes end them all, as the others would
+ * wait. */
+void se3di_sets_give_up(const se3di_model *model, const char *why);
 /* The run ends: sets that are spread over processes are whole again. */
 void se3di_sets_end(se3di_model *model);
 /* What the particles do to the bodies [bodies * 6]: force (ground frame), torque (body frame). */
