@@ -11,8 +11,11 @@
 
 #define SWEEPS          1000
 #define MODE_ITERATIONS 10
-#define LOAD_ITERATIONS 50
+#define LOAD_ITERATIONS 50  /* while loads do not come closer to each other, */
+#define LOAD_MOST       500 /* and in all */
 #define LOAD_ACCURACY   1e-12
+#define LOAD_ROUNDED    4    /* so often: it is rounding */
+#define LOAD_ROUNDING   1e-9 /* changes that stay: a load of large reactions that cancel */
 
 static uint32_t count_elements(const se3di_model *model)
 {
@@ -265,7 +268,8 @@ se3d_status se3di_lie_friction_solve_accelerations(se3di_lie_friction *f)
     for (uint32_t k = 0; k < f->count; ++k) {
         f->free[k] = se3di_measure_acceleration(model, next_element(f, &at));
     }
-    for (int iteration = 0; f->count > 0; ++iteration) {
+    double before = HUGE_VAL;
+    for (int iteration = 0, stays = 0; f->count > 0; ++iteration) {
         set_limits(f);
         solve_box(f, 1);
         for (int k = 0; k < MODE_ITERATIONS && set_modes(f) > 0; ++k) {
@@ -275,10 +279,13 @@ se3d_status se3di_lie_friction_solve_accelerations(se3di_lie_friction *f)
         add_forces(f, -1.0);
         SE3DI_TRY(solve(f->equations));
         add_forces(f, 1.0);
-        if (take_loads(f) <= LOAD_ACCURACY) {
+        const double change = take_loads(f);
+        stays += !(change < before);
+        before = fmin(change, before);
+        if (change <= LOAD_ACCURACY || (change <= LOAD_ROUNDING && stays > LOAD_ROUNDED)) {
             break;
         }
-        if (iteration >= LOAD_ITERATIONS) {
+        if (stays > LOAD_ITERATIONS || iteration >= LOAD_MOST) {
             return se3di_error_set(f->equations->error, SE3D_ERR_NO_CONVERGENCE,
                                    "t = %g s: friction jams: it and the reaction that it follows "
                                    "from raise each other without end",
