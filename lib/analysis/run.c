@@ -398,9 +398,10 @@ static se3d_status choose_steps(se3di_run *run, double t_end)
     se3di_integration *integration = &run->integration;
     integration->settings.step_most = longest_step(integration);
     SE3DI_TRY(se3di_equal_steps_choose(integration, fmax(t_end, run->horizon)));
-    if (se3di_equal_steps_are_chosen(integration)) {
+    if (se3di_equal_steps_are_chosen(integration)) { /* none is yet where a kink comes first */
+        const double chosen = se3di_equal_steps_get(integration, run->model);
         integration->settings.step_most =
-            fmin(integration->settings.step_most, se3di_equal_steps_get(integration, run->model));
+            fmin(integration->settings.step_most, chosen > 0.0 ? chosen : STEP_DEFAULT);
     }
     return SE3D_OK;
 }

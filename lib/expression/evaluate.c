@@ -98,11 +98,31 @@ static void jet_binary(jet *a, const se3di_instruction *in, unsigned mask)
     jet_chain2(a, a[1], &d, in->mask_a & mask, in->mask_b & mask);
 }
 
+/* At zero, abs has the derivatives of what is on the way ahead. */
+static inline void jet_unary(jet *u, const se3di_instruction *in, unsigned mask)
+{
+    double d[3];
+    se3di_functions[in->function].unary(u->f, d);
+    if (u->f == 0.0 && se3di_functions[in->function].unary == se3di_function_abs) {
+        d[1] = u->t < 0.0 || (u->t == 0.0 && u->tt < 0.0) ? -1.0 : 1.0;
+    }
+    jet_chain(u, d, mask);
+}
+
+/* Of two equal values that one counts which is the smaller, or larger, on the way ahead. */
+static int leads(const jet *a, const jet *b, const se3di_instruction *in)
+{
+    se3di_partials d;
+    const double rise = b->t != a->t ? b->t - a->t : b->tt - a->tt;
+    se3di_functions[in->function].binary(0.0, rise, &d);
+    return d.b != 0.0;
+}
+
 static void jet_select(jet *a, const se3di_instruction *in)
 {
     se3di_partials d;
     se3di_functions[in->function].binary(a[0].f, a[1].f, &d);
-    if (d.b != 0.0) {
+    if (d.b != 0.0 || (a[0].f == a[1].f && leads(&a[0], &a[1], in))) {
         a[0] = a[1];
     }
     a[0].f = d.f; /* NaN if either is */
@@ -159,8 +179,7 @@ static inline void eval_along(const se3di_instruction *code, size_t count, const
             jet_chain(top, d, in->mask_a & w.mask);
             break;
         case SE3DI_OP_UNARY:
-            se3di_functions[in->function].unary(top->f, d);
-            jet_chain(top, d, in->mask_a & w.mask);
+            jet_unary(top, in, in->mask_a & w.mask);
             break;
         case SE3DI_OP_BINARY:
             jet_binary(--top, in, w.mask);

@@ -23,7 +23,7 @@ static double sign_of(double u)
     return u > 0.0 ? 1.0 : u < 0.0 ? -1.0 : u; /* keeps 0 and NaN */
 }
 
-static void eval_abs(double u, double d[3])
+void se3di_function_abs(double u, double d[3])
 {
     set(d, fabs(u), sign_of(u), 0.0);
 }
@@ -240,7 +240,7 @@ static void eval_not_equal(double a, double b, se3di_partials *d)
     }
 
 const se3di_named_function se3di_functions[] = {
-    UNARY("abs", 0, eval_abs),
+    UNARY("abs", 0, se3di_function_abs),
     UNARY("sqrt", 0, eval_sqrt),
     UNARY("exp", 0, eval_exp),
     UNARY("log", 0, eval_log),

@@ -48,6 +48,8 @@ int se3di_function_is_total(size_t function);
 
 /* u^c for a constant c: f, f', f''. Exact conventions at u = 0 and u < 0 for integer c. */
 void se3di_function_power(double u, double c, double d[3]);
+/* |u|, of which the derivative at zero is zero. */
+void se3di_function_abs(double u, double d[3]);
 
 /* The cubic 3 u^2 - 2 u^3 on 0 < u < 1: f, f', f''. */
 void se3di_function_smooth_step(double u, double d[3]);

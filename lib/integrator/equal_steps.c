@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "contact/bodies/pace.h"
 #include "integrator/integrator.h"
+#include "integrator/kink_step.h"
 #include "integrator/pulse_step.h"
 #include "integrator/state.h"
 #include "math/steps.h"
@@ -195,10 +196,11 @@ static void judge(trial *t, double h)
 static se3d_status try_step(trial *t, double h)
 {
     se3di_integration *integration = t->integration;
+    integration->at_kink = 0;
     const se3d_status status = integration->method->step(integration, h);
-    if (status >= 0) {
+    if (status >= 0 && !integration->at_kink) {
         judge(t, h);
-    } else {
+    } else if (status < 0) {
         t->h = 0.25 * h;
     }
     return status;
@@ -225,7 +227,7 @@ static se3d_status try_steps(trial *t)
             return SE3D_OK;
         }
         const se3d_status status = try_step(t, h);
-        if (ends_trials(status)) {
+        if (ends_trials(status) || integration->at_kink) { /* verlet goes no further */
             return status;
         }
         if (integration->is_paced) { /* by contacts or stops, in which accelerations jump */
@@ -284,11 +286,23 @@ static double conclude(const trial *t, int came_to_end)
     return round_down(fmax(fmin(wanted_step(t), longest), SHORTEST * span));
 }
 
+/* The steps begin behind a kink; nothing is known of them before it was passed. */
+static int is_at_kink(se3di_integration *integration)
+{
+    const double t = integration->equations->assembly.model->time;
+    double end = t;
+    (void)se3di_kink_step(integration, t, STEP_LONG, STEP_LONG * SHORTEST, &end);
+    const int is_there = integration->at_kink;
+    integration->at_kink = 0;
+    return is_there;
+}
+
 se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_end)
 {
     se3di_equations *equations = integration->equations;
     se3di_model *model = equations->assembly.model;
-    if (!se3di_equal_steps_are_chosen(integration) || model->history[SE3DI_EQUAL_STEP] > 0.0) {
+    if (!se3di_equal_steps_are_chosen(integration) || model->history[SE3DI_EQUAL_STEP] > 0.0 ||
+        is_at_kink(integration)) {
         return SE3D_OK;
     }
     if (se3di_saved_fill(&integration->before_trials, model, &model->allocator) < 0) {
@@ -300,6 +314,7 @@ se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_en
                .h = fmin(STEP_LONG, integration->settings.step_most),
                .speed = {1e-12, 1e-12}};
     const se3d_status status = choose(&t);
+    integration->at_kink = 0;
     const int came_to_end = !(model->time < t_end);
     const se3d_status room = se3di_saved_reserve(&integration->before_trials, model);
     if (room >= 0) {

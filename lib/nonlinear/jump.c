@@ -18,6 +18,7 @@
 #define CELLS_MAX 1024.0    /* twice, four times ... as much if there were more of them */
 #define DEPTH_MAX 8         /* of parts of a cell */
 #define LEFT_MOST 0.4       /* of what a rule misses, by halving: a smooth function leaves 1/4 */
+#define ZERO      1e-15     /* s: no cell is resolved as finely */
 #define TWO_PI    6.283185307179586
 
 typedef struct point {
@@ -137,6 +138,10 @@ static int refine(const search *s, const se3di_jump *jump, double apart, se3di_k
          ++back) {
         after.t = before.t; /* it is within the last few steps of rounding */
         before.t = nextafter(before.t, -HUGE_VAL);
+    }
+    if (fabs(jump->t) < ZERO && !(fabs(before.f - jump->before) < fabs(before.f - jump->after))) {
+        before.t = 0.0; /* near which times are finer than the search */
+        (void)eval(s, before.t, &before);
     }
     kink->t = after.t;
     kink->t_before = before.t;

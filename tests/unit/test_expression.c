@@ -354,12 +354,16 @@ static void integer_powers_are_exact_at_zero_and_below(void)
 static void kinks_follow_the_documented_conventions(void)
 {
     double jet[3];
-    check_jet("abs(t)", 0, 0, 0, 0);
+    check_jet("abs(t)", 0, 0, 1, 0); /* rates in time are those from there on */
+    check_jet("abs(-t)", 0, 0, 1, 0);
+    check_jet("abs(3*t - t^2)", 0, 0, 3, -2);
+    check_jet("abs(-t^2)", 0, 0, 0, 2);
     check_jet("sign(t)", 0, 0, 0, 0);
     check_jet("hypot(t, 0)", 0, 0, 0, 0);
     check_jet("min(t, 2*t)", 0, 0, 1, 0);
-    check_jet("min(2*t, t)", 0, 0, 2, 0);
-    check_jet("max(t, 2*t)", 0, 0, 1, 0);
+    check_jet("min(2*t, t)", 0, 0, 1, 0);
+    check_jet("max(t, 2*t)", 0, 0, 2, 0);
+    check_jet("max(t, t + t^2)", 0, 0, 1, 2);
     check_jet("max(2*t, t)", 0, 0, 2, 0);
     check_jet("mod(t, 2)", 4, 0, 1, 0);
     check_jet("floor(t)", 4, 4, 0, 0);
