@@ -20,11 +20,17 @@
         return status;                                                                             \
     }
 
+/* A body that is held stays so: definitions do not say it. */
 static se3d_status create_body(se3d_system *system, const se3d_body_def *def, se3d_body *body)
 {
-    return system->model.target == 1
-               ? SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "the ground cannot be defined again")
-               : se3d_body_create(system, def, body);
+    const uint32_t index = system->model.target - 1;
+    if (index == 0) {
+        return SE3DI_FAIL(system, SE3D_ERR_INVALID_ARGUMENT, "the ground cannot be defined again");
+    }
+    const int32_t held = system->model.bodies[index].held;
+    SE3DI_TRY(se3d_body_create(system, def, body));
+    system->model.bodies[index].held = held;
+    return SE3D_OK;
 }
 
 /* A joint of the same type. Drivers and couplers have copies of what their joints are made of. */

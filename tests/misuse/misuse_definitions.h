@@ -91,7 +91,10 @@ static void check_definitions_of_bodies(arguments *a)
     se3d_constraint made;
     se3d_marker found;
     DEFINITION(body_get_def, se3d_body, se3d_body_def, u->body, ((se3d_body){9, 9}));
+    int32_t held = 0;
+    CHECK(!se3d_body_set_held(a->system, u->body, 1));
     DEFINED_AGAIN(body_get_def, body_set_def, se3d_body, se3d_body_def, u->body, position[1], 0.25);
+    CHECK(!se3d_body_get_held(a->system, u->body, &held) && held == 1);
     DEFINED_AGAIN(marker_get_def, marker_set_def, se3d_marker, se3d_marker_def, u->marker,
                   position[2], 0.5);
     IS_NO(body_set_def, se3d_body_def, ground_of(a), "ground");
