@@ -8,17 +8,18 @@ cd "$(dirname "$0")/.."
 # shellcheck disable=SC2086
 se3d_install $SE3D_BUILD_PACKAGES
 cmake --preset release -DSE3D_BUILD_TESTS=OFF -DSE3D_BUILD_EXAMPLES=OFF
-cmake --build --preset release -j "$(se3d_jobs)"
+cmake --build --preset release -j "$(se3d_jobs)" --target se3d_program # the picture first
 program=build/release/bin/se3d
 
 # The main job: one model, all that it leaves; the plot and the page where their tools are there.
 show_main() {
     name=$1
     folder=results/$name
-    echo "== $name: se3d run examples/models/$name.yaml -o $folder"
-    "$program" run "examples/models/$name.yaml" -o "$folder" || return 1
+    mkdir -p "$folder"
     "$program" sketch -q "examples/models/$name.yaml" -o "$folder/sketch.svg" || return 1
     echo "picture: $(pwd)/$folder/sketch.svg (any browser)"
+    echo "== $name: se3d run examples/models/$name.yaml -o $folder"
+    "$program" run "examples/models/$name.yaml" -o "$folder" || return 1
     echo "results: $(pwd)/$folder/$name.csv"
     echo "scene:   $(pwd)/$folder/scene.glb (Blender, any glTF viewer)"
     if command -v gnuplot >/dev/null 2>&1; then
@@ -79,6 +80,9 @@ for name in travel roll steer car brake; do
         failed="$failed fsae/$name"
     fi
 done
+
+# What the program does without: shared libraries, recorder.
+cmake --build --preset release -j "$(se3d_jobs)"
 
 echo
 if [ -n "$failed" ]; then
