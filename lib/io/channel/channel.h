@@ -35,7 +35,7 @@
     X(JOINT_DISPLACEMENT, 1, JOINT_DISPLACEMENT, 0, MOTION, 1, 0, 0, 0)                            \
     X(JOINT_DISPLACEMENT_RATE, 1, JOINT_DISPLACEMENT, 1, MOTION, 1, 1, 0, 0)                       \
     X(JOINT_BROKEN, 1, JOINT_BROKEN, 0, JUMPS, 0, 0, 0, 0)                                         \
-    X(DRIVER_VALUE, 1, DRIVER_VALUE, 0, SOLVED, 0, 0, 0, 1)                                        \
+    X(DRIVER_VALUE, 1, DRIVER_VALUE, 0, LOADED, 0, 0, 0, 1)                                        \
     X(DRIVER_EFFORT, 1, DRIVER_EFFORT, 0, SOLVED, 1, 2, 1, 1)                                      \
     X(FORCE_COORDINATE, 1, FORCE, 0, MOTION, 0, 0, 0, 1)                                           \
     X(FORCE_RATE, 1, FORCE, 1, MOTION, 0, 1, 0, 1)                                                 \
