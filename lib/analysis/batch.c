@@ -217,7 +217,7 @@ static se3d_status take_model(se3di_batch *b, se3di_batch_worker *w)
 static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
 {
     const size_t width = (size_t)b->core->width, y = width * state_size(b);
-    const size_t rows = se3di_lane_loops_room(&b->lane_loops, b->tree.v_count);
+    const size_t rows = se3di_lane_loops_room(&b->lane_loops);
     const room rooms[] = {{&w->y, y},
                           {&w->end, y},
                           {&w->rates, SE3DI_BATCH_STAGES * y},

@@ -12,6 +12,7 @@
 #include "force/driver_rate.h"
 #include "integrator/convex.h"
 #include "integrator/explicit_step.h"
+#include "integrator/gauss_lanes.h"
 #include "nonlinear/against.h"
 
 #include <string.h>
@@ -88,6 +89,7 @@ static se3d_status allocate_work(se3di_run *run)
     model->history = history;
     SE3DI_TRY(status);
     SE3DI_TRY(reserve_kept(run, count));
+    SE3DI_TRY(method->takes_lanes ? se3di_equations_take_lanes(&run->equations) : SE3D_OK);
     run->work_count = method->work_count(&run->equations.assembly);
     run->integration.work = se3di_alloc(&model->allocator, run->work_count, sizeof(double));
     if (!run->integration.work) {
@@ -166,11 +168,26 @@ static se3d_status build_equations(se3di_run *run)
 /* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
 #define TOLERANCE_OF_LOOPS 2.3e-10
 
-/* And gauss passes singular positions in fewer steps, and more exactly, by the bodies. */
 static int takes_loops(const se3di_run *run)
 {
-    return run->integration.method->tag != SE3D_METHOD_GAUSS &&
+    return run->integration.method->takes_lanes ||
            !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
+}
+
+/* If loops are not computed in lanes, gauss passes singular positions in fewer steps, and more
+ * exactly, by the bodies. */
+static se3d_status leave_slow_loops(se3di_run *run, int *picked)
+{
+    se3di_equations *equations = &run->equations;
+    if (!*picked || !equations->has_loops || !run->integration.method->takes_lanes) {
+        return SE3D_OK;
+    }
+    const se3d_status status = se3di_equations_take_lanes(equations);
+    if (status < 0 || !se3di_gauss_lanes_suit_loops(equations)) {
+        se3di_equations_destroy(equations);
+        *picked = 0;
+    }
+    return status;
 }
 
 /* The formulation of `auto`. *picked: the equations are built, in joint coordinates. */
@@ -185,6 +202,7 @@ static se3d_status try_joints(se3di_run *run, int *picked)
     }
     SE3DI_TRY(
         se3di_equations_try_joints(&run->equations, model, takes_loops(run), run->error, picked));
+    SE3DI_TRY(leave_slow_loops(run, picked));
     if (*picked) {
         run->formulation = &se3di_formulation_joint;
     }

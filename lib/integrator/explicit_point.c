@@ -275,10 +275,10 @@ double *se3di_explicit_end(const se3di_explicit *m)
     return m->K + (size_t)m->methods->get_end(m) * m->count;
 }
 
-se3d_status se3di_explicit_project(se3di_explicit *m, double t)
+se3d_status se3di_explicit_project(se3di_explicit *m, double t, int is_factored)
 {
     return m->motion->project(m->equations, t, &m->past->scale, projection_accuracy(m->tolerance),
-                              1);
+                              is_factored);
 }
 
 int se3di_explicit_is_too_large(const se3di_explicit *m, double error)

@@ -21,8 +21,8 @@ se3d_status se3di_explicit_differentiate(se3di_explicit *m, double t, double *de
 /* What the velocities of the step that is tried are measured by: not below what rounding makes of
  * forces that balance. */
 se3di_state_scale se3di_explicit_measure_by(const se3di_explicit *m);
-/* The factorisation of the last evaluation, which was here or near, serves. */
-se3d_status se3di_explicit_project(se3di_explicit *m, double t);
+/* is_factored: the factorisation of the last evaluation, which was here or near, serves. */
+se3d_status se3di_explicit_project(se3di_explicit *m, double t, int is_factored);
 int se3di_explicit_is_too_large(const se3di_explicit *m, double error);
 
 #endif

@@ -44,12 +44,13 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
         return SE3D_OK;
     }
     arrive(m, h);
+    SE3DI_TRY(m->is_closed ? se3di_explicit_project(m, t, 0) : SE3D_OK);
     SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
     *error = m->methods->estimate_end(m, h, of_stages);
-    if (se3di_explicit_is_too_large(m, *error)) {
+    if (m->is_closed || se3di_explicit_is_too_large(m, *error)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_explicit_project(m, t));
+    SE3DI_TRY(se3di_explicit_project(m, t, 1));
     /* near a singular position (more rows are dependent than have been all along) accelerations at
      * a state that violates the constraints are others */
     const double dependent = m->motion->count_dependent(m->equations);
@@ -510,7 +511,7 @@ static int reports_end(const se3di_explicit *m)
  * the derivative that they are. */
 static se3d_status solve_end(se3di_explicit *m, double t)
 {
-    SE3DI_TRY(se3di_explicit_project(m, t));
+    SE3DI_TRY(se3di_explicit_project(m, t, !m->is_closed));
     if (m->motion->may_report(m->equations)) {
         SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
         if (m->motion->report(m->equations)) {
@@ -591,7 +592,7 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
         SE3DI_TRY(m->motion->finds_all(m->equations) ? evaluate_end(m, t) : solve_end(m, t));
     } else {
         SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
-        SE3DI_TRY(se3di_explicit_project(m, t));
+        SE3DI_TRY(se3di_explicit_project(m, t, 1));
     }
     SE3DI_TRY(prepare(m, h, &error));
     accept(m, t);

@@ -91,6 +91,8 @@ struct se3di_explicit {
     double contraction; /* gauss: of the iterations of this step; 0: unknown */
     double remembered;  /* the least error that the choice of the next step counts with */
     int stages;         /* gauss: of this step */
+    int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
+    int is_met;         /* gauss: a stage or the end is too near to a singular position */
     int has_stages;     /* K is that of the last step: it was made in this call */
     int leaves_scale;   /* the scale grows when errors are measured again */
     int waits;          /* y'_1, and what the model shows of it, is computed when it is needed */

@@ -8,8 +8,8 @@
  * Positions follow from the velocities of the same iteration, so that an iteration gains as much as
  * one of the equations of second order. Symmetric, and symplectic where the iterations are
  * converged. The derivatives at both ends say what the polynomial lacks: its error, the step, and
- * an interpolation of two orders more. Stages of a tree without force elements are computed in the
- * lanes of registers, to the same bits (gauss_lanes.h).  docs/theory/gauss.md */
+ * an interpolation of two orders more. Stages of a tree without force elements, open or with loops,
+ * are computed in the lanes of registers (gauss_lanes.h).  docs/theory/gauss.md */
 #include "integrator/explicit_step.h"
 #include "integrator/gauss_lanes.h"
 #include "integrator/gauss_rule.h"
@@ -25,10 +25,14 @@
 #define EXACT_MAX       100   /* iterations to rounding, for a step that is not controlled */
 #define ROUNDING        1e-14 /* a relative change that is only noise */
 #define LEFT            0.1   /* of the local tolerance may be left of the iterations */
+#define NOISE           0.5   /* the same of a change that does not get less */
 #define GUESS           0.5   /* contraction of a step that nothing is known of */
 #define SAFETY          0.8
 #define GROWTH          2.0
 #define EASY            0.01 /* an error that would allow far longer steps */
+#define SHORT           0.02 /* step times that rate: singular positions are not avoided by less */
+#define ASIDE           0.8  /* the part of a step that avoids one, */
+#define ASIDE_MAX       6    /* if it is not tried for longer */
 #define SLOW_MAX        0.05 /* step times the rate of the motion, if stiffness holds it */
 #define STATES          (SE3DI_GAUSS_MAX + 1) /* first vector of work for the states of stages */
 
@@ -42,6 +46,25 @@ static double *stage_state(const se3di_explicit *m, int i)
     return m->K + (size_t)(STATES + i) * m->count;
 }
 
+/* More rows are dependent at the end of the step than are all along. */
+static int is_lost(const se3di_explicit *m)
+{
+    return m->motion->count_dependent(m->equations) > m->past->redundant;
+}
+
+/* [1/s] of the motion so far. */
+static double rate_of_motion(const se3di_explicit *m)
+{
+    return fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
+}
+
+/* A step that meets a singular position with a stage or its end is better made shorter, so that it
+ * meets none; not if it begins at one, or is short in units of the motion. */
+static int may_be_shorter(const se3di_explicit *m, double h)
+{
+    return isfinite(m->tolerance) && m->past->lost == 0.0 && h * rate_of_motion(m) > SHORT;
+}
+
 /* The stages of the next step; the history decides, so that clones go on alike. */
 static int choose_stages(const se3di_explicit *m)
 {
@@ -49,7 +72,8 @@ static int choose_stages(const se3di_explicit *m)
     if (settings->order > 0) {
         return settings->order / 2;
     }
-    return settings->tolerance < MANY_FROM && m->past->lost == 0.0 ? 8 : 4;
+    const int pays = settings->tolerance < MANY_FROM || se3di_gauss_lanes_take_loops(m);
+    return pays && m->past->lost == 0.0 ? 8 : 4;
 }
 
 /* The motion goes on as in the last step: nothing that acts has jumped. */
@@ -130,7 +154,10 @@ static int judge(const se3di_explicit *m, int iteration, double change, double r
     if (left <= LEFT * m->tolerance || change <= ROUNDING) {
         return 1;
     }
-    return (iteration > 0 && rate > CONTRACTION_MAX) || iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
+    if (iteration > 0 && rate > CONTRACTION_MAX) {
+        return change <= NOISE * m->tolerance ? 1 : -1;
+    }
+    return iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
 }
 
 /* What the contraction of the first iteration is likely to be. */
@@ -180,7 +207,7 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
     m->contraction = 0.0;
     *judgement = 0;
     for (int k = 0; *judgement == 0; ++k) {
-        if (!se3di_gauss_lanes_sweep(lanes, m, rule, h, &change)) {
+        if (!se3di_gauss_lanes_sweep(lanes, m, rule, k, h, &change)) {
             return 0;
         }
         follow(m, k, change, &before, &rate);
@@ -190,12 +217,29 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
     return 1;
 }
 
-static se3d_status find_stages(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
-                               int *judgement)
+/* In lanes, if they can be. What cannot be is done one after the other, with four stages, whose
+ * iterations contract better at singular positions. */
+static se3d_status find_stages(se3di_explicit *m, double h, int *judgement)
 {
     se3di_gauss_lanes lanes;
-    if (se3di_gauss_lanes_init(&lanes, m, rule) && iterate_lanes(m, rule, h, &lanes, judgement)) {
-        return SE3D_OK;
+    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
+    m->is_closed = m->is_met = 0;
+    predict(m, rule, h);
+    if (se3di_gauss_lanes_init(&lanes, m, rule)) {
+        if (iterate_lanes(m, rule, h, &lanes, judgement)) {
+            m->is_closed = lanes.has_loops;
+            return SE3D_OK;
+        }
+        m->is_met = lanes.has_loops && may_be_shorter(m, h);
+        *judgement = -1;
+        if (m->is_met) {
+            return SE3D_OK;
+        }
+        if (lanes.has_loops && m->step.integration->settings.order == 0) {
+            m->stages = 4;
+            rule = se3di_gauss_find(m->stages);
+            predict(m, rule, h);
+        }
     }
     return iterate(m, rule, h, judgement);
 }
@@ -204,10 +248,8 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
 {
     int judgement;
     m->stages = choose_stages(m);
-    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
     se3di_state_begin_step(m->equations, m->past->redundant);
-    predict(m, rule, h);
-    SE3DI_TRY(find_stages(m, rule, h, &judgement));
+    SE3DI_TRY(find_stages(m, h, &judgement));
     if (judgement < 0 && !isfinite(m->tolerance)) {
         return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
                                "t = %g s: the stages of a step of %g s do not converge; take a "
@@ -241,6 +283,10 @@ static double weigh(se3di_explicit *m, double h, const double *weights)
 static double estimate_end(se3di_explicit *m, double h, double error)
 {
     (void)error;
+    if (m->is_closed && is_lost(m) && may_be_shorter(m, h)) {
+        m->is_met = 1;
+        return HUGE_VAL;
+    }
     const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
     double begin[SE3DI_GAUSS_NODES], end[SE3DI_GAUSS_NODES], mean[SE3DI_GAUSS_NODES] = {0.0};
     se3di_gauss_defects(rule, begin, end);
@@ -265,7 +311,7 @@ static void accept(se3di_explicit *m, double h)
            m->count * sizeof *m->f1);
     m->past->stages = m->stages;
     m->past->contraction = m->contraction;
-    m->past->lost = m->motion->count_dependent(m->equations) > m->past->redundant;
+    m->past->lost = is_lost(m);
 }
 
 static int get_order(const se3di_explicit *m)
@@ -299,6 +345,9 @@ static double shrink(const se3di_explicit *m, se3d_status status, double error)
     if (status < 0) {
         return 0.25;
     }
+    if (m->is_met && m->step.tries <= ASIDE_MAX) {
+        return ASIDE;
+    }
     const double factor = isfinite(error) && error > 0.0
                               ? SAFETY * se3di_pow(error, -1.0 / (m->stages + 2))
                               : fmin(0.6, contract(m->contraction));
@@ -308,9 +357,8 @@ static double shrink(const se3di_explicit *m, se3d_status status, double error)
 /* Contraction limits the steps to far below what errors allow, and what the motion asks for. */
 static void watch_stability(se3di_explicit *m, double h)
 {
-    const double rate = fmax(m->past->scale.speed / m->past->scale.length, m->past->scale.spin);
-    se3di_explicit_count_sign(m, m->contraction > 0.5 * CONTRACTION_AIM && h * rate < SLOW_MAX &&
-                                     m->past->at.error < EASY);
+    se3di_explicit_count_sign(m, m->contraction > 0.5 * CONTRACTION_AIM &&
+                                     h * rate_of_motion(m) < SLOW_MAX && m->past->at.error < EASY);
 }
 
 static se3d_status build_dense(se3di_explicit *m)
@@ -359,4 +407,5 @@ const se3di_integrator se3di_integrator_gauss = {
     .explicit_class = &gauss_class,
     .is_held = se3di_explicit_is_held,
     .orders = 1u << 8 | 1u << 16,
+    .takes_lanes = 1,
 };

@@ -4,11 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Numbers per stage besides those of the tree: K, Y, next, change; weights, gravity, parts,
- * verdict. */
+#define ROUNDING 3e-16
+#define LEAST    1e-4  /* pivot of single states, of a usual one */
+#define NEAREST  1e-4  /* the least part of it, */
+#define FARTHEST 100.0 /* and the largest */
+
+/* Numbers per stage besides those of the tree: K, and those of a group. */
 static size_t count_numbers(size_t state, size_t stages)
 {
-    return 4 * state + stages + 3 + 4 + 1;
+    return 5 * state + stages + 3 + 4 + 1;
 }
 
 size_t se3di_gauss_work_count(const se3di_assembly *assembly)
@@ -23,65 +27,148 @@ size_t se3di_gauss_work_count(const se3di_assembly *assembly)
            se3di_lanes_room(bodies, 6 * bodies, bodies, stages);
 }
 
-/* Nothing acts but gravity that does not change, and nothing constrains but the tree. */
-static int is_bare(const se3di_explicit *m)
+/* ---- what can be done so ---- */
+
+/* Nothing acts but gravity that does not change. */
+static int is_bare(const se3di_equations *equations)
 {
-    const se3di_model *model = m->assembly->model;
+    const se3di_model *model = equations->assembly.model;
     int found = model->force_slots.count > 0 || model->shape_slots.count > 0;
     for (int c = 0; c < 3; ++c) {
         found |= model->gravity_function[c] >= 0;
     }
-    return m->motion == &se3di_motion_joints && m->equations->is_open_tree && !found;
+    return !found;
+}
+
+int se3di_gauss_lanes_suit_loops(const se3di_equations *equations)
+{
+    return equations->lanes.rows.count > 0 && is_bare(equations) &&
+           equations->tree->given_count == 0 && equations->assembly.timed_count == 0 &&
+           equations->assembly.user_count == 0 && equations->friction.count == 0 &&
+           equations->tree->foreign_armature < 0 &&
+           se3di_tree_loops_need_links_only(&equations->loops) &&
+           se3di_loop_system_is_regular(&equations->loops.system);
+}
+
+int se3di_gauss_lanes_take_loops(const se3di_explicit *m)
+{
+    return m->motion == &se3di_motion_joints && se3di_gauss_lanes_suit_loops(m->equations);
+}
+
+/* The widest core that stages fill. */
+static const se3di_lane_core *find_core(int stages)
+{
+    static const int32_t widths[] = {8, 4, 1};
+    const se3di_lane_core *core = NULL;
+    for (int k = 0; !core && k < 3; ++k) {
+        core = stages % widths[k] == 0 ? se3di_lane_core_find(widths[k]) : NULL;
+    }
+    return core;
+}
+
+static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m, size_t index, double *at)
+{
+    const size_t w = g->width, state = w * (g->positions + g->velocities);
+    const se3di_loop_lanes *loops = &m->equations->lanes;
+    const se3di_tree *tree = m->equations->tree;
+    se3di_gauss_group *own = &g->groups[index];
+    own->Y = at;
+    own->closed = own->Y + state;
+    own->next = own->closed + state;
+    own->change = own->next + state;
+    own->weights = own->change + state;
+    own->gravity = own->weights + w * g->stages;
+    own->parts = own->gravity + 3 * w;
+    own->verdict = own->parts + 4 * w;
+    se3di_lanes_lay_out(&own->lanes, tree, g->core, own->verdict + w);
+    se3di_lanes_load(&own->lanes, own->gravity, 0);
+    if (g->has_loops) {
+        se3di_lanes_take_loops(&own->lanes, &loops->rows,
+                               loops->memory + index * w * se3di_lane_loops_room(&loops->rows));
+    }
+    return own->verdict + w + se3di_lanes_room(tree->count, tree->v_count, tree->branch_count, w);
+}
+
+/* What is closed may come nearer to a singular position than single states do, as far as rounding,
+ * which grows with the inverse of a pivot, allows. */
+static void take_least(se3di_explicit *m)
+{
+    const double rounding = ROUNDING / (LEAST * m->tolerance);
+    se3di_lane_loops_take_least(&m->equations->lanes.rows, fmin(FARTHEST, fmax(NEAREST, rounding)));
 }
 
 int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule)
 {
-    const se3di_lane_core *core = is_bare(m) ? se3di_lane_core_find(rule->stages) : NULL;
-    if (!core) {
+    g->has_loops = se3di_gauss_lanes_take_loops(m);
+    const int is_open = m->motion == &se3di_motion_joints && m->equations->is_open_tree;
+    if (!g->has_loops && !(is_open && is_bare(m->equations))) {
         return 0;
     }
+    g->core = find_core(rule->stages);
+    if (g->core->width == 1 && !g->has_loops) {
+        return 0;
+    }
+    if (g->has_loops) {
+        take_least(m);
+    }
     const se3di_tree *tree = m->equations->tree;
-    const size_t w = (size_t)rule->stages, state = (size_t)tree->q_count + tree->v_count;
     double *at = m->step.integration->work + se3di_explicit_work_count(m->assembly);
     g->positions = tree->q_count;
     g->velocities = tree->v_count;
+    g->stages = (size_t)rule->stages;
+    g->width = (size_t)g->core->width;
     g->K = se3di_lanes_align(at);
-    g->Y = g->K + w * state;
-    g->next = g->Y + w * state;
-    g->change = g->next + w * state;
-    g->weights = g->change + w * state;
-    g->gravity = g->weights + w * w;
-    g->parts = g->gravity + 3 * w;
-    g->verdict = g->parts + 4 * w;
-    se3di_lanes_lay_out(&g->lanes, tree, core, g->verdict + w);
-    se3di_lanes_load(&g->lanes, g->gravity, 0);
+    at = g->K + g->stages * (g->positions + g->velocities);
+    for (size_t k = 0; k < g->stages / g->width; ++k) {
+        at = take_group(g, m, k, at);
+    }
     return 1;
 }
+
+/* ---- states and derivatives ---- */
 
 void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
                              const se3di_gauss_rule *rule, double h)
 {
-    const size_t w = (size_t)rule->stages, state = g->positions + g->velocities;
-    for (size_t i = 0; i < w; ++i) {
+    const size_t s = g->stages, w = g->width, state = g->positions + g->velocities;
+    for (size_t i = 0; i < s; ++i) {
+        se3di_gauss_group *own = &g->groups[i / w];
+        const size_t lane = i % w;
         for (size_t c = 0; c < state; ++c) {
-            g->K[c * w + i] = m->K[i * m->count + c];
+            g->K[c * s + i] = m->K[i * m->count + c];
         }
-        for (size_t j = 0; j < w; ++j) {
-            g->weights[j * w + i] = h * rule->A[i * w + j];
+        for (size_t j = 0; j < s; ++j) {
+            own->weights[j * w + lane] = h * rule->A[i * s + j];
         }
         for (size_t c = 0; c < 3; ++c) {
-            g->gravity[c * w + i] = m->assembly->model->gravity[c];
+            own->gravity[c * w + lane] = m->assembly->model->gravity[c];
         }
+    }
+}
+
+/* The states of all stages. */
+static void combine(const se3di_gauss_lanes *g, const double *y)
+{
+    const size_t state = g->positions + g->velocities;
+    for (size_t k = 0; k < g->stages / g->width; ++k) {
+        const se3di_gauss_group *own = &g->groups[k];
+        g->core->combine(state, y, g->stages, own->weights, g->K, own->Y);
     }
 }
 
 /* Rates of positions from velocities of the derivatives as they are; then the states. */
 static void renew(const se3di_gauss_lanes *g, const double *y)
 {
-    const se3di_lane_core *core = g->lanes.core;
-    const size_t state = g->positions + g->velocities, w = (size_t)core->width;
-    core->combine(state, y, g->weights, g->K, g->Y);
-    core->find_free_rates(&g->lanes, g->Y, g->Y + g->positions * w, g->K);
+    const size_t s = g->stages, w = g->width, at = g->positions * w;
+    combine(g, y);
+    for (size_t k = 0; k < s / w; ++k) {
+        const se3di_gauss_group *own = &g->groups[k];
+        double *rates = s == w ? g->K : own->next;
+        g->core->find_free_rates(&own->lanes, own->Y, own->Y + at, rates);
+        for (size_t c = 0; s != w && c < g->positions; ++c) {
+            memcpy(g->K + c * s + k * w, rates + c * w, w * sizeof *rates);
+        }
+    }
 }
 
 /* As one after the other: the root of the mean square. */
@@ -89,44 +176,82 @@ static double size_of(const se3di_gauss_lanes *g, const se3di_explicit *m,
                       const se3di_gauss_rule *rule)
 {
     static const double none[SE3DI_STATE_WORK] = {0.0};
-    const size_t w = (size_t)rule->stages;
+    const size_t w = g->width;
     double sum = 0.0;
-    for (size_t i = 0; i < w; ++i) {
-        const double parts[4] = {g->parts[i], g->parts[w + i], g->parts[2 * w + i],
-                                 g->parts[3 * w + i]};
+    for (size_t i = 0; i < g->stages; ++i) {
+        const double *from = g->groups[i / w].parts + i % w;
+        const double parts[4] = {from[0], from[w], from[2 * w], from[3 * w]};
         const double size = se3di_explicit_size_of(m, parts, none);
         sum += rule->b[i] * size * size;
     }
     return sqrt(sum);
 }
 
-static int is_finite(const se3di_gauss_lanes *g)
+static int is_finite(const se3di_gauss_lanes *g, const se3di_gauss_group *own)
 {
-    const int w = g->lanes.core->width;
     int fine = 1;
-    g->lanes.core->check(g->positions + g->velocities, g->next, g->verdict);
-    for (int i = 0; i < w; ++i) {
-        fine &= g->verdict[i] == 1.0;
+    g->core->check(g->positions + g->velocities, own->next, own->verdict);
+    for (size_t lane = 0; lane < g->width; ++lane) {
+        fine &= own->verdict[lane] == 1.0;
     }
     return fine;
 }
 
-int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
-                            double h, double *change)
+/* ---- loops ---- */
+
+/* Positions, or velocities, that are placed move by the least change that closes the loops, by the
+ * last factors of the same stages. */
+static void close(const se3di_gauss_lanes *g, const se3di_gauss_group *own, int rates)
 {
-    const se3di_lane_core *core = g->lanes.core;
-    const size_t state = g->positions + g->velocities, at = g->positions * (size_t)core->width;
-    renew(g, m->y1);
-    core->combine(state, m->y1, g->weights, g->K, g->Y);
-    core->normalise(&g->lanes, g->Y);
-    core->place(&g->lanes, g->Y, g->Y + at);
-    se3di_lanes_accelerate(&g->lanes, NULL, g->next + at);
-    core->find_rates(&g->lanes, g->Y, g->Y + at, g->next);
-    if (!is_finite(g)) {
-        return 0;
+    double *q = own->closed, *qdot = q + g->positions * g->width, *dq = own->next;
+    g->core->find_gaps(&own->lanes, rates, own->verdict);
+    g->core->correct(&own->lanes, dq);
+    if (rates) {
+        g->core->add(g->velocities, qdot, 1.0, dq, qdot);
+    } else {
+        g->core->find_rates(&own->lanes, q, dq, own->change);
+        g->core->add(g->positions, q, 1.0, own->change, q);
+        g->core->normalise(&own->lanes, q);
     }
-    core->replace(state, h, g->next, g->K, g->change);
-    core->measure(&g->lanes, g->Y, g->change, g->parts);
+    g->core->place(&own->lanes, q, qdot);
+}
+
+/* Links at the states of the stages; those of loops have them closed. */
+static const double *place(const se3di_gauss_lanes *g, const se3di_gauss_group *own, int k)
+{
+    const size_t at = g->positions * g->width;
+    g->core->normalise(&own->lanes, own->Y);
+    g->core->place(&own->lanes, own->Y, own->Y + at);
+    if (!g->has_loops) {
+        return own->Y;
+    }
+    memcpy(own->closed, own->Y, (at + g->velocities * g->width) * sizeof *own->Y);
+    if (k == 0) {
+        g->core->factor(&own->lanes, NULL);
+        g->core->factor_rows(&own->lanes);
+    }
+    close(g, own, 0);
+    close(g, own, 1);
+    return own->closed;
+}
+
+int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
+                            int k, double h, double *change)
+{
+    const size_t state = g->positions + g->velocities, at = g->positions * g->width;
+    renew(g, m->y1);
+    combine(g, m->y1);
+    for (size_t i = 0; i < g->stages / g->width; ++i) {
+        const se3di_gauss_group *own = &g->groups[i];
+        const double *placed = place(g, own, k);
+        se3di_lanes_accelerate(&own->lanes, NULL, own->next + at);
+        g->core->find_rates(&own->lanes, own->Y, own->Y + at, own->next);
+        if (!is_finite(g, own)) {
+            return 0;
+        }
+        g->core->replace(state, h, own->next, g->stages, g->K + i * g->width, own->change);
+        g->core->measure(&own->lanes, placed, own->change, own->parts);
+    }
     *change = size_of(g, m, rule);
     m->equations->counters.evaluations += (uint64_t)rule->stages;
     return 1;
@@ -134,12 +259,12 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
 
 void se3di_gauss_lanes_end(se3di_gauss_lanes *g, se3di_explicit *m)
 {
-    const size_t w = (size_t)g->lanes.core->width, state = g->positions + g->velocities;
+    const size_t state = g->positions + g->velocities;
     renew(g, m->y1);
-    for (size_t i = 0; i < w; ++i) {
+    for (size_t i = 0; i < g->stages; ++i) {
         double *to = m->K + i * m->count;
         for (size_t c = 0; c < state; ++c) {
-            to[c] = g->K[c * w + i];
+            to[c] = g->K[c * g->stages + i];
         }
         memset(to + state, 0, SE3DI_STATE_WORK * sizeof *to);
     }

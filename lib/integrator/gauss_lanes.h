@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Iterations of gauss whose stages are the lanes of registers: for trees of joints on which nothing
- * but gravity acts, where the processor has as many lanes as there are stages. The same bits as one
- * stage after the other.                       docs/theory/gauss.md, docs/theory/lanes.md */
+ * but gravity acts, open or with loops whose rows come from the links alone.
+ *
+ * Open trees have the same bits one stage after the other, which is done where the processor has no
+ * lanes. With loops the stages' accelerations are those of the states that their loops' closing
+ * leads to, at positions and velocities, so that they do not depend on how far a stage is off its
+ * constraints; every processor computes them here, by as many lanes as it has.
+ *                                              docs/theory/gauss.md, docs/theory/lanes.md */
 #ifndef SE3DI_GAUSS_LANES_H
 #define SE3DI_GAUSS_LANES_H
 
@@ -9,31 +14,42 @@
 #include "integrator/gauss_rule.h"
 #include "tree/lanes.h"
 
-typedef struct se3di_gauss_lanes {
+/* A group of stages: w of them, one in each lane. */
+typedef struct se3di_gauss_group {
     se3di_lanes lanes;
-    size_t positions, velocities;
-    double *K;       /* [positions + velocities][stages] derivatives of the stages */
-    double *Y;       /* their states */
+    double *Y;       /* [positions + velocities][w] states */
+    double *closed;  /* the same with their loops closed */
     double *next;    /* derivatives there */
     double *change;  /* times h, of the derivatives */
-    double *weights; /* [stages][stages] h a_ij, of stage i in lane i */
-    double *gravity; /* [3][stages] */
-    double *parts;   /* [4][stages] */
-    double *verdict; /* [stages] */
+    double *weights; /* [stages][w] h a_ij, of stage i in its lane */
+    double *gravity; /* [3][w] */
+    double *parts;   /* [4][w] */
+    double *verdict; /* [w] */
+} se3di_gauss_group;
+
+typedef struct se3di_gauss_lanes {
+    const se3di_lane_core *core;
+    size_t positions, velocities, stages, width;
+    int has_loops;
+    double *K; /* [positions + velocities][stages] derivatives of the stages */
+    se3di_gauss_group groups[SE3DI_GAUSS_MAX];
 } se3di_gauss_lanes;
 
 /* Doubles of work of the method, what is here included. */
 size_t se3di_gauss_work_count(const se3di_assembly *assembly);
 
+/* Whether loops can be computed here, and those of the model's state are. */
+int se3di_gauss_lanes_suit_loops(const se3di_equations *equations);
+int se3di_gauss_lanes_take_loops(const se3di_explicit *m);
 /* @return whether the stages of the step can be computed so */
 int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule);
 /* Take the derivatives of the stages in m->K. */
 void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
                              const se3di_gauss_rule *rule, double h);
-/* One iteration; *change, relative to the scales, of a step by the derivatives. @return whether all
- * are finite */
+/* Iteration k; *change, relative to the scales, of a step by the derivatives. @return whether all
+ * are finite: they are not where rows of loops are not clear of each other */
 int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
-                            double h, double *change);
+                            int k, double h, double *change);
 /* Give the derivatives back, those of positions at the velocities of the last iteration. */
 void se3di_gauss_lanes_end(se3di_gauss_lanes *g, se3di_explicit *m);
 

@@ -98,7 +98,7 @@ typedef struct se3di_integrator {
     int32_t fixes_step;    /* not 0: with settings.step, errors are not controlled */
     int32_t chooses_step;  /* not 0: without one, equal steps are chosen (equal_steps.h) */
     int32_t weighs_bodies; /* not 0: needs a mass matrix of bodies alone, without armatures */
-    int32_t reserved;
+    int32_t takes_lanes;   /* not 0: loops of several states are computed at once */
 } se3di_integrator;
 
 /* The ends of accepted steps [s] since a motion began. */

@@ -179,10 +179,35 @@ static int prefers_joints(const se3di_equations *equations)
                 se3di_kkt_get_cost(equations->kkt));
 }
 
+#define BAND_MAX 64 /* rows, on average, that one is not clear of: others take sparse factors */
+
+se3d_status se3di_equations_take_lanes(se3di_equations *equations)
+{
+    se3di_loop_lanes *lanes = &equations->lanes;
+    if (lanes->allocated || !equations->has_loops ||
+        !se3di_tree_loops_need_links_only(&equations->loops) ||
+        !se3di_loop_system_is_regular(&equations->loops.system)) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_lane_loops_init(&lanes->rows, &equations->loops));
+    if (lanes->rows.entry_count > BAND_MAX * (size_t)lanes->rows.count) {
+        se3di_lane_loops_destroy(&lanes->rows);
+        return SE3D_OK;
+    }
+    lanes->allocated_count =
+        SE3DI_LANES_MAX * se3di_lane_loops_room(&lanes->rows) + SE3DI_LANES_ALIGN / sizeof(double);
+    lanes->allocated = alloc_doubles(equations, lanes->allocated_count);
+    lanes->memory = lanes->allocated ? se3di_lanes_align(lanes->allocated) : NULL;
+    return lanes->allocated ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
 static void destroy_tree(se3di_equations *equations)
 {
     const se3d_allocator *allocator = &equations->assembly.model->allocator;
     if (equations->tree) {
+        se3di_lane_loops_destroy(&equations->lanes.rows);
+        se3di_free(allocator, equations->lanes.allocated, equations->lanes.allocated_count,
+                   sizeof(double));
         se3di_tree_loops_destroy(&equations->loops);
         se3di_free(allocator, equations->joint_before, equations->tree->q_count, sizeof(double));
         se3di_free(allocator, equations->joint_moves, 12 * (size_t)equations->tree->count,

@@ -17,6 +17,7 @@
 #include "model/saved.h"
 #include "nonlinear/friction_system.h"
 #include "primitive/scale.h"
+#include "tree/lanes.h"
 #include "tree/loops.h"
 #include "tree/tree.h"
 
@@ -31,6 +32,14 @@ typedef struct se3di_watch {
     se3d_status (*begin_step)(void *ctx);
     se3d_status (*end_step)(void *ctx);
 } se3di_watch;
+
+/* For a method that computes the loops of several states at once. */
+typedef struct se3di_loop_lanes {
+    se3di_lane_loops rows; /* count 0: loops are not, or cannot be, computed so */
+    double *memory;        /* of SE3DI_LANES_MAX states, aligned */
+    double *allocated;
+    size_t allocated_count;
+} se3di_loop_lanes;
 
 typedef struct se3di_equations {
     se3di_assembly assembly;
@@ -57,6 +66,7 @@ typedef struct se3di_equations {
     se3di_friction_system friction;
     se3di_tree *tree;        /* joint coordinates, NULL: another formulation */
     se3di_tree_loops loops;  /* its loop constraints, if there are any */
+    se3di_loop_lanes lanes;  /* see se3di_equations_take_lanes */
     double *joint_before;    /* [positions of the tree] */
     double *joint_moves;     /* [nodes of the tree * 12] */
     uint64_t masses_version; /* that tree and solver have, */
@@ -80,6 +90,9 @@ se3d_status se3di_equations_init(se3di_equations *equations, se3di_model *model,
 se3d_status se3di_equations_try_joints(se3di_equations *equations, se3di_model *model,
                                        int takes_loops, se3di_error *error, int *picked);
 void se3di_equations_destroy(se3di_equations *equations);
+/* What lanes need of loops whose rows come from the links alone, and are clear of each other;
+ * nothing of others, nor where a row shares freedoms with too many. @return OK, NO_MEMORY */
+se3d_status se3di_equations_take_lanes(se3di_equations *equations);
 /* Masses or poses may have changed: rows of light bodies are told from dependent ones by
  * elimination without regularisation, and the tree takes them. */
 void se3di_equations_suit_masses(se3di_equations *equations);

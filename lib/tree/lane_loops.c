@@ -29,7 +29,9 @@ static void lay_out_rows(se3di_lane_loops *l)
             }
         }
         row->entry = (int32_t)l->entry_count;
+        row->value = (int32_t)l->value_count;
         l->entry_count += (size_t)(i - row->first) + 1;
+        l->value_count += (size_t)(row->to - row->from);
     }
 }
 
@@ -53,15 +55,21 @@ se3d_status se3di_lane_loops_init(se3di_lane_loops *lane_loops, const se3di_tree
             take_range(loops, k, row);
         }
     }
+    se3di_lane_loops_take_least(l, 1.0);
+    lay_out_rows(l);
+    return SE3D_OK;
+}
+
+void se3di_lane_loops_take_least(se3di_lane_loops *l, double part)
+{
+    const se3di_tree_loops *loops = l->loops;
     for (int32_t k = 0; k < loops->system.row_strips; ++k) {
         const se3di_loop_strip *strip = &loops->system.strips[k];
         for (int32_t r = 0; r < strip->count; ++r) {
             l->rows[loops->kept_begin[strip->loop] + strip->first + r].least =
-                loops->system.least[SE3DI_STRIP * k + r];
+                part * loops->system.least[SE3DI_STRIP * k + r];
         }
     }
-    lay_out_rows(l);
-    return SE3D_OK;
 }
 
 void se3di_lane_loops_destroy(se3di_lane_loops *l)
@@ -74,12 +82,12 @@ void se3di_lane_loops_destroy(se3di_lane_loops *l)
 
 #define PARTS 6
 
-static size_t list_parts(se3di_lanes *lanes, const se3di_lane_loops *l, size_t velocities,
-                         double **to[PARTS], size_t counts[PARTS])
+static size_t list_parts(se3di_lanes *lanes, const se3di_lane_loops *l, double **to[PARTS],
+                         size_t counts[PARTS])
 {
     double **const all[] = {&lanes->K, &lanes->Y, &lanes->L, &lanes->pivot, &lanes->c, &lanes->z};
     const size_t rows = (size_t)l->count;
-    const size_t sizes[] = {6 * l->path_max, rows * velocities, l->entry_count, rows, rows, rows};
+    const size_t sizes[] = {6 * l->path_max, l->value_count, l->entry_count, rows, rows, rows};
     size_t total = 0;
     memcpy(to, all, sizeof all);
     memcpy(counts, sizes, sizeof sizes);
@@ -89,19 +97,19 @@ static size_t list_parts(se3di_lanes *lanes, const se3di_lane_loops *l, size_t v
     return total;
 }
 
-size_t se3di_lane_loops_room(const se3di_lane_loops *l, size_t velocities)
+size_t se3di_lane_loops_room(const se3di_lane_loops *l)
 {
     se3di_lanes none;
     double **to[PARTS];
     size_t counts[PARTS];
-    return list_parts(&none, l, velocities, to, counts);
+    return list_parts(&none, l, to, counts);
 }
 
 void se3di_lanes_take_loops(se3di_lanes *lanes, const se3di_lane_loops *l, double *memory)
 {
     double **to[PARTS];
     size_t counts[PARTS];
-    (void)list_parts(lanes, l, lanes->tree->v_count, to, counts);
+    (void)list_parts(lanes, l, to, counts);
     for (int k = 0; k < PARTS; ++k) {
         *to[k] = memory;
         memory += counts[k] * (size_t)lanes->core->width;

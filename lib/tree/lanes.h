@@ -46,7 +46,8 @@ typedef struct se3di_lane_row {
     int32_t loop, kept; /* its direction among the loop's */
     int32_t from, to;   /* velocities between which its numbers stand */
     int32_t first;      /* the first row that shares some of these, or that is beyond one, */
-    int32_t entry;      /* and where the row's part of L begins */
+    int32_t entry;      /* and where the row's part of L begins, */
+    int32_t value;      /* and that of Y */
     double least;       /* least of a pivot over the row's weight */
 } se3di_lane_row;
 
@@ -55,7 +56,7 @@ typedef struct se3di_lane_loops {
     const struct se3di_tree_loops *loops;
     se3di_lane_row *rows;
     int32_t count, reserved;
-    size_t entry_count, path_max;
+    size_t entry_count, value_count, path_max;
 } se3di_lane_loops;
 
 /* Compiled once for each width. All arrays are aligned to SE3DI_LANES_ALIGN. */
@@ -87,9 +88,10 @@ typedef struct se3di_lane_core {
     /* out = base + sum of factors[k] x[k], k < used: [count] numbers each; out may be base. */
     void (*sum)(size_t count, const double *base, int used, const double *factors,
                 const double *const *x, double *out);
-    /* out = base [count doubles] + sum over the lanes k of x[.][k] weights[k]: [width][width]. */
-    void (*combine)(size_t count, const double *base, const double *weights, const double *x,
-                    double *out);
+    /* out = base [count doubles] + sum of x[.][k] weights[k], k < terms: x [count][terms] doubles,
+     * weights [terms]. */
+    void (*combine)(size_t count, const double *base, size_t terms, const double *weights,
+                    const double *x, double *out);
     /* Rates of positions of which quaternions are not unit ones. */
     void (*find_free_rates)(const se3di_lanes *lanes, const double *q, const double *qdot,
                             double *rates);
@@ -97,8 +99,10 @@ typedef struct se3di_lane_core {
      * velocities], at the state that was placed, is for a body: of the way of its centre of mass,
      * of half the turn, of the changes of its velocities; parts [4]. */
     void (*measure)(const se3di_lanes *lanes, const double *q, const double *change, double *parts);
-    /* change = factor (next - x), x = next: [count] numbers each. */
-    void (*replace)(size_t count, double factor, const double *next, double *x, double *change);
+    /* change = factor (next - x), x = next: [count] numbers each, those of x `stride` doubles
+     * apart. */
+    void (*replace)(size_t count, double factor, const double *next, size_t stride, double *x,
+                    double *change);
     /* With loops, after factor(): their rows and the factors, not numbers where rows are not clear
      * of each other; */
     void (*factor_rows)(const se3di_lanes *lanes);
@@ -157,8 +161,10 @@ void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts);
 se3d_status se3di_lane_loops_init(se3di_lane_loops *lane_loops,
                                   const struct se3di_tree_loops *loops);
 void se3di_lane_loops_destroy(se3di_lane_loops *lane_loops);
+/* Take the least pivots of single states as they are now, or a part of them. */
+void se3di_lane_loops_take_least(se3di_lane_loops *lane_loops, double part);
 /* Numbers of a state that their work takes, in memory that somebody else has, aligned. */
-size_t se3di_lane_loops_room(const se3di_lane_loops *lane_loops, size_t velocities);
+size_t se3di_lane_loops_room(const se3di_lane_loops *lane_loops);
 void se3di_lanes_take_loops(se3di_lanes *lanes, const se3di_lane_loops *lane_loops, double *memory);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */

@@ -12,6 +12,10 @@
 #include "check.h"
 #include "linsol/kkt_internal.h"
 #include "particles/set.h"
+#include "tree/core.h"
+#include "tree/lanes.h"
+#include "tree/loop_core.h"
+
 #include "support/analyses.h"
 #include "support/avalanche.h"
 #include "support/models.h"
@@ -22,34 +26,24 @@
 static int allowed = 2; /* 0: portable, 1: AVX2 too, 2: AVX-512 too */
 static int levels = 1;  /* that this machine has */
 
-const se3di_kkt_core *__real_se3di_kkt_core_avx2(void);
-const se3di_kkt_core *__real_se3di_kkt_core_avx512(void);
-const se3di_kkt_core *__wrap_se3di_kkt_core_avx2(void);
-const se3di_kkt_core *__wrap_se3di_kkt_core_avx512(void);
-const se3di_kernels *__real_se3di_particle_kernels_avx2(void);
-const se3di_kernels *__real_se3di_particle_kernels_avx512(void);
-const se3di_kernels *__wrap_se3di_particle_kernels_avx2(void);
-const se3di_kernels *__wrap_se3di_particle_kernels_avx512(void);
+/* The finder of kernels for processors of a level, which linking takes in the place of the own. */
+#define AT_LEVEL(type, finder, level)                                                              \
+    const type *__real_se3di_##finder(void);                                                       \
+    const type *__wrap_se3di_##finder(void);                                                       \
+    const type *__wrap_se3di_##finder(void)                                                        \
+    {                                                                                              \
+        return allowed >= (level) ? __real_se3di_##finder() : NULL;                                \
+    }
 
-const se3di_kkt_core *__wrap_se3di_kkt_core_avx2(void)
-{
-    return allowed >= 1 ? __real_se3di_kkt_core_avx2() : NULL;
-}
-
-const se3di_kkt_core *__wrap_se3di_kkt_core_avx512(void)
-{
-    return allowed >= 2 ? __real_se3di_kkt_core_avx512() : NULL;
-}
-
-const se3di_kernels *__wrap_se3di_particle_kernels_avx2(void)
-{
-    return allowed >= 1 ? __real_se3di_particle_kernels_avx2() : NULL;
-}
-
-const se3di_kernels *__wrap_se3di_particle_kernels_avx512(void)
-{
-    return allowed >= 2 ? __real_se3di_particle_kernels_avx512() : NULL;
-}
+AT_LEVEL(se3di_kkt_core, kkt_core_avx2, 1)
+AT_LEVEL(se3di_kkt_core, kkt_core_avx512, 2)
+AT_LEVEL(se3di_kernels, particle_kernels_avx2, 1)
+AT_LEVEL(se3di_kernels, particle_kernels_avx512, 2)
+AT_LEVEL(se3di_tree_core, tree_core_avx2, 1)
+AT_LEVEL(se3di_tree_core, tree_core_avx512, 2)
+AT_LEVEL(se3di_loop_core, loop_core_avx2, 1)
+AT_LEVEL(se3di_lane_core, lane_core_avx2, 1)
+AT_LEVEL(se3di_lane_core, lane_core_avx512, 2)
 
 /* ---- runs ---- */
 
@@ -306,6 +300,13 @@ static const support_analysis more[] = {
 };
 #define MORE (sizeof more / sizeof more[0])
 
+static const support_analysis in_joints[] = {
+    {"chain_ball", 4, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_DOP853, 0.0, 0.3},
+    {"four_bar", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_DOP853, 0.0, 0.4},
+    {"chain_revolute", 8, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GAUSS, 0.0, 0.3},
+    {"four_bar", 3, SE3D_ANALYSIS_DYNAMICS, SE3D_METHOD_GAUSS, 0.0, 0.4},
+};
+
 #define ROWS_MAX 128
 static row rows[ROWS_MAX];
 static size_t row_count;
@@ -323,17 +324,25 @@ static row *add(const char *what, int law, int method, int formulation)
     return r;
 }
 
+static void add_mechanism(const support_analysis *what, int formulation)
+{
+    char name[64];
+    (void)snprintf(name, sizeof name, "%s-%d/analysis-%d", what->mechanism, what->count,
+                   what->analysis);
+    row *r = add(name, 0, what->method, formulation);
+    r->run = run_mechanism;
+    r->analysis = *what;
+}
+
 static void fill_table(void)
 {
     for (size_t k = 0; k < 2 * (SUPPORT_ANALYSES + MORE); ++k) {
-        const support_analysis *what =
-            k / 2 < SUPPORT_ANALYSES ? &support_analyses[k / 2] : &more[k / 2 - SUPPORT_ANALYSES];
-        char name[64];
-        (void)snprintf(name, sizeof name, "%s-%d/analysis-%d", what->mechanism, what->count,
-                       what->analysis);
-        row *r = add(name, 0, what->method, (int)(k % 2));
-        r->run = run_mechanism;
-        r->analysis = *what;
+        add_mechanism(k / 2 < SUPPORT_ANALYSES ? &support_analyses[k / 2]
+                                               : &more[k / 2 - SUPPORT_ANALYSES],
+                      (int)(k % 2));
+    }
+    for (size_t k = 0; k < sizeof in_joints / sizeof *in_joints; ++k) {
+        add_mechanism(&in_joints[k], SE3D_FORMULATION_JOINT);
     }
     static const int32_t with_forces[] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA,
                                           SE3D_METHOD_RADAU, SE3D_METHOD_RATTLE};

@@ -819,21 +819,29 @@ static int fail_analysis(const support_analysis *row, int32_t formulation, size_
     return reached;
 }
 
+static void fail_each_allocation(const support_analysis *row, int32_t formulation)
+{
+    uint64_t expected, hash;
+    CHECK(!fail_analysis(row, formulation, 0, 0, &expected));
+    for (int for_ever = 0; for_ever < 2; ++for_ever) {
+        size_t k = 1;
+        while (k < 1000 && fail_analysis(row, formulation, k, for_ever, &hash)) {
+            CHECK(hash == expected); /* the retry gives the same bits */
+            ++k;
+        }
+        CHECK(k > 5 && k < 1000);
+    }
+}
+
 static void every_analysis_survives_every_failed_allocation(void)
 {
+    static const support_analysis in_lanes = {"four_bar",        1,    SE3D_ANALYSIS_DYNAMICS,
+                                              SE3D_METHOD_GAUSS, 0.02, 0.4};
     for (size_t r = 0; r < 2 * SUPPORT_ANALYSES; ++r) {
-        const support_analysis *row = &support_analyses[r / 2];
-        uint64_t expected, hash;
-        CHECK(!fail_analysis(row, (int32_t)(r % 2), 0, 0, &expected));
-        for (int for_ever = 0; for_ever < 2; ++for_ever) {
-            size_t k = 1;
-            while (k < 1000 && fail_analysis(row, (int32_t)(r % 2), k, for_ever, &hash)) {
-                CHECK(hash == expected); /* the retry gives the same bits */
-                ++k;
-            }
-            CHECK(k > 5 && k < 1000);
-        }
+        fail_each_allocation(&support_analyses[r / 2], (int32_t)(r % 2));
     }
+    fail_each_allocation(&in_lanes, SE3D_FORMULATION_JOINT);
+    fail_each_allocation(&in_lanes, SE3D_FORMULATION_AUTO);
 }
 
 static se3d_status get_drop(void *ctx, const se3d_system *system, double *value)

@@ -423,9 +423,18 @@ static void gaps_of_trees_are_those_of_the_bodies(void)
     CHECK(tried > 10);
 }
 
-static void gauss_moves_the_bodies_of_loops(void)
+/* A spring is not computed in lanes. */
+static void gauss_moves_the_bodies_of_loops_that_lanes_do_not_take(void)
 {
     se3d_system *system = make_five_bar(0.0);
+    se3d_tsda_def spring = se3d_tsda_def_default();
+    se3d_force force;
+    CHECK(chooses(system, SE3D_METHOD_GAUSS, "joint"));
+    CHECK(!se3d_system_get_ground(system, &spring.body_i));
+    CHECK(!se3d_system_get_body(system, 1, &spring.body_j));
+    spring.point_i[0] = -1.0;
+    spring.k = 1.0;
+    CHECK(!se3d_force_create_tsda(system, &spring, &force));
     CHECK(chooses(system, SE3D_METHOD_GAUSS, "romega"));
     CHECK(chooses(system, SE3D_METHOD_RK45, "joint"));
     se3d_system_destroy(system);
@@ -543,7 +552,7 @@ int main(void)
     RUN(loops_in_planes_of_their_own_are_clear);
     RUN(what_loops_show_is_what_the_bodies_have);
     RUN(gaps_of_trees_are_those_of_the_bodies);
-    RUN(gauss_moves_the_bodies_of_loops);
+    RUN(gauss_moves_the_bodies_of_loops_that_lanes_do_not_take);
     RUN(loops_apart_are_counted_apart);
     RUN(nothing_large_is_built_to_be_left);
     return check_finish();

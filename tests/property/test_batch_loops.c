@@ -233,7 +233,7 @@ static void solve_in_lanes(const se3di_tree_loops *loops, int32_t width, double 
     const size_t n = (size_t)width;
     CHECK(!se3di_lane_loops_init(&lane_loops, loops));
     CHECK(!se3di_lanes_init(&lanes, tree, core, 0));
-    CHECK(se3di_lane_loops_room(&lane_loops, tree->v_count) * n < ROOM - 8);
+    CHECK(se3di_lane_loops_room(&lane_loops) * n < ROOM - 8);
     se3di_lanes_take_loops(&lanes, &lane_loops, se3di_lanes_align(rows));
     double *q = se3di_lanes_align(state[0]), *qdot = se3di_lanes_align(state[1]);
     for (size_t k = 0; k < n * NUMBERS - 8; ++k) {
