@@ -54,7 +54,7 @@ static double *first_derivative(const se3di_explicit *m)
 static se3d_status evaluate_stages(se3di_explicit *m, double t, double h)
 {
     memcpy(m->K, first_derivative(m), m->count * sizeof *m->K);
-    se3di_state_begin_step(m->equations, m->past->redundant);
+    se3di_state_begin_step(m->equations, m->past->redundant, m->past->wide > 0.0);
     for (int k = 1; k < m->tableau->stages; ++k) {
         SE3DI_TRY(evaluate_stage(m, t, h, k));
     }

@@ -20,6 +20,8 @@
 #define LEAST_STEP 3e-14 /* of the time */
 #define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step */
+#define WIDE_PART  0.1   /* of the error of a step that rows redundant by geometry make */
+#define WIDE_TRIES 16    /* in vain, until no more are made */
 
 /* The frames at the end, before the projection. */
 static void arrive(se3di_explicit *m, double h)
@@ -31,7 +33,7 @@ static void arrive(se3di_explicit *m, double h)
 /* Stages, error, projection. The derivative at the end is that before the projection, which moves
  * the state by its error: the order is the same. *error is infinite if the step cannot be made
  * at all. */
-static se3d_status attempt(se3di_explicit *m, double h, double *error)
+static se3d_status attempt_once(se3di_explicit *m, double h, double *error)
 {
     const double t = m->past->at.time + h;
     double of_stages = 0.0;
@@ -59,6 +61,34 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
                : SE3D_OK;
 }
 
+static int may_be_wide(const se3di_explicit *m, double error)
+{
+    const se3di_explicit_past *past = m->past;
+    return past->redundant > 0.0 && past->redundant < (double)m->assembly->row_count &&
+           !(past->wide > 0.0) && past->narrow < WIDE_TRIES && isfinite(error) &&
+           se3di_explicit_is_too_large(m, error);
+}
+
+/* A step that is too long although it is short beside the motion may be so by what rows ask for
+ * that are redundant by geometry alone. If a filter of them shows that, it stays. */
+static se3d_status attempt(se3di_explicit *m, double h, double *error)
+{
+    SE3DI_TRY(attempt_once(m, h, error));
+    if (!may_be_wide(m, *error)) {
+        return SE3D_OK;
+    }
+    const double narrow = *error;
+    m->past->wide = 1.0;
+    const se3d_status status = attempt_once(m, h, error);
+    if (status >= 0 && *error < WIDE_PART * narrow) {
+        return status;
+    }
+    m->past->wide = 0.0;
+    m->past->narrow += 1.0;
+    *error = narrow;
+    return SE3D_OK;
+}
+
 /* The frames hold the projected y_1, at t. */
 static void accept(se3di_explicit *m, double t)
 {
@@ -80,8 +110,10 @@ static void accept(se3di_explicit *m, double t)
     if (!m->leaves_scale) {
         se3di_explicit_grow_scale(m);
     }
-    double dependent = m->motion->count_dependent(m->equations);
-    m->past->redundant = fmin(m->past->redundant, dependent);
+    if (!(m->past->wide > 0.0)) { /* else one with little part in its dependence may seem clear */
+        const double dependent = m->motion->count_dependent(m->equations);
+        m->past->redundant = fmin(m->past->redundant, dependent);
+    }
     m->motion->accept_angles(m->equations);
     se3di_contacts_accept(m->assembly->model); /* force elements: settle_memory */
     ++m->equations->counters.steps;

@@ -35,8 +35,10 @@ typedef struct se3di_explicit_past {
     double length;       /* Runge-Kutta: of the last step, as its stages were made */
     double unscaled;     /* 1: steps without error control have not grown the scale */
     double gap;          /* what the interpolation violates constraints by, < 0: not measured */
+    double wide;         /* 1: redundant rows are so by geometry alone (linsol/kkt.h) */
+    double narrow;       /* how often it was tried whether they are, in vain */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 25 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 27 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;

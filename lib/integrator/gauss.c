@@ -248,7 +248,7 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
 {
     int judgement;
     m->stages = choose_stages(m);
-    se3di_state_begin_step(m->equations, m->past->redundant);
+    se3di_state_begin_step(m->equations, m->past->redundant, m->past->wide > 0.0);
     SE3DI_TRY(find_stages(m, h, &judgement));
     if (judgement < 0 && !isfinite(m->tolerance)) {
         return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,

@@ -529,7 +529,7 @@ se3d_status se3di_radau_solve(se3di_radau *m)
         se3di_state_regularise(m->assembly, kkt, SE3DI_RADAU_REGULARISATION);
     const se3di_kkt_settings plain =
         se3di_state_begin(equations, SE3DI_RADAU_REGULARISATION, 1e-13);
-    se3di_state_begin_step(equations, 0.0);
+    se3di_state_begin_step(equations, 0.0, 0);
     const se3d_status status = iterate_to_convergence(m);
     se3di_state_end(equations, &plain);
     se3di_kkt_set_settings(kkt, &newton);

@@ -152,10 +152,11 @@ se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, dou
     return before;
 }
 
-void se3di_state_begin_step(se3di_equations *equations, double redundant)
+void se3di_state_begin_step(se3di_equations *equations, double redundant, int wide)
 {
     se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
     settings.redundant_rows = (int32_t)redundant;
+    settings.wide = wide;
     se3di_kkt_set_settings(equations->kkt, &settings);
     if (equations->takes_rows) {
         se3di_tree_loops_filter(&equations->loops, &settings);

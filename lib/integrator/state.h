@@ -51,8 +51,8 @@ se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, cons
 se3di_kkt_settings se3di_state_begin(se3di_equations *equations, double eps, double accuracy);
 /* Before the evaluations of one step: what changes little within it (and must not depend on the
  * steps before) is kept. `redundant`: rows that have been dependent all along; if there are
- * more, the position is nearly singular. */
-void se3di_state_begin_step(se3di_equations *equations, double redundant);
+ * more, the position is nearly singular. `wide`: they are so by geometry alone. */
+void se3di_state_begin_step(se3di_equations *equations, double redundant, int wide);
 void se3di_state_end(se3di_equations *equations, const se3di_kkt_settings *settings);
 /* The same filter for the Newton matrices of implicit methods; @return the settings before.
  * Rounding and curvature contradict themselves in dependent rows: a smaller regularisation would

@@ -101,7 +101,8 @@ typedef struct se3di_kkt_settings {
     bool any_multipliers;   /* of dependent rows: they need not be those of least norm */
     bool iterated;          /* the caller iterates on the exact residual (Newton): if E = 0, that
                                corrects what a solution leaves, and it is not looked at */
-    int32_t redundant_rows; /* with any_multipliers: rows known to depend on the others */
+    bool wide;              /* of a filter: rows are redundant by geometry alone */
+    int32_t redundant_rows; /* of a filter: rows known to depend on the others, all: not known */
 } se3di_kkt_settings;
 
 typedef struct se3di_kkt_factor_info {

@@ -18,6 +18,8 @@
 #define KKT_VANISHED 1e4
 /* Of dependent rows it is some 30 to 100 E; one above this multiple is of its own size. */
 #define KKT_CLEARLY_DEPENDENT 300.0
+/* Relative pivots of rows that are not even nearly dependent. */
+#define KKT_FAR_FROM_DEPENDENT 1e-3
 
 /* Arrays of the caller's values. */
 enum {
@@ -139,6 +141,8 @@ struct se3di_kkt {
     double min_sigma;   /* smallest relative pivot without E above 1e-13 */
     double least_clear; /* smallest relative pivot that is not clearly a dependent row's */
     int32_t dependent_rows, near_dependent, negative_pivots, positive_rows;
+    int32_t far_rows; /* with a pivot of KKT_FAR_FROM_DEPENDENT at least; with small pivots only */
+    double least_far; /* the smallest of these */
     bool finite;
 
     /* dense kind */

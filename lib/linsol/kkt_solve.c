@@ -17,6 +17,7 @@ static const double row_rounding = 4e-16;   /* of the terms of a row */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double part_noise = 1e-14;     /* of multipliers, in the dependent directions */
 static const double weight_range = 1e4;
+static const double wide_eps = 1e-7; /* where rows are known to be redundant */
 
 /* ---- factor ---- */
 
@@ -86,6 +87,8 @@ static void factor_once(se3di_kkt *kkt, const se3di_kkt_values *values, double e
     kkt->finite = true;
     kkt->min_pivot = kkt->min_sigma = kkt->least_clear = 1.0;
     kkt->dependent_rows = kkt->near_dependent = kkt->negative_pivots = kkt->positive_rows = 0;
+    kkt->far_rows = 0;
+    kkt->least_far = 1.0;
     ++kkt->factorisations;
     if (kkt->kind == SE3DI_KKT_DENSE) {
         se3di_kkt_dense_factor(kkt, values);
@@ -102,6 +105,40 @@ static bool plain_is_enough(const se3di_kkt *kkt)
     return kkt->finite && kkt->dependent_rows == 0 && kkt->min_pivot >= pivot_vanishes;
 }
 
+/* If eps stays what it is, nearly dependent rows are filtered: part of what they ask for, by
+ * eps / sigma and the count of refinements, is left out. The count must then not hang on how fast
+ * the residual falls, or the solution would jump where that passes the bound. */
+static bool is_filter(const se3di_kkt_settings *s)
+{
+    return s->eps_min >= s->eps;
+}
+
+/* Rows that depend on the others only where loops are closed are independent, by the square of the
+ * gap, in the stages of an explicit method, which are a little open. What they then ask for is not
+ * the motion: a wider filter leaves it out, if all other rows are far from dependent. */
+static bool may_widen(const se3di_kkt *kkt)
+{
+    const se3di_kkt_settings *s = &kkt->settings;
+    const bool is_known =
+        s->redundant_rows > 0 && s->redundant_rows < (int32_t)kkt->layout.row_count;
+    return s->wide && is_known && is_filter(s) && s->eps < wide_eps &&
+           kkt->kind == SE3DI_KKT_STRUCTURED;
+}
+
+/* Returns whether all rows but those known to be redundant are far from dependent. */
+static bool factor_widely(se3di_kkt *kkt, const se3di_kkt_values *values)
+{
+    factor_once(kkt, values, wide_eps, false);
+    const int32_t rest = (int32_t)kkt->layout.row_count - kkt->far_rows;
+    if (!kkt->finite || !kkt->has_ratio || rest > kkt->settings.redundant_rows) {
+        return false;
+    }
+    kkt->dependent_rows = rest;
+    kkt->near_dependent = 0;
+    kkt->least_clear = kkt->least_far;
+    return true;
+}
+
 static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
 {
     const se3di_kkt_settings *s = &kkt->settings;
@@ -113,7 +150,11 @@ static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
             return;
         }
     }
-    factor_once(kkt, values, s->eps, false);
+    const bool widens = may_widen(kkt);
+    if (widens && factor_widely(kkt, values)) {
+        return;
+    }
+    factor_once(kkt, values, s->eps, widens);
     if (!kkt->finite || kkt->near_dependent == 0 || kkt->min_sigma > 1e3 * s->eps) {
         return;
     }
@@ -269,14 +310,6 @@ typedef struct kkt_problem {
 
 typedef enum kkt_ending { KKT_CONVERGED, KKT_STAGNATED, KKT_EXHAUSTED } kkt_ending;
 
-/* If eps stays what it is, nearly dependent rows are filtered: part of what they ask for, by
- * eps / sigma and the count of refinements, is left out. The count must then not hang on how fast
- * the residual falls, or the solution would jump where that passes the bound. */
-static bool is_filter(const se3di_kkt_settings *s)
-{
-    return s->eps_min >= s->eps;
-}
-
 /* The largest term C_rc x_c of the motion that b would make without constraints. Rounding of x is
  * of its size where they hold nearly all of it: at rest, or in steady motion. */
 static double find_unheld(const se3di_kkt *kkt, const kkt_problem *p)
@@ -401,7 +434,8 @@ static void refine_suitably(se3di_kkt *kkt, const kkt_problem *p, double *x, dou
     kkt_ending ending = refine(kkt, p, x, l, info);
     double residual = info->residual_b > info->residual_c ? info->residual_b : info->residual_c;
     double eps = 1e-3 * kkt->eps > kkt->settings.eps_min ? 1e-3 * kkt->eps : kkt->settings.eps_min;
-    if (ending == KKT_CONVERGED || residual < 1e-14 || !(eps < 0.5 * kkt->eps)) {
+    if (ending == KKT_CONVERGED || residual < 1e-14 || is_filter(&kkt->settings) ||
+        !(eps < 0.5 * kkt->eps)) {
         return;
     }
     factor_once(kkt, p->values, eps, true);

@@ -16,7 +16,7 @@
 #include <string.h>
 
 #define MARK    UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION UINT64_C(6)
+#define VERSION UINT64_C(7)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 

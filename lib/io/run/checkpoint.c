@@ -19,7 +19,7 @@
 
 #define FILE_NAME "run.checkpoint"
 #define MARK      UINT64_C(0x544B504344334553) /* "SE3DCPKT" */
-#define VERSION   UINT64_C(4)
+#define VERSION   UINT64_C(5)
 #define LIBRARY                                                                                    \
     (((uint64_t)SE3D_VERSION_MAJOR << 32) + ((uint64_t)SE3D_VERSION_MINOR << 16) +                 \
      (uint64_t)SE3D_VERSION_PATCH)
