@@ -140,17 +140,17 @@ void outcome_end(const char *command, int code)
         printf("{\"status\": \"%s\", \"command\": ", code == EXIT_DONE            ? "done"
                                                      : outcome.message[0] == '\0' ? "failed"
                                                                                   : "error");
-        json_put_text(command);
+        text_put_json(stdout, command);
         const size_t length = strlen(outcome.message);
         if (length > 0 && outcome.message[length - 1] == '\n') {
             outcome.message[length - 1] = '\0';
         }
         fputs(", \"message\": ", stdout);
-        json_put_text(outcome.message);
+        text_put_json(stdout, outcome.message);
         fputs(", \"files\": [", stdout);
         for (size_t k = 0; k < outcome.count; ++k) {
             fputs(k > 0 ? ", " : "", stdout);
-            json_put_text(outcome.files[k]);
+            text_put_json(stdout, outcome.files[k]);
         }
         fputs("]}\n", stdout);
     }
