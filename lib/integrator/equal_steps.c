@@ -4,6 +4,7 @@
 #include "assembly/user.h"
 #include "base/log.h"
 #include "contact/bodies/pace.h"
+#include "force/friction.h"
 #include "integrator/integrator.h"
 #include "integrator/kink_step.h"
 #include "integrator/pulse_step.h"
@@ -403,4 +404,33 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
     } else if (-header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration, CALM)) {
         lengthen(integration);
     }
+}
+
+/* Some friction has come to a stand, broken loose or turned since the kept state. */
+static int friction_changed(const se3di_equations *equations)
+{
+    const se3di_model *model = equations->assembly.model;
+    const double *before = (const double *)equations->kept.memory.data + SE3DI_FRICTION_MODE;
+    int changed = 0;
+    for (size_t k = 0; k < model->force_slots.count && !changed; ++k) {
+        const se3di_force *force = &model->forces[k];
+        changed = force->type == SE3DI_FORCE_FRICTION &&
+                  fabs(force->state[SE3DI_FRICTION_MODE] - before[SE3DI_FORCE_STATES * k]) > 0.0;
+    }
+    return changed;
+}
+
+double se3di_equal_steps_review(const se3di_integration *integration, double h)
+{
+    se3di_equations *equations = integration->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    const double *header = model->history;
+    double speed[2] = {header[SE3DI_EQUAL_SPEED], header[SE3DI_EQUAL_SPIN]}, jerk[3];
+    if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0) ||
+        !friction_changed(equations)) {
+        return 0.0;
+    }
+    (void)measure(equations, h, speed, jerk);
+    return h * h * fmax(jerk[0] / speed[0], jerk[1] / speed[1]) / tolerance_of(integration);
 }

@@ -19,6 +19,8 @@
 #define TURN_MAX            3.0   /* rad, of a body in a step */
 #define GAP_ROUNDING        1e-12 /* relative violation of a position equation */
 #define GAP_CLOSED          1e-6  /* the largest that may be closed at the end of a step */
+#define PART_LEAST          1e-8  /* of a step */
+#define PARTS_TRIED         200   /* of one step; more changes are passed over in what is left */
 
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 {
@@ -51,7 +53,8 @@ se3d_status se3di_lie_verlet_renew(se3di_integration *integration)
 se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int force_iterations)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
-    se3di_lie_verlet m = {.equations = integration->equations,
+    se3di_lie_verlet m = {.integration = integration,
+                          .equations = integration->equations,
                           .assembly = assembly,
                           .force_iterations = force_iterations,
                           .wrench = integration->work};
@@ -444,4 +447,49 @@ se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m)
     se3di_angles_accept(model);
     se3di_loads_accept(model);
     return se3di_work_accept(model, m->h);
+}
+
+se3d_status se3di_lie_verlet_advance(se3di_lie_verlet *m)
+{
+    SE3DI_TRY(se3di_lie_verlet_drift(m));
+    SE3DI_TRY(se3di_lie_verlet_kick(m));
+    return se3di_lie_verlet_finish(m);
+}
+
+/* From t0 to m->t1, and what that misses of a change of friction. */
+static se3d_status make_part(se3di_lie_verlet *m, double *missed)
+{
+    SE3DI_TRY(se3di_equations_keep(m->equations));
+    const se3d_status status = se3di_lie_verlet_advance(m);
+    if (status < 0) {
+        se3di_equations_come_back(m->equations);
+        return status;
+    }
+    *missed = se3di_equal_steps_review(m->integration, m->h);
+    return status;
+}
+
+se3d_status se3di_lie_verlet_follow(se3di_lie_verlet *m, double h, double t1)
+{
+    const se3di_model *model = m->assembly->model;
+    const double whole = h, least = PART_LEAST * h;
+    double longest = h, missed = 0.0;
+    m->h = h;
+    m->t1 = t1;
+    for (int tried = 1;; ++tried) {
+        SE3DI_TRY(make_part(m, &missed));
+        const int is_close = !(m->h > least) || tried >= PARTS_TRIED;
+        if (missed > 1.0 && !is_close) { /* the change is in half of the part, */
+            se3di_equations_come_back(m->equations);
+            longest = 0.5 * m->h;
+        } else { /* or it was passed, or is in the other half */
+            ++m->equations->counters.steps;
+            longest = missed > 0.0 || is_close || !(longest < whole) ? whole : 0.5 * longest;
+        }
+        if (!(model->time < t1)) {
+            return SE3D_OK;
+        }
+        m->t1 = t1 - model->time > (1.0 + 1e-9) * longest ? model->time + longest : t1;
+        m->h = m->t1 - model->time;
+    }
 }

@@ -20,6 +20,7 @@
 #include "integrator/lie_friction.h"
 
 typedef struct se3di_lie_verlet {
+    se3di_integration *integration;
     se3di_equations *equations;
     se3di_assembly *assembly;
     double h, t1;
@@ -48,5 +49,11 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m);
 /* The velocities at t1, accelerations and multipliers. */
 se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m);
 se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m);
+/* All three. */
+se3d_status se3di_lie_verlet_advance(se3di_lie_verlet *m);
+/* From the model's time over h to t1. If the length of steps is chosen and friction changes on
+ * the way, in parts, of which the one with the change is so short that it meets the tolerance. On
+ * failure the state is that of the last part. */
+se3d_status se3di_lie_verlet_follow(se3di_lie_verlet *m, double h, double t1);
 
 #endif

@@ -7,13 +7,6 @@
 
 #define FORCE_ITERATIONS 12
 
-static se3d_status advance(se3di_lie_verlet *m)
-{
-    SE3DI_TRY(se3di_lie_verlet_drift(m));
-    SE3DI_TRY(se3di_lie_verlet_kick(m));
-    return se3di_lie_verlet_finish(m);
-}
-
 /* Parts of a step from t0 to t0 + h. */
 static se3d_status advance_parts(se3di_lie_verlet *m, double t0, double h, const double *weights,
                                  int parts)
@@ -24,7 +17,7 @@ static se3d_status advance_parts(se3di_lie_verlet *m, double t0, double h, const
         sum += weights[k];
         m->h = weights[k] * h;
         m->t1 = k == parts - 1 ? t0 + h : t0 + sum * h;
-        SE3DI_TRY(advance(m));
+        SE3DI_TRY(se3di_lie_verlet_advance(m));
     }
     return SE3D_OK;
 }
@@ -56,7 +49,6 @@ static se3d_status advance_composed(se3di_lie_verlet *m, double t0, double h)
 
 static se3d_status step(se3di_integration *integration, double h)
 {
-    static const double whole = 1.0;
     const double t0 = integration->equations->assembly.model->time;
     const int is_composed = integration->settings.order == 4;
     se3di_lie_verlet m = se3di_lie_verlet_begin(integration, FORCE_ITERATIONS);
@@ -66,10 +58,11 @@ static se3d_status step(se3di_integration *integration, double h)
             "rattle of order 4 steps back in time, which friction does not allow; "
             "use order 2");
     }
-    se3d_status status = se3di_equations_keep(m.equations);
-    if (status >= 0) {
-        status = is_composed ? advance_composed(&m, t0, h) : advance_parts(&m, t0, h, &whole, 1);
+    if (!is_composed) {
+        return se3di_lie_verlet_follow(&m, h, t0 + h);
     }
+    se3d_status status = se3di_equations_keep(m.equations);
+    status = status < 0 ? status : advance_composed(&m, t0, h);
     if (status < 0) {
         se3di_equations_come_back(m.equations);
         return status;

@@ -101,11 +101,11 @@ static se3d_status move_particles(verlet *m, double t1, se3d_status *contact)
     return status;
 }
 
-/* The second half of the step of the bodies. With particles, which have moved already, nobody is
- * asked meanwhile whether the run is to end. */
+/* The second half of the step of the bodies. As the particles have moved already, nobody is asked
+ * meanwhile whether the run is to end. */
 static se3d_status finish_bodies(verlet *m)
 {
-    se3di_guard *const guard = m->model->sets ? m->bodies.equations->guard : NULL;
+    se3di_guard *const guard = m->bodies.equations->guard;
     if (guard) {
         ++guard->muted;
     }
@@ -122,13 +122,16 @@ static se3d_status advance(verlet *m, double t1)
 {
     se3di_lie_verlet *bodies = &m->bodies;
     bodies->h = t1 - m->model->time;
+    if (!m->model->sets) {
+        return se3di_lie_verlet_follow(bodies, bodies->h, t1);
+    }
     bodies->t1 = t1;
     m->moved = 0;
     SE3DI_TRY(se3di_sets_aim(m->model, bodies->h, m->error));
     se3d_status status = se3di_equations_keep(bodies->equations);
     status = status < 0 ? status : se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
-    if (status >= 0 && m->model->sets) {
+    if (status >= 0) {
         status = move_particles(m, t1, &contact);
     }
     status = status < 0 ? status : finish_bodies(m);
@@ -144,9 +147,7 @@ static se3d_status advance(verlet *m, double t1)
         se3di_equations_come_back(bodies->equations);
         return status;
     }
-    if (m->model->sets) {
-        account(m);
-    }
+    account(m);
     ++bodies->equations->counters.steps;
     return contact; /* the step is complete, and the last one */
 }

@@ -285,8 +285,47 @@ static void steps_are_long_again_behind_a_pulse(void)
     }
 }
 
+/* A block on a slide of 0.2 m/s, which drags it to a stand by its friction, under a load of 5 t N
+ * that breaks it loose: t and the way there, from closed forms. */
+#define ON_SLIDE(load, duration)                                                                   \
+    "se3d: 1\nbodies:\n  - {name: base, mass: 1, inertia: [1, 1, 1]}\n"                            \
+    "  - {name: block, mass: 1, inertia: [1, 1, 1]}\njoints:\n"                                    \
+    "  - {name: s, type: prismatic, body_i: ground, body_j: base, at: [0, 0, 0], axis: [1, 0, "    \
+    "0]}\n"                                                                                        \
+    "  - {name: j, type: prismatic, body_i: base, body_j: block, at: [0, 0, 0], axis: [1, 0, "     \
+    "0]}\n"                                                                                        \
+    "drivers: [{name: d, joint: s, value: \"0.2*t\"}]\nforces:\n"                                  \
+    "  - {name: f, type: friction, joint: j, mu: 0.2, mu_static: 0.3}\n"                           \
+    "  - {type: force, body: block, value: [\"" load "\", 0, 0]}\n"                                \
+    "analysis: {type: dynamics, duration: " duration "}\n"                                         \
+    "output: [{file: r.csv, channels: [j.displacement, energy.balance]}]\n"
+
+static void friction_that_changes_within_a_step_is_followed(void)
+{
+    static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+    const double v = 0.2, slip = 0.2 * 9.81, hold = 0.3 * 9.81, stop = v / slip;
+    const double stands = (sqrt(slip * slip + 10.0 * v) - slip) / 5.0, late = 1.0 - hold / 5.0;
+    const double way = stands * (-v + stands * (0.5 * slip + stands * 5.0 / 6.0)) +
+                       late * late * (5.0 / 6.0 * late + 0.5 * (hold - slip));
+    for (int k = 0; k < 2; ++k) {
+        se3d_solver_stats stats;
+        text_model m = text_model_open(ON_SLIDE("0", "2"), methods[k], -1, 0.0);
+        CHECK(text_model_run(&m, 2.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), -0.5 * v * stop, 1e-9);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-7);
+        CHECK(!se3d_solver_get_stats(m.solver, &stats) && stats.steps < 300);
+        text_model_close(&m);
+        m = text_model_open(ON_SLIDE("5*t", "1"), methods[k], -1, 0.0);
+        CHECK(text_model_run(&m, 1.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), way, 1e-6);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-8);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(friction_that_changes_within_a_step_is_followed);
     RUN(every_method_is_near_the_truth_without_step_and_tolerance);
     RUN(the_error_falls_with_the_tolerance);
     RUN(the_choice_goes_on_in_clones_and_snapshots);
