@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/memory.h"
 
+#include "assembly/energy.h"
 #include "contact/bodies/body_contacts.h"
 #include "force/friction.h"
 #include "force/measure.h"
@@ -353,7 +354,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     double *memory = step->memory, *work = step->work;
     se3di_model *model = equations->assembly.model;
     uint32_t broken = 0;
-    *end = (se3di_memory_end){0.0, 0.0, 0, 0};
+    *end = (se3di_memory_end){0};
     se3di_model_save_memory(model, memory);
     end->has_moved = se3di_friction_system_stand(equations);
     end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
@@ -368,7 +369,8 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     }
     const uint32_t count = review(equations, step, end, &broken, &since);
     if (count > 0 && end->error <= 1.0) {
-        se3d_status status = se3di_state_evaluate(equations, t);
+        se3d_status status = se3di_loads_power(model, t, end->power);
+        status = status < 0 ? status : se3di_state_evaluate(equations, t);
         memcpy(work, equations->x, equations->assembly.unknown_count * sizeof *work);
         status = status < 0 ? status : change_modes(equations, t, scale, tolerance, end);
         if (status < 0) {

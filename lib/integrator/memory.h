@@ -12,6 +12,7 @@ typedef struct se3di_memory_end {
     double fraction; /* of the step that ends where the first of them does; 0: unknown */
     int32_t has_changed; /* modes, and with them accelerations (equations->x, l are the new ones) */
     int32_t has_moved;   /* velocities in the frames: what sticks stands still */
+    double power[SE3DI_STATE_WORK]; /* before that, if modes have changed: the step ends with it */
 } se3di_memory_end;
 
 typedef struct se3di_memory_step {

@@ -321,17 +321,22 @@ static void accept(se3di_newmark_step *step)
     ++step->equations->counters.steps;
 }
 
-/* What follows from the accepted state; `jumps`: the accelerations have. */
-static se3d_status conclude(se3di_newmark_step *step, int jumps)
+/* What follows from the accepted state, in which friction may have changed. */
+static se3d_status conclude(se3di_newmark_step *step, const se3di_memory_end *end)
 {
     se3di_assembly *assembly = step->assembly;
     se3di_model *model = assembly->model;
     const se3di_newmark_history past = se3di_newmark_get_history(assembly);
+    double h = step->h;
     se3d_status status = SE3D_OK;
-    if (jumps || se3di_contacts_changed(model)) {
+    if (end->has_changed) {
+        se3di_work_take(model, h, end->power);
+        h = 0.0; /* what follows is of the next step */
+    }
+    if (end->has_changed || se3di_contacts_changed(model)) {
         status = restart(step->integration, step->h);
     }
-    status = status < 0 ? status : se3di_work_accept(model, step->h);
+    status = status < 0 ? status : se3di_work_accept(model, h);
     copy(past.header->power, model->power, SE3DI_STATE_WORK);
     se3di_state_get(assembly, past.y);
     grow_scales(assembly, &past);
@@ -349,8 +354,8 @@ static int misses_impact(const se3di_newmark_step *step, double tolerance)
     return error > 1.0;
 }
 
-/* What friction remembers of the end; *jumps: accelerations have by that. */
-static se3d_status settle(se3di_newmark_step *step, double tolerance, int *jumps)
+/* What friction remembers of the end. */
+static se3d_status settle(se3di_newmark_step *step, double tolerance, se3di_memory_end *end)
 {
     se3di_integration *integration = step->integration;
     const se3di_newmark_history past = se3di_newmark_get_history(step->assembly);
@@ -362,20 +367,18 @@ static se3d_status settle(se3di_newmark_step *step, double tolerance, int *jumps
                                       .scale = &past.header->scale,
                                       .memory = integration->newton.memory,
                                       .work = step->dz};
-    se3di_memory_end end;
-    SE3DI_TRY(se3di_memory_settle(step->equations, &memory, &end));
-    *jumps = end.has_changed;
-    if (end.error <= 1.0) {
+    SE3DI_TRY(se3di_memory_settle(step->equations, &memory, end));
+    if (end->error <= 1.0) {
         return SE3D_OK;
     }
-    integration->fraction = end.fraction;
-    integration->error = end.error;
+    integration->fraction = end->fraction;
+    integration->error = end->error;
     return SE3D_ERR_STEP_SIZE;
 }
 
 /* A step with an error above `most`, or whose forces act otherwise within it, is made again, up to
  * where they do if that is known: STEP_SIZE. */
-static se3d_status review(se3di_newmark_step *step, double most, int *jumps)
+static se3d_status review(se3di_newmark_step *step, double most, se3di_memory_end *end)
 {
     const se3di_integration *integration = step->integration;
     const double tolerance = fmax(integration->settings.tolerance, SE3DI_NEWMARK_REACH);
@@ -385,7 +388,7 @@ static se3d_status review(se3di_newmark_step *step, double most, int *jumps)
     if (!(integration->error <= most)) {
         return SE3D_ERR_STEP_SIZE;
     }
-    return step->settles ? settle(step, tolerance, jumps) : SE3D_OK;
+    return step->settles ? settle(step, tolerance, end) : SE3D_OK;
 }
 
 /* One step of h to t from the accepted state; on failure that is the model's. With an error, as
@@ -397,7 +400,7 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     se3di_model *model = assembly->model;
     SE3DI_TRY(se3di_equations_keep(equations));
     se3di_newmark_step step = begin_step(integration, h);
-    int jumps = 0;
+    se3di_memory_end end = {0};
     step.t = t;
     step.settles = most > 0.0 && equations->friction.count > 0;
     se3di_contacts_begin(model, h, step.velocity / h, 0);
@@ -409,7 +412,7 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
         status = se3di_newmark_estimate(&step, most, &integration->error);
     }
     if (status >= 0) {
-        status = review(&step, most, &jumps);
+        status = review(&step, most, &end);
         if (status >= 0) {
             status = se3di_state_prepare(equations, t);
             integration->error = status < 0 ? HUGE_VAL : integration->error;
@@ -417,7 +420,7 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     }
     if (status >= 0) {
         accept(&step);
-        status = conclude(&step, jumps);
+        status = conclude(&step, &end);
     }
     if (status < 0) {
         se3di_equations_come_back(equations);

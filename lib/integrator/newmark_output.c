@@ -85,9 +85,9 @@ void se3di_newmark_interpolate(const se3di_integration *integration, double t, d
     for (; at + SE3DI_STATE_WORK < count; at += SE3DI_STATE_SIZE) {
         interpolate_body(past.y_begin + at, past.y + at, end - begin, s, y + at);
     }
-    for (int k = 0; k < SE3DI_STATE_WORK; ++k, ++at) { /* along a parabola to s, as the rule */
-        const double p1 = past.header->power[k], p0 = past.header->power_begin[k];
-        y[at] = past.y_begin[at] + (end - begin) * s * (p0 + 0.5 * s * (p1 - p0));
+    for (int k = 0; k < SE3DI_STATE_WORK; ++k, ++at) { /* along a parabola, as the rule */
+        const double first = (end - begin) * past.header->power_begin[k];
+        y[at] = past.y_begin[at] + s * (first + s * (past.y[at] - past.y_begin[at] - first));
     }
 }
 

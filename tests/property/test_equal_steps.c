@@ -302,23 +302,24 @@ static void steps_are_long_again_behind_a_pulse(void)
 
 static void friction_that_changes_within_a_step_is_followed(void)
 {
-    static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
+    static const int32_t methods[] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET, SE3D_METHOD_DOP853,
+                                      SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT};
     const double v = 0.2, slip = 0.2 * 9.81, hold = 0.3 * 9.81, stop = v / slip;
     const double stands = (sqrt(slip * slip + 10.0 * v) - slip) / 5.0, late = 1.0 - hold / 5.0;
     const double way = stands * (-v + stands * (0.5 * slip + stands * 5.0 / 6.0)) +
                        late * late * (5.0 / 6.0 * late + 0.5 * (hold - slip));
-    for (int k = 0; k < 2; ++k) {
+    for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
         se3d_solver_stats stats;
         text_model m = text_model_open(ON_SLIDE("0", "2"), methods[k], -1, 0.0);
         CHECK(text_model_run(&m, 2.0));
         CHECK_NEAR(text_model_get(&m, 0, 0), -0.5 * v * stop, 1e-9);
-        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-7);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-6);
         CHECK(!se3d_solver_get_stats(m.solver, &stats) && stats.steps < 300);
         text_model_close(&m);
         m = text_model_open(ON_SLIDE("5*t", "1"), methods[k], -1, 0.0);
         CHECK(text_model_run(&m, 1.0));
         CHECK_NEAR(text_model_get(&m, 0, 0), way, 1e-6);
-        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-8);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.5 * v * v, 1e-6);
         text_model_close(&m);
     }
 }
