@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/elementary.h"
 #include "io/run/run_record.h"
 
 #define MUCH        1e-3 /* of the largest values: the log is warned */
@@ -38,7 +39,7 @@ struct se3di_estimate {
 
 static double distance(const double *a, const double *b)
 {
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+    return io_hypot(io_hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
 /* Largest distance of two places in one direction. */
@@ -292,7 +293,7 @@ double se3di_estimate_get_time(const se3di_estimate *e)
 /* The errors of the run as far as the copy has come. */
 static void conclude(const se3di_estimate *e, se3d_run_analysis *done)
 {
-    const double divisor = pow(fmin(e->ratio, RATIO_MOST), e->order) - 1.0;
+    const double divisor = io_pow(fmin(e->ratio, RATIO_MOST), e->order) - 1.0;
     double *const errors[QUANTITIES] = {&done->error_position, &done->error_velocity,
                                         &done->error_angular_velocity, &done->error_work};
     for (size_t q = 0; q < QUANTITIES; ++q) {
