@@ -33,6 +33,15 @@ static se3d_status push(void *ctx, double t, const se3d_body_motion motion[2], d
     return may_fail(&wrench[6]);
 }
 
+static se3d_status store(void *ctx, double t, const se3d_body_motion motion[2], double *potential,
+                         double *dissipated)
+{
+    (void)ctx, (void)t, (void)motion;
+    *dissipated = 0.0;
+    *potential = 0.25;
+    return may_fail(potential);
+}
+
 static se3d_status wave(void *ctx, const double *x, double jet[3], double *gradient)
 {
     (void)ctx;
@@ -87,6 +96,7 @@ static void add_push(const world *w, se3d_body ground)
     force.body_i = ground;
     force.body_j = w->b;
     force.callback = push;
+    force.energy = store;
     CHECK(!se3d_force_create_callback(w->system, &force, &made));
 }
 

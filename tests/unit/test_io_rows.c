@@ -81,7 +81,7 @@ static size_t run(const char *head, const char *output, void (*prepare)(se3d_mod
     "work.actuators, work.drivers]"
 
 /* Rows within the steps of a dense method and at their ends, in one file and in two. */
-static void energies_of_a_row_take_one_evaluation_of_the_forces(void)
+static void energies_of_a_row_take_no_evaluation_of_the_forces(void)
 {
     static const char *const methods[] = {"dop853", "radau", "generalized_alpha", "rattle"};
     char head[500];
@@ -99,7 +99,7 @@ static void energies_of_a_row_take_one_evaluation_of_the_forces(void)
                                "output:\n  - {file: a.csv, every: 0.01, channels: " ALL_ENERGIES
                                "}\n  - {file: b.csv, every: 0.02, channels: " ALL_ENERGIES "}\n",
                                add_force);
-        CHECK_NEAR((double)(one - none), 21.0, 0.0);
+        CHECK_NEAR((double)one, (double)none, 0.0);
         CHECK_NEAR((double)all, (double)one, 0.0);
         CHECK_NEAR((double)two, (double)one, 0.0);
     }
@@ -152,7 +152,7 @@ static void contacts_of_a_time_take_one_evaluation_of_the_forces(void)
 
 int main(void)
 {
-    RUN(energies_of_a_row_take_one_evaluation_of_the_forces);
+    RUN(energies_of_a_row_take_no_evaluation_of_the_forces);
     RUN(energies_at_an_event_take_one_evaluation_of_the_forces);
     RUN(contacts_of_a_time_take_one_evaluation_of_the_forces);
     return check_finish();
