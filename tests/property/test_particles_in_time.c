@@ -123,7 +123,7 @@ static void stopped_by_a_formula_they_are_at_one_time(void)
     }
 }
 
-/* A linkage whose friction raises its own load without end, in the first step. */
+/* A linkage whose friction raises its own load without end: mu above 1 on a rod at 45 degrees. */
 static const char jamming[] =
     "se3d: 1\nbodies:\n"
     "  - {name: block, mass: 1, inertia: [1, 1, 1]}\n"
@@ -137,7 +137,7 @@ static const char jamming[] =
     "  - {name: z, type: prismatic, body_i: ground, body_j: push, at: [-1, 0, 1], axis: [0, 0, "
     "1]}\n"
     "drivers: [{name: m, joint: z, value: \"-0.1*t\"}]\n"
-    "forces: [{name: f, type: friction, joint: x, mu: 0.8},\n"
+    "forces: [{name: f, type: friction, joint: x, mu: 1.2},\n"
     "  {type: force, body: block, value: [-7, 0, 0]}]\n"
     "analysis: {type: dynamics, duration: 1, method: verlet}\n";
 
