@@ -25,6 +25,7 @@
 #define ADD_UP      20.0  /* rad of the motion, over which the errors of steps add up */
 #define FACTOR_4    5.0   /* the error of order 4 over the square of that of order 2 */
 #define MUCH        4.0   /* over the tolerance, */
+#define JUMPS       20.0  /* over the tolerance, for a jump: 0.6 are aimed at */
 #define PHASE       0.3   /* rad of the motion that it is so in: the step was too long */
 #define CALM        6.3   /* rad of that motion without it: the step may be longer again */
 #define PART_LEAST  1e-3  /* of the first step */
@@ -410,27 +411,30 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
 static int friction_changed(const se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
-    const double *before = (const double *)equations->kept.memory.data + SE3DI_FRICTION_MODE;
+    const double *before = equations->kept.memory.data;
     int changed = 0;
     for (size_t k = 0; k < model->force_slots.count && !changed; ++k) {
         const se3di_force *force = &model->forces[k];
         changed = force->type == SE3DI_FORCE_FRICTION &&
-                  fabs(force->state[SE3DI_FRICTION_MODE] - before[SE3DI_FORCE_STATES * k]) > 0.0;
+                  fabs(force->state[SE3DI_FRICTION_MODE] -
+                       before[SE3DI_FORCE_STATES * k + SE3DI_FRICTION_MODE]) > 0.0;
     }
     return changed;
 }
 
-double se3di_equal_steps_review(const se3di_integration *integration, double h)
+double se3di_equal_steps_review(const se3di_integration *integration, double h, double *most)
 {
-    se3di_equations *equations = integration->equations;
-    const se3di_assembly *assembly = &equations->assembly;
-    const se3di_model *model = assembly->model;
-    const double *header = model->history;
+    const se3di_equations *equations = integration->equations;
+    const double *header = equations->assembly.model->history;
     double speed[2] = {header[SE3DI_EQUAL_SPEED], header[SE3DI_EQUAL_SPIN]}, jerk[3];
-    if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0) ||
-        !friction_changed(equations)) {
+    *most = HUGE_VAL;
+    if (!se3di_equal_steps_are_chosen(integration) || !(header[SE3DI_EQUAL_STEP] > 0.0)) {
         return 0.0;
     }
-    (void)measure(equations, h, speed, jerk);
-    return h * h * fmax(jerk[0] / speed[0], jerk[1] / speed[1]) / tolerance_of(integration);
+    if (friction_changed(equations)) {
+        *most = 1.0;
+    } else if (!integration->is_paced) {
+        *most = JUMPS;
+    }
+    return 12.0 * measure(equations, h, speed, jerk) / tolerance_of(integration);
 }

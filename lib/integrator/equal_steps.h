@@ -10,7 +10,7 @@
  * and aims at the tolerance. What was chosen is watched: where a part of the motion has much
  * more, and not only a place in it, steps become half as long from there on, and the log says so.
  * Steps that contacts or stops shorten, and accelerations that jump, say nothing of it: a step in
- * which friction changes is made in parts instead (lie_verlet.h).
+ * which they do is made in parts instead (lie_verlet.h).
  * docs/theory/rattle.md */
 #ifndef SE3DI_EQUAL_STEPS_H
 #define SE3DI_EQUAL_STEPS_H
@@ -45,9 +45,11 @@ se3d_status se3di_equal_steps_choose(struct se3di_integration *integration, doub
 double se3di_equal_steps_next(struct se3di_integration *integration, double most, double t_end);
 /* After such a step of h, whose start is in equations->kept. */
 void se3di_equal_steps_watch(struct se3di_integration *integration, double h);
-/* What such a step of h, whose start is in equations->kept, may miss of velocities because friction
- * comes to a stand, breaks loose or turns within it, relative to the tolerance; 0: it does not. */
-double se3di_equal_steps_review(const struct se3di_integration *integration, double h);
+/* What such a step of h, whose start is in equations->kept, changes accelerations by, times h,
+ * relative to the tolerance. A smooth one has no more than *most; nor has one in which friction
+ * changes if it is short enough for that. */
+double se3di_equal_steps_review(const struct se3di_integration *integration, double h,
+                                double *most);
 /* The length of equal steps of a run on the model, given or chosen [s]; 0: none is chosen yet, or
  * the method adapts it. */
 double se3di_equal_steps_get(const struct se3di_integration *integration,

@@ -456,40 +456,69 @@ se3d_status se3di_lie_verlet_advance(se3di_lie_verlet *m)
     return se3di_lie_verlet_finish(m);
 }
 
-/* From t0 to m->t1, and what that misses of a change of friction. */
-static se3d_status make_part(se3di_lie_verlet *m, double *missed)
+/* The place in a step at which accelerations jump, by halves. */
+typedef struct search {
+    double whole, least; /* the step, and the shortest part [s] */
+    double longest;      /* part that is tried next; the whole step: nothing is searched for */
+    double rate;         /* of what the first part with the jump has missed */
+    int32_t doubts;      /* the step may be smooth and only fast: its first half tells */
+    int32_t tried, gives_up;
+} search;
+
+/* After a part of h that has missed so much; without a search `most` is allowed.
+ * @return whether it is to be made again */
+static int refuse(search *s, double h, double missed, double most)
 {
-    SE3DI_TRY(se3di_equations_keep(m->equations));
-    const se3d_status status = se3di_lie_verlet_advance(m);
-    if (status < 0) {
-        se3di_equations_come_back(m->equations);
-        return status;
+    const int searches = s->longest < s->whole, doubts = s->doubts;
+    const double first = s->rate * s->whole;
+    s->doubts = 0;
+    if (doubts && missed > 0.1 * first &&
+        missed < 0.4 * first) { /* a quarter: it is watched elsewhere */
+        s->gives_up = 1;
+        s->longest = s->whole;
+        return 1;
     }
-    *missed = se3di_equal_steps_review(m->integration, m->h);
-    return status;
+    if (missed > (searches ? 1.0 : most) && h > s->least && !s->gives_up) {
+        s->doubts = s->tried == 1 && most > 1.0;
+        s->rate = searches ? s->rate : missed / h;
+        s->longest = 0.5 * h;
+        return 1;
+    }
+    const int passed = missed > 0.3 * s->rate * h || !(s->longest > s->least);
+    s->longest = passed || !searches ? s->whole : 0.5 * s->longest; /* it is in the other half */
+    return 0;
 }
 
 se3d_status se3di_lie_verlet_follow(se3di_lie_verlet *m, double h, double t1)
 {
     const se3di_model *model = m->assembly->model;
-    const double whole = h, least = PART_LEAST * h;
-    double longest = h, missed = 0.0;
+    search s = {.whole = h, .least = PART_LEAST * h, .longest = h};
     m->h = h;
     m->t1 = t1;
-    for (int tried = 1;; ++tried) {
-        SE3DI_TRY(make_part(m, &missed));
-        const int is_close = !(m->h > least) || tried >= PARTS_TRIED;
-        if (missed > 1.0 && !is_close) { /* the change is in half of the part, */
+    for (;;) {
+        SE3DI_TRY(se3di_equations_keep(m->equations));
+        const se3d_status status = se3di_lie_verlet_advance(m);
+        s.gives_up |= ++s.tried >= PARTS_TRIED;
+        if (status == SE3D_ERR_NO_CONVERGENCE && s.longest < s.whole) {
+            se3di_equations_come_back(m->equations); /* though a longer one did */
+            s.gives_up = 1;
+            s.longest = s.whole;
+        } else if (status < 0) {
             se3di_equations_come_back(m->equations);
-            longest = 0.5 * m->h;
-        } else { /* or it was passed, or is in the other half */
-            ++m->equations->counters.steps;
-            longest = missed > 0.0 || is_close || !(longest < whole) ? whole : 0.5 * longest;
+            return status;
+        } else {
+            double most;
+            const double missed = se3di_equal_steps_review(m->integration, m->h, &most);
+            if (refuse(&s, m->h, missed, most)) {
+                se3di_equations_come_back(m->equations);
+            } else {
+                ++m->equations->counters.steps;
+            }
         }
         if (!(model->time < t1)) {
             return SE3D_OK;
         }
-        m->t1 = t1 - model->time > (1.0 + 1e-9) * longest ? model->time + longest : t1;
+        m->t1 = t1 - model->time > (1.0 + 1e-9) * s.longest ? model->time + s.longest : t1;
         m->h = m->t1 - model->time;
     }
 }

@@ -324,8 +324,36 @@ static void friction_that_changes_within_a_step_is_followed(void)
     }
 }
 
+/* Pushed back from 0.123 m on, by a force that jumps there: it comes back at the speed that it has
+ * had, in steps that its constant accelerations ask for. */
+static void a_force_that_jumps_within_a_step_is_followed(void)
+{
+    static const char text[] =
+        "se3d: 1\ngravity: [0, 0, 0]\n"
+        "bodies: [{name: a, mass: 2, inertia: [1, 1, 1], velocity: [0.5, 0, 0]}]\n"
+        "joints: [{name: j, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], "
+        "axis: [1, 0, 0]}]\nforces:\n"
+        "  - {name: f, type: force, body: a, value: [\"if(j.displacement > 0.123, -3, 0)\", 0, "
+        "0]}\n"
+        "analysis: {type: dynamics, duration: 1}\n"
+        "output: [{file: r.csv, channels: [j.displacement, j.rate, energy.balance]}]\n";
+    static const int32_t methods[3] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET, SE3D_METHOD_RADAU};
+    const double back = 0.123 / 0.5 + 2.0 * 0.5 / 1.5;
+    for (int k = 0; k < 3; ++k) {
+        se3d_solver_stats stats;
+        text_model m = text_model_open(text, methods[k], -1, 0.0);
+        CHECK(text_model_run(&m, 1.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), 0.123 - 0.5 * (1.0 - back), 3e-6);
+        CHECK_NEAR(text_model_get(&m, 1, 0), -0.5, 1e-5);
+        CHECK_NEAR(text_model_get(&m, 2, 0), 0.25, 1e-8);
+        CHECK(!se3d_solver_get_stats(m.solver, &stats) && stats.steps < 300);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
+    RUN(a_force_that_jumps_within_a_step_is_followed);
     RUN(friction_that_changes_within_a_step_is_followed);
     RUN(every_method_is_near_the_truth_without_step_and_tolerance);
     RUN(the_error_falls_with_the_tolerance);
