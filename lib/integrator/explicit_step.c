@@ -539,20 +539,37 @@ static int reports_end(const se3di_explicit *m)
            m->motion->count_dependent(m->equations) == 0;
 }
 
+static se3d_status solve_accelerations(se3di_explicit *m, double t)
+{
+    se3di_state_end(m->equations, &m->kkt);
+    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
+    return m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m));
+}
+
 /* The state at the end, projected, with the accelerations and multipliers that the model shows, and
  * the derivative that they are. */
 static se3d_status solve_end(se3di_explicit *m, double t)
 {
-    SE3DI_TRY(se3di_explicit_project(m, t, !m->is_closed));
+    SE3DI_TRY(se3di_explicit_project(m, t, 1));
     if (m->motion->may_report(m->equations)) {
         SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
         if (m->motion->report(m->equations)) {
             return SE3D_OK;
         }
     }
-    se3di_state_end(m->equations, &m->kkt);
-    SE3DI_TRY(se3di_acceleration_solve(m->equations, t));
-    return m->motion->derive(m->equations, t, m->assembly->model->lambda, se3di_explicit_end(m));
+    return solve_accelerations(m, t);
+}
+
+/* The same after closed stages. They leave no factors that tell which rows are dependent: what is
+ * there is of whatever was solved before, so the end is evaluated before anybody asks. */
+static se3d_status solve_closed_end(se3di_explicit *m, double t, int *reported)
+{
+    SE3DI_TRY(se3di_explicit_project(m, t, 0));
+    SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
+    *reported = reports_end(m);
+    const int is_told =
+        *reported && m->motion->may_report(m->equations) && m->motion->report(m->equations);
+    return *reported && !is_told ? solve_accelerations(m, t) : SE3D_OK;
 }
 
 /* The same by an evaluation that finds all. */
@@ -614,11 +631,13 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
     double error = 0.0; /* none is asked for: what settle_memory adds decides */
     SE3DI_TRY(m->methods->make_stages(m, h, &error));
     error = 0.0;
-    *reported = reports_end(m);
+    *reported = !m->is_closed && reports_end(m);
     arrive(m, h);
     m->leaves_scale = *reported && m->motion->finds_all(m->equations);
     m->waits = m->leaves_scale && waits_for_readers(m) && is_moderate(m->y, m->count);
-    if (m->waits) {
+    if (m->is_closed) {
+        SE3DI_TRY(solve_closed_end(m, t, reported));
+    } else if (m->waits) {
         m->next = se3di_explicit_end(m);
     } else if (*reported) {
         SE3DI_TRY(m->motion->finds_all(m->equations) ? evaluate_end(m, t) : solve_end(m, t));
