@@ -174,8 +174,9 @@ static int takes_loops(const se3di_run *run)
            !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
 }
 
-/* If loops are not computed in lanes, gauss passes singular positions in fewer steps, and more
- * exactly, by the bodies. */
+/* If loops cannot be computed in lanes, gauss passes singular positions in fewer steps, and more
+ * exactly, by the bodies. What changes without a rebuild has no say: a run that began before the
+ * change and one that is prepared after it go on alike. */
 static se3d_status leave_slow_loops(se3di_run *run, int *picked)
 {
     se3di_equations *equations = &run->equations;
@@ -187,7 +188,8 @@ static se3d_status leave_slow_loops(se3di_run *run, int *picked)
         se3di_equations_destroy(equations);
         *picked = 0;
     }
-    return status;
+    return status < 0 ? se3di_error_set(run->error, status, "no memory for loops in lanes")
+                      : status;
 }
 
 /* The formulation of `auto`. *picked: the equations are built, in joint coordinates. */

@@ -29,20 +29,25 @@ size_t se3di_gauss_work_count(const se3di_assembly *assembly)
 
 /* ---- what can be done so ---- */
 
-/* Nothing acts but gravity that does not change. */
-static int is_bare(const se3di_equations *equations)
+/* Nothing acts but gravity. */
+static int is_bare(const se3di_model *model)
 {
-    const se3di_model *model = equations->assembly.model;
-    int found = model->force_slots.count > 0 || model->shape_slots.count > 0;
+    return model->force_slots.count == 0 && model->shape_slots.count == 0;
+}
+
+/* The stages share one gravity. Its functions are inputs: they come and go without a rebuild. */
+static int is_gravity_constant(const se3di_model *model)
+{
+    int constant = 1;
     for (int c = 0; c < 3; ++c) {
-        found |= model->gravity_function[c] >= 0;
+        constant &= model->gravity_function[c] < 0;
     }
-    return !found;
+    return constant;
 }
 
 int se3di_gauss_lanes_suit_loops(const se3di_equations *equations)
 {
-    return equations->lanes.rows.count > 0 && is_bare(equations) &&
+    return equations->lanes.rows.count > 0 && is_bare(equations->assembly.model) &&
            equations->tree->given_count == 0 && equations->assembly.timed_count == 0 &&
            equations->assembly.user_count == 0 && equations->friction.count == 0 &&
            equations->tree->foreign_armature < 0 &&
@@ -52,7 +57,8 @@ int se3di_gauss_lanes_suit_loops(const se3di_equations *equations)
 
 int se3di_gauss_lanes_take_loops(const se3di_explicit *m)
 {
-    return m->motion == &se3di_motion_joints && se3di_gauss_lanes_suit_loops(m->equations);
+    return m->motion == &se3di_motion_joints && is_gravity_constant(m->assembly->model) &&
+           se3di_gauss_lanes_suit_loops(m->equations);
 }
 
 /* The widest core that stages fill. */
@@ -101,7 +107,8 @@ int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_
 {
     g->has_loops = se3di_gauss_lanes_take_loops(m);
     const int is_open = m->motion == &se3di_motion_joints && m->equations->is_open_tree;
-    if (!g->has_loops && !(is_open && is_bare(m->equations))) {
+    const se3di_model *model = m->assembly->model;
+    if (!g->has_loops && !(is_open && is_bare(model) && is_gravity_constant(model))) {
         return 0;
     }
     g->core = find_core(rule->stages);

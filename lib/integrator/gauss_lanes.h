@@ -38,8 +38,9 @@ typedef struct se3di_gauss_lanes {
 /* Doubles of work of the method, what is here included. */
 size_t se3di_gauss_work_count(const se3di_assembly *assembly);
 
-/* Whether loops can be computed here, and those of the model's state are. */
+/* Whether loops can be computed here, by what changes only with a rebuild. */
 int se3di_gauss_lanes_suit_loops(const se3di_equations *equations);
+/* Whether they are in the next step: not where functions change gravity. */
 int se3di_gauss_lanes_take_loops(const se3di_explicit *m);
 /* @return whether the stages of the step can be computed so */
 int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule);

@@ -253,8 +253,9 @@ static void bodies_keep_the_sign_of_p(void)
     }
 }
 
-/* In the plane x-z: a parallelogram, whose bars meet on a line as it falls. */
+/* In the plane x-z: a parallelogram, whose bars meet on a line as it falls, and another. */
 static const double folding[4][2] = {{0.0, 0.0}, {0.6, 0.8}, {2.6, 0.8}, {2.0, 0.0}};
+static const double swinging[4][2] = {{0.0, 0.0}, {0.3, 0.4}, {1.6, 1.1}, {2.0, 0.0}};
 
 static se3d_body add_bar(se3d_system *system, const double from[2], const double to[2])
 {
@@ -340,10 +341,35 @@ static void steps_of_loops_in_lanes_go_on_alike(void)
     }
 }
 
+/* Functions of gravity come and go without a rebuild: they do not choose the formulation. */
+static void gravity_that_begins_or_ends_to_vary_starts_nothing_anew(void)
+{
+    for (int begins = 0; begins < 2; ++begins) {
+        se3d_system *system = make_four_bar(swinging), *clone = NULL;
+        se3d_function varying[3] = {{0}, {0}, {0}}, none[3] = {{0}, {0}, {0}};
+        CHECK(!se3d_function_create_expression(system, "0.5*sin(t)", &varying[0]));
+        CHECK(!se3d_system_set_gravity_function(system, begins ? none : varying));
+        se3d_solver *solver = gauss_of(system, SE3D_FORMULATION_AUTO, 1e-8), *other;
+        CHECK(se3d_solver_run(solver, 0.25) >= 0);
+        CHECK(!se3d_system_set_gravity_function(system, begins ? varying : none));
+        CHECK(!se3d_system_clone(system, &clone));
+        other = gauss_of(clone, SE3D_FORMULATION_AUTO, 1e-8);
+        for (int k = 6; k < 11; ++k) {
+            CHECK(se3d_solver_run(solver, 0.05 * k) >= 0 && se3d_solver_run(other, 0.05 * k) >= 0);
+            CHECK(se3d_system_hash(system) == se3d_system_hash(clone));
+        }
+        se3d_solver_destroy(solver);
+        se3d_solver_destroy(other);
+        se3d_system_destroy(clone);
+        se3d_system_destroy(system);
+    }
+}
+
 int main(void)
 {
     RUN(whoever_continues_gets_the_same_bits);
     RUN(steps_of_loops_in_lanes_go_on_alike);
+    RUN(gravity_that_begins_or_ends_to_vary_starts_nothing_anew);
     RUN(bodies_keep_the_sign_of_p);
     return check_finish();
 }
