@@ -18,7 +18,7 @@ enum { PATH_SIZE = 4300 };
 #if defined(_WIN32)
 #include <direct.h>
 #include <io.h>
-static int forbid(const char *path)
+int se3di_file_forbid(const char *path)
 {
     (void)path;
     return 0; /* opening it fails there */
@@ -159,8 +159,7 @@ static void take_away(const char *path)
     unlink(path);
 }
 
-/* Why a file must not take this name; 0: it may. A link is replaced, not what it leads to. */
-static int forbid(const char *path)
+int se3di_file_forbid(const char *path)
 {
     struct stat about;
     if (stat(path, &about) != 0) {
@@ -460,7 +459,7 @@ FILE *se3di_partial_open(const char *path)
         errno = ENAMETOOLONG;
         return NULL;
     }
-    const int why = forbid(path); /* known before the work, not after it */
+    const int why = se3di_file_forbid(path); /* known before the work, not after it */
     if (why != 0) {
         errno = why;
         return NULL;
@@ -559,7 +558,7 @@ bool se3di_file_cut(FILE *file, uint64_t size)
 /* The file takes its name, in place of one that has it. */
 static bool replace(const char *partial, const char *path)
 {
-    const int why = forbid(path); /* what came there meanwhile */
+    const int why = se3di_file_forbid(path); /* what came there meanwhile */
     if (why != 0) {
         errno = why;
         return false;

@@ -32,6 +32,9 @@ bool se3di_file_find_folder(const char *folder, char *path, size_t size);
 bool se3di_file_seek(FILE *file, uint64_t place);
 /* Cut an open file to its first `size` bytes and go on there. */
 bool se3di_file_cut(FILE *file, uint64_t size);
+/* Why a file must not take this name: EISDIR, EINVAL; 0: it may. A link is replaced, not what it
+ * leads to. */
+int se3di_file_forbid(const char *path);
 /* Open a file under a temporary name; complete it and give it its name, which a regular file may
  * have or a link, both are replaced: a folder is EISDIR, a pipe or device EINVAL. @return NULL,
  * false: errno says why, and nothing is left. */

@@ -135,7 +135,8 @@ void se3di_files_give_up(const se3di_runner *r, se3di_csv *csv)
     }
 }
 
-/* The rows of what is not to be CSV stand beside it until they are all there: results.h5.csv. */
+/* The rows of what is not to be CSV stand beside it until they are all there: results.h5.csv. That
+ * it cannot have its name is known before the work, not after it. */
 static bool name_rows(se3di_runner *r, se3di_output_file *file, char *path, size_t size)
 {
     if (se3di_output_get_format(file->entry) == SE3DI_OUTPUT_CSV) {
@@ -148,7 +149,8 @@ static bool name_rows(se3di_runner *r, se3di_output_file *file, char *path, size
         return false;
     }
     memcpy(path + length, ROWS_ENDING, sizeof ROWS_ENDING);
-    return true;
+    errno = se3di_file_forbid(file->made);
+    return errno == 0;
 }
 
 /* The names of the columns. */
@@ -194,7 +196,7 @@ static se3d_status open_file(se3di_runner *r, const se3di_output_entry *entry)
     }
     file->entry = entry;
     if (!name_rows(r, file, path, sizeof path)) {
-        return fail_path(r, entry->file, errno);
+        return fail_path(r, file->made ? file->made : entry->file, errno);
     }
     columns = entry->particles  ? se3di_tagged_count_columns(r->model)
               : entry->contacts ? (size_t)SE3DI_CONTACT_COLUMNS

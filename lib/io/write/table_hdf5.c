@@ -64,25 +64,55 @@ static bool next_cell(scanner *in)
     }
 }
 
-/* Names of arrays have no slashes, which part groups: a division becomes one by ':'. */
+static bool is_taken(const table *t, const char *name)
+{
+    for (size_t k = 0; k < t->count; ++k) {
+        if (strcmp(t->columns[k].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The cell as the name of an array: it has no slashes, which part groups, so a division becomes one
+ * by ':'; more of them part it from one that has this name. @return NULL: errno says why */
+static const char *make_name(table *t)
+{
+    scanner *in = &t->in;
+    for (char *c = in->cell; *c; ++c) {
+        *c = *c == '/' ? ':' : *c;
+    }
+    while (strchr(in->cell, ':') && is_taken(t, in->cell)) {
+        if (in->length + 1 == CELL_MOST) {
+            errno = E2BIG;
+            return NULL;
+        }
+        in->cell[in->length++] = ':';
+        in->cell[in->length] = '\0';
+    }
+    const char *name = se3di_iopool_copy(&t->pool, in->cell, in->length);
+    errno = name ? errno : ENOMEM;
+    return name;
+}
+
 static bool read_head(table *t, const se3di_table_columns *kinds)
 {
     do {
         column *grown =
             se3di_iopool_grow(&t->pool, t->columns, t->count, &t->capacity, sizeof *grown);
-        if (!next_cell(&t->in)) {
-            return false;
-        }
-        char *name = grown ? se3di_iopool_copy(&t->pool, t->in.cell, t->in.length) : NULL;
-        if (!name) {
+        if (!grown) {
             errno = ENOMEM;
             return false;
         }
-        for (char *c = name; *c; ++c) {
-            *c = *c == '/' ? ':' : *c;
+        t->columns = grown;
+        if (!next_cell(&t->in)) {
+            return false;
+        }
+        const char *name = make_name(t);
+        if (!name) {
+            return false;
         }
         const uint64_t bit = t->count < 64 ? UINT64_C(1) << t->count : 0;
-        t->columns = grown;
         t->columns[t->count] = (column){.name = name, .shape = {SE3DI_HDF5_DOUBLE, 1, 1, {0}}};
         if (kinds->texts & bit) {
             t->columns[t->count].shape.type = SE3DI_HDF5_TEXT;
@@ -132,16 +162,22 @@ static double number_of(const char *text)
     return value;
 }
 
-static void take_cell(const table *t, column *c, size_t row)
+/* @return false: the file has changed since it was measured */
+static bool take_cell(const table *t, column *c, size_t row)
 {
     const size_t size = se3di_hdf5_size_of(&c->shape);
     unsigned char *at = c->block + row * size;
     if (c->shape.type == SE3DI_HDF5_TEXT) {
+        if (t->in.length > size) {
+            errno = EIO;
+            return false;
+        }
         memset(at, 0, size);
         memcpy(at, t->in.cell, t->in.length);
     } else {
         se3di_hdf5_put_value(at, c->shape.type, number_of(t->in.cell));
     }
+    return true;
 }
 
 static bool prepare(table *t, se3di_hdf5 *h)
@@ -176,7 +212,9 @@ static bool write_block(table *t, se3di_hdf5 *h, uint64_t first)
                 errno = errno ? errno : EIO;
                 return false;
             }
-            take_cell(t, &t->columns[k], r);
+            if (!take_cell(t, &t->columns[k], r)) {
+                return false;
+            }
         }
     }
     for (size_t k = 0; k < t->count; ++k) {
