@@ -149,6 +149,44 @@ static se3d_run_analysis estimate(const char *name, const char *method, const ch
     return done;
 }
 
+static int is_over(void *ctx)
+{
+    int *left = ctx;
+    return --*left < 0;
+}
+
+/* It ends within a step of the run or of the copy. */
+static void an_interrupt_is_no_failure_of_steps(void)
+{
+    int within_copy = 0;
+    for (int calls = 1; calls < 12; ++calls) {
+        char folder[] = "/tmp/se3d-estimates-XXXXXX", command[80];
+        int left = calls;
+        told log = {0};
+        se3d_run_options how = se3d_run_options_default();
+        se3d_run_analysis done;
+        se3d_run *run = NULL;
+        se3d_model_error error = {0};
+        se3d_model *model = read_model("fourbar", "rattle", "4e-3", &log);
+        CHECK(mkdtemp(folder) != NULL);
+        how.directory = folder;
+        how.estimate = 1;
+        how.interrupt = is_over;
+        how.interrupt_ctx = &left;
+        const se3d_status status = se3d_model_run(model, &how, &run, &error);
+        CHECK(status == SE3D_ERR_INTERRUPTED || status >= 0);
+        if (run && !se3d_run_get_analysis(run, 0, &done) && done.unestimated[0]) {
+            CHECK(strcmp(done.unestimated, "the run was interrupted") == 0);
+            ++within_copy;
+        }
+        se3d_run_destroy(run);
+        se3d_model_destroy(model);
+        snprintf(command, sizeof command, "rm -rf %s", folder);
+        CHECK(system(command) == 0);
+    }
+    CHECK(within_copy > 0);
+}
+
 static void estimates_are_of_the_order_of_the_errors(void)
 {
     static const struct {
@@ -201,5 +239,6 @@ static void estimates_are_of_the_order_of_the_errors(void)
 int main(void)
 {
     RUN(estimates_are_of_the_order_of_the_errors);
+    RUN(an_interrupt_is_no_failure_of_steps);
     return check_finish();
 }

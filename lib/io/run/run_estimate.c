@@ -97,6 +97,23 @@ static void leave(se3di_estimate *e)
     e->copy = NULL;
 }
 
+/* Why there are no more steps of the copy. */
+static void note_problem(se3di_estimate *e, se3d_status status)
+{
+    if (status == SE3D_ERR_INTERRUPTED) {
+        snprintf(e->problem, sizeof e->problem, "the run was interrupted");
+        return;
+    }
+    const char *why = se3d_system_get_error(e->copy ? e->copy : e->system);
+    snprintf(e->problem, sizeof e->problem, "steps of %g s fail: %.150s", 2.0 * e->step,
+             why[0] ? why : se3d_status_get_text(status));
+    size_t used = 0, length = 0;
+    while ((length = se3d_text_get_character(e->problem + used)) > 0) {
+        used += length;
+    }
+    e->problem[used] = '\0'; /* the last character may be cut */
+}
+
 static se3d_status copy_system(const se3di_runner *r, const se3di_analysis_entry *entry,
                                se3di_estimate *e)
 {
@@ -144,9 +161,13 @@ se3d_status se3di_estimate_begin(se3di_runner *r, const se3di_analysis_entry *en
     e->step = entry->solver.step;
     e->order = entry->solver.order == 4 && strcmp(method, "rattle") == 0 ? 4.0 : 2.0;
     const se3d_status status = reserve(r, e) ? copy_system(r, entry, e) : SE3D_ERR_NO_MEMORY;
-    if (status < 0) {
+    if (status == SE3D_ERR_NO_MEMORY) {
         leave(e);
         return status;
+    }
+    if (status < 0) {
+        note_problem(e, status);
+        leave(e);
     }
     note_start(e);
     r->estimate = e;
@@ -256,8 +277,7 @@ static se3d_status follow(se3di_estimate *e, double time)
 {
     const se3d_status status = run_copy(e, time);
     if (status < 0) {
-        snprintf(e->problem, sizeof e->problem, "steps of %g s fail: %.150s", 2.0 * e->step,
-                 se3d_system_get_error(e->copy));
+        note_problem(e, status);
         leave(e);
         return status == SE3D_ERR_NO_MEMORY ? status : SE3D_OK;
     }
