@@ -221,6 +221,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   // What parts and falls far away at last does not make all else small.
   const usual = [...boxes].sort((a, b) => a.size - b.size)[boxes.length >> 1].size, most = boxes.filter((b) => b.size <= 1.6 * usual);
   const kept = most.length >= 0.75 * boxes.length ? most : boxes;
+  low.setScalar(1e9); high.setScalar(-1e9);
   kept.forEach((b) => { low.min(b.low); high.max(b.high); });
   // What goes far for its size is followed, and as large as it is itself, unless it hangs on the ground.
   const isHeld = shown.some((e) => e.bodies && e.bodies.includes(0));
