@@ -56,6 +56,38 @@ for file in r.h5 p.h5 cone.vtkhdf h/grains_00002.vtkhdf cone.vtp; do
     holds "$file has other bytes" cmp "$run/$file" "$dir/again/$file"
 done
 
+# Names that are alike without slashes; outputs that are CSV among others.
+cat >"$dir/alike.yaml" <<'END_OF_YAML'
+se3d: 1
+gravity: [0, 0, 0]
+bodies:
+  - {name: a/b, mass: 1, inertia: [1, 1, 1], velocity: [1, 0, 0]}
+  - {name: "a:b", mass: 1, inertia: [1, 1, 1], velocity: [2, 0, 0]}
+analysis: {type: dynamics, duration: 0.1, step: 0.01}
+output:
+  - {file: r.h5, every: 0.1, channels: [a/b.velocity, "a:b.velocity", {h/t: energy.kinetic},
+     {"h:t": 2*energy.kinetic}, {"h:t:": 3*energy.kinetic}]}
+  - {file: r.csv, every: 0.1, channels: [{half: energy.kinetic/2}]}
+END_OF_YAML
+expect 'names that are alike' 0 "$program" run -q "$dir/alike.yaml" -o "$dir/alike"
+expect 'rows of the CSV file' 0 "$program" run "$dir/alike.yaml" -o "$dir/alike" --print -
+is "$(head -n 1 "$dir/out")" time,half
+expect 'a report beside HDF5' 0 "$program" report "$dir/alike.yaml" -o "$dir/page"
+has "$dir/page/report.html" r.csv
+if command -v gnuplot >/dev/null 2>&1; then
+    expect 'a plot beside HDF5' 0 sh -c 'cd "$2" && "$1" plot alike.yaml -y half -o half' sh "$program" "$dir"
+    holds 'no plot' [ -s "$dir/half.svg" ]
+fi
+grep -v r.csv "$dir/alike.yaml" >"$dir/none.yaml"
+expect 'rows of no CSV file' 2 "$program" run "$dir/none.yaml" -o "$dir/none" --print -
+says 'no CSV file of channels'
+expect 'a report of HDF5 alone' 0 "$program" report "$dir/none.yaml" -o "$dir/page"
+expect 'a plot of HDF5 alone' 2 "$program" plot "$dir/none.yaml"
+says 'nothing to run and draw'
+expect 'a report of what is not CSV' 1 sh -c 'cp "$2/alike/r.h5" "$2/not.csv" && "$1" report "$2/not.csv"' sh "$program" "$dir"
+is "$(wc -l <"$dir/err")" 1
+says 'is HDF5, must be CSV'
+
 cat >"$dir/plain.py" <<'END_OF_PYTHON'
 import csv, sys, h5py
 checks = 0
@@ -77,6 +109,9 @@ grid = h5py.File(sys.argv[1] + "/h/grains_00002.vtkhdf")["VTKHDF"]
 assert grid.attrs["Type"] == b"UnstructuredGrid" and grid.attrs["Version"].tolist() == [1, 0]
 assert grid["Points"].shape == (100, 3) and grid["PointData/radius"].shape == (100,)
 assert checks > 1000, checks
+alike = h5py.File(sys.argv[1] + "/../alike/r.h5")["/"]
+wanted = {"a:b.velocity.x": 1, "a:b.velocity.x:": 2, "h:t": 2.5, "h:t:": 5, "h:t::": 7.5}
+assert len(alike) == 10 and all(abs(alike[c][1] - wanted[c]) < 1e-12 for c in wanted), list(alike)
 END_OF_PYTHON
 cat >"$dir/pictures.py" <<'END_OF_PYTHON'
 import csv, json, sys, vtk
@@ -163,9 +198,16 @@ bad "{file: a.h5}" "{file: a.h5.csv}" 'written by two outputs'
 bad "{file: a.h5}" "{plot: a.svg, from: a.h5}" 'is HDF5: plots are made of CSV files'
 expect 'a plot of HDF5' 1 "$program" plot "$run/r.h5"
 says 'r.h5: is HDF5, must be CSV'
-mkdir -p "$dir/full/p.h5"
-expect 'a folder in the place of a file' 1 "$program" run "$dir/all.yaml" -o "$dir/full"
-says "full/p.h5: cannot be written: Is a directory; its rows are in $dir/full/p.h5.csv"
+for file in p.h5 cone.vtp; do
+    mkdir -p "$dir/taken/$file"
+    expect "a folder in the place of $file" 1 "$program" run "$dir/all.yaml" -o "$dir/taken"
+    says "taken/$file: cannot be written: Is a directory"
+    holds 'it was run' [ -z "$(find "$dir/taken" -name '*.csv*')" ]
+    rmdir "$dir/taken/$file"
+done
+mkdir -p "$dir/full/p.h5.partial"
+expect 'a folder in the place of a file, later' 1 "$program" run "$dir/all.yaml" -o "$dir/full"
+says "full/p.h5: cannot be written: File exists; its rows are in $dir/full/p.h5.csv"
 is "$(wc -l <"$dir/full/p.h5.csv")" 301
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 40; exec "$@"' sh "$program" run "$dir/all.yaml" -o "$dir/limit"
 says 'File too large'

@@ -27,6 +27,10 @@ json channels 0 'len(d["channels"]) > 10' channels "$model" --json
 json evaluate 0 'd["status"] == "done" and d["equations"][0]["equation"] == "cd_x" and d["equations"][-1]["bodies"][0]["phi_pi"] is None' evaluate "$model" --json
 json explain 0 'd["found"][0]["keys"][0]["key"] == "mass"' explain body.mass --json
 json 'all of explain' 0 'len(d["found"]) > 20' explain --json
+json 'an unknown name' 2 'd["status"] == "error" and "is called `zzz`" in d["message"]' explain --json zzz
+for command in help explain; do
+    json "$command --man" 2 '"for --man or for --json, not for both" in d["message"]' "$command" --man --json
+done
 json help 0 'd["commands"][0]["options"][-1]["name"] == "--help"' help run --json
 json 'all of help' 0 'len(d["commands"]) >= 20' --json help
 json new 0 'd["files"] == ["new.yaml"]' new new.yaml --json
@@ -40,9 +44,26 @@ json write 0 'd["files"] == ["whole.yaml"]' write "$model" -o whole.yaml --json
 json sketch 0 'd["files"] == ["s.svg"]' sketch "$model" -o s.svg --json
 json 'two things for one output' 2 '"standard output is for one of the two" in d["message"]' \
     write "$model" --json
+cat >warned.yaml <<'END'
+se3d: 1
+parameters: {unused: 1}
+bodies: [{name: ball, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]}]
+analysis: {type: dynamics, duration: 0.01}
+END
+json 'a warning' 0 'd["status"] == "done" and d["message"] == "" and d["warnings"]' check warned.yaml --json
+json 'a strict check' 1 'd["status"] == "failed" and "--strict: 2 warnings, must be none" in d["message"]' \
+    check --strict warned.yaml --json
 printf 'se3d: 1\nbodys: []\n' >wrong.yaml
 json 'a mistake' 2 'd["mistakes"][0]["line"] == 2' view wrong.yaml --json
 json 'an option' 2 '"unknown option `--loud`" in d["message"]' plot --json --loud
+json 'an option before' 2 '"unknown option `--bogus`" in d["message"]' explain --bogus --json
+json 'two operands' 2 '"unexpected argument `b`" in d["message"]' run m.yaml -o a b --json
+json 'two operands, lines' 2 '"unexpected argument `b`" in d["message"]' run m.yaml -o a b --json-lines
+json 'no command' 2 '"which command?" in d["message"]' --json
+json 'no such option' 2 '"unknown command `--bogus`" in d["message"]' --bogus --json
+json completion 2 '"unknown option `--json`" in d["message"]' completion bash --json
+expect 'a file of that name' 2 "$program" check -- one --json
+holds 'JSON that nobody asked for' [ ! -s "$dir/out" ]
 json 'a command' 2 '"did you mean `check`?" in d["message"]' chekc --json
 json 'a file' 1 'd["command"] == "plot" and "missing.csv" in d["message"]' plot missing.csv --json
 json study 2 '"no `study`" in d["message"]' study "$model" --json
@@ -93,6 +114,10 @@ has "$dir/out" "${escape}1;31mwrong.yaml:2:1${escape}0m: "
 TERM=xterm NO_COLOR=1 expect 'a terminal without' 0 python3 terminal.py "$program" check wrong.yaml
 holds 'colours although NO_COLOR is set' sh -c '! grep -qF "$1" "$2"' sh "$escape" "$dir/out"
 has "$dir/out" 'wrong.yaml:2:1: '
+for kind in -uTERM TERM= TERM=dumb; do
+    expect "a terminal, $kind" 0 env -uNO_COLOR "$kind" python3 terminal.py "$program" check wrong.yaml
+    holds 'colours on a terminal that may have none' sh -c '! grep -qF "$1" "$2"' sh "$escape" "$dir/out"
+done
 TERM=xterm NO_COLOR='' expect 'a file' 2 "$program" check wrong.yaml
 holds 'colours in a file' sh -c '! grep -qF "$1" "$2"' sh "$escape" "$dir/err"
 finish

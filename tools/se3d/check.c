@@ -34,9 +34,13 @@ static void print_text(const se3d_model *model, const se3d_check_summary *s,
 
 static void print_json(const warnings *warned, const se3d_check_summary *s, const se3d_check *check)
 {
+    char strict[WARNING_SIZE];
+    const char *why = warnings_get_verdict(warned, strict);
     outcome_tell();
-    fputs("{\"status\": \"done\", \"model\": ", stdout);
+    printf("{\"status\": \"%s\", \"model\": ", s->inconsistent > 0 || why[0] ? "failed" : "done");
     json_put_text(warned->o->model);
+    fputs(", \"message\": ", stdout);
+    json_put_text(s->inconsistent > 0 ? "constraints contradict each other" : why);
     printf(", \"bodies\": %zu, \"equations\": %zu, \"rank\": %zu, \"redundant\": %zu, "
            "\"inconsistent\": %zu, \"freedoms\": %zu, \"gruebler\": %" PRId64 ", \"messages\": [",
            s->bodies, s->equations, s->rank, s->redundant, s->inconsistent, s->freedoms,

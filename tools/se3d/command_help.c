@@ -173,6 +173,9 @@ static int command_help(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
+    if (o.man && o.json) {
+        return options_refuse_both(&help_entry, "--man");
+    }
     const command_entry *c = o.model ? command_find(o.model) : NULL;
     if (o.model && !c) {
         return command_report_unknown(o.model);

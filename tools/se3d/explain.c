@@ -86,11 +86,17 @@ static void json_put_object(const se3di_object *object, const char *type, const 
     fputs("]}", stdout);
 }
 
+/* Before what is found as number `place`. */
+static void json_put_separator(size_t place)
+{
+    fputs(place > 0 ? ", " : "{\"found\": [", stdout);
+}
+
 static void show_object(const options *o, size_t place, const se3di_object *object,
                         const char *type)
 {
     if (o->json) {
-        fputs(place > 0 ? ", " : "", stdout);
+        json_put_separator(place);
         json_put_object(object, type, NULL);
     } else {
         fputs(place > 0 ? "\n" : "", stdout);
@@ -102,7 +108,7 @@ static void show_key(const options *o, size_t place, const se3di_object *object,
                      const se3di_key *row)
 {
     if (o->json) {
-        fputs(place > 0 ? ", " : "", stdout);
+        json_put_separator(place);
         json_put_object(object, NULL, row);
     } else {
         printf("%s%s.%s\n", place > 0 ? "\n" : "", object->name, row->key);
@@ -200,15 +206,17 @@ static int command_explain(int count, char *const *words)
     if (code != EXIT_DONE || o.help) {
         return code;
     }
+    if (o.man && o.json) {
+        return options_refuse_both(&explain_entry, "--man");
+    }
     if (o.man) {
         manual_print_model();
-    } else if (!o.json) {
-        code = show(&o);
-    } else {
+        return EXIT_DONE;
+    }
+    code = show(&o);
+    if (o.json && code == EXIT_DONE) {
         outcome_tell();
-        fputs("{\"found\": [", stdout);
-        code = show(&o);
-        printf("], \"status\": \"%s\"}\n", code == EXIT_DONE ? "done" : "error");
+        fputs("], \"status\": \"done\"}\n", stdout);
     }
     return code;
 }

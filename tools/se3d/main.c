@@ -28,22 +28,23 @@ int command_report_unknown(const char *name)
     return EXIT_USAGE;
 }
 
+/* A mistake in the words may stand before the one that asks for JSON. */
+static int end(const char *command, int code, int count, char *const *words)
+{
+    for (int k = 0; code == EXIT_USAGE && k < count && strcmp(words[k], "--") != 0; ++k) {
+        if (strcmp(words[k], "--json") == 0 || strcmp(words[k], "--json-lines") == 0) {
+            outcome_want_json();
+        }
+    }
+    outcome_end(command, code);
+    return code;
+}
+
 static int run_command(int count, char **words)
 {
     const command_entry *c = command_find(words[0]);
-    if (!c) {
-        for (int k = 1; k < count; ++k) {
-            if (strcmp(words[k], "--json") == 0) {
-                outcome_want_json();
-            }
-        }
-        const int code = command_report_unknown(words[0]);
-        outcome_end(words[0], code);
-        return code;
-    }
-    const int code = c->run(count - 1, words + 1);
-    outcome_end(c->name, code);
-    return code;
+    const int code = c ? c->run(count - 1, words + 1) : command_report_unknown(words[0]);
+    return end(words[0], code, count, words);
 }
 
 /* Options that all commands have may stand before the command: they go behind its name. */
@@ -64,10 +65,10 @@ static int dispatch(int count, char **words)
             return EXIT_DONE;
         }
         if (first < count) {
-            return command_report_unknown(word);
+            return end(word, command_report_unknown(word), count, words);
         }
         complain("se3d: which command? See `se3d help`\n");
-        return EXIT_USAGE;
+        return end("", EXIT_USAGE, count, words);
     }
     char *name = words[first];
     memmove(words + 1, words, (size_t)first * sizeof *words);

@@ -282,6 +282,12 @@ int options_check_file(const options *o, const command_entry *c)
     return EXIT_USAGE;
 }
 
+int options_refuse_both(const command_entry *c, const char *name)
+{
+    complain("se3d %s: standard output is for %s or for --json, not for both\n", c->name, name);
+    return EXIT_USAGE;
+}
+
 se3d_model_options options_get_model(const options *o)
 {
     se3d_model_options how = se3d_model_options_default();

@@ -74,6 +74,8 @@ void options_print_of(const command_entry *c, int version);
 
 /* Not standard input. @return EXIT_DONE, or EXIT_USAGE after a message. */
 int options_check_file(const options *o, const command_entry *c);
+/* --json and another option, each of which asks for standard output. @return EXIT_USAGE */
+int options_refuse_both(const command_entry *c, const char *name);
 /* The model options that the command line asks for. */
 se3d_model_options options_get_model(const options *o);
 

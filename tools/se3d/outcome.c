@@ -3,9 +3,6 @@
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #include <unistd.h>
-#else
-#include <io.h>
-#define isatty _isatty
 #endif
 #include <stdarg.h>
 #include <stdlib.h>
@@ -21,15 +18,21 @@ static struct {
     char message[MESSAGE_SIZE];
     char *files[FILES_MAX];
     size_t count; /* of files */
+    size_t complaints;
     int wants_json, is_told;
 } outcome;
 
 /* https://no-color.org: any value that is not empty. */
 static int has_colours(void)
 {
+#if defined(_WIN32)
+    return 0; /* its consoles show the codes, unless they are told not to */
+#else
     const char *never = getenv("NO_COLOR");
     const char *terminal = getenv("TERM");
-    return isatty(STDERR) && !(never && *never) && !(terminal && strcmp(terminal, "dumb") == 0);
+    return isatty(STDERR) && !(never && *never) && terminal && *terminal &&
+           strcmp(terminal, "dumb") != 0;
+#endif
 }
 
 const char *colour_get(colour which)
@@ -80,8 +83,14 @@ void complain(const char *format, ...)
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     put_lines(text, COLOUR_ERROR);
+    ++outcome.complaints;
     const size_t used = strlen(outcome.message);
     snprintf(outcome.message + used, sizeof outcome.message - used, "%s", text);
+}
+
+size_t outcome_count_complaints(void)
+{
+    return outcome.complaints;
 }
 
 void warn(const char *format, ...)

@@ -13,6 +13,8 @@ __attribute__((format(printf, 1, 2)))
 #endif
 void
 complain(const char *format, ...);
+/* How many there were. */
+size_t outcome_count_complaints(void);
 /* The same of what is no failure; `warning:` in it stands out. It is not a part of the outcome. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 1, 2)))
@@ -32,7 +34,8 @@ void outcome_tell(void);
 /* Print it, if it is wanted and was not yet. */
 void outcome_end(const char *command, int code);
 
-/* What stands out on standard error: "" where that is no terminal, or NO_COLOR is set. */
+/* What stands out on standard error: "" where that is no terminal, NO_COLOR is set, or TERM names
+ * none that has colours. */
 typedef enum colour { COLOUR_NONE, COLOUR_ERROR, COLOUR_WARNING, COLOUR_MARK, COLOUR_NEXT } colour;
 const char *colour_get(colour which);
 

@@ -15,12 +15,13 @@ const char *print_rows_find(const options *o, const se3d_model *model)
     for (size_t k = 0; k < se3d_model_count_outputs(model); ++k) {
         se3d_model_output output;
         se3d_model_get_output(model, k, &output);
-        if (is_any ? output.channel_count > 0 : strcmp(output.file, o->print) == 0) {
+        if (is_any ? output.channel_count > 0 && !se3di_file_is_hdf5(output.file)
+                   : strcmp(output.file, o->print) == 0) {
             return output.file;
         }
     }
     complain("se3d run: --print %s: the model's `output` has no %s\n", o->print,
-             is_any ? "file of channels" : "such file");
+             is_any ? "CSV file of channels" : "such file");
     return NULL;
 }
 

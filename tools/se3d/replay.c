@@ -102,8 +102,7 @@ static int command_replay(int count, char *const *words)
     options o;
     const int code = options_read(&o, &replay_entry, count, words);
     if (code == EXIT_DONE && !o.help && o.list && o.json) {
-        complain("se3d replay: standard output is for --list or for --json, not for both\n");
-        return EXIT_USAGE;
+        return options_refuse_both(&replay_entry, "--list");
     }
     return code != EXIT_DONE || o.help ? code : replay(&o);
 }

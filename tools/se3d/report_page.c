@@ -229,8 +229,8 @@ static void make_brief(const char *column, char *brief, size_t size)
     char quantity[400];
     table_get_quantity(column, quantity, sizeof quantity);
     const size_t length = strlen(quantity);
-    const char *at = column;
-    while ((at = strstr(at, quantity)) != NULL &&
+    const char *at = length > 0 ? column : NULL;
+    while (at && (at = strstr(at, quantity)) != NULL &&
            !(at > column && at[-1] == '.' && (at[length] == '.' || !at[length]))) {
         ++at;
     }
@@ -534,7 +534,7 @@ static int put_model(report *r, se3d_model *model, const char *path, const char 
     for (size_t k = 0; k < se3d_model_count_outputs(model) && good; ++k) {
         se3d_model_output output;
         se3d_model_get_output(model, k, &output);
-        if (output.channel_count > 0) {
+        if (output.channel_count > 0 && !se3di_file_is_hdf5(output.file)) {
             good = put_results(r, model, folder, below, output.file);
         }
     }
@@ -574,6 +574,15 @@ static void choose_below(report *r, size_t index, const char *name)
     }
 }
 
+/* A part of the page is missing: the reason, unless complaints beyond `told` say it. */
+static int fail_page(size_t told)
+{
+    if (outcome_count_complaints() == told) {
+        complain("se3d report: out of memory, or of room for temporary files\n");
+    }
+    return EXIT_FAILED;
+}
+
 /* Run a model into its folder and put it on the page. */
 static int report_model(report *r, size_t index)
 {
@@ -595,9 +604,9 @@ static int report_model(report *r, size_t index)
         code = run_one(r, path, folder);
         code = code == EXIT_DONE ? run_study(r, path, model, folder, &study) : code;
     }
+    const size_t told = outcome_count_complaints();
     if (code == EXIT_DONE && !put_model(r, model, path, folder, below, study)) {
-        complain("se3d report: out of memory, or of room for temporary files\n");
-        code = EXIT_FAILED;
+        code = fail_page(told);
     }
     se3d_model_destroy(model);
     return code;
@@ -617,7 +626,8 @@ static int report_file(report *r, const char *path)
     if (path_get_folder(path, folder, sizeof folder) && strcmp(folder, r->place) == 0) {
         put_link(r->page, path_get_name(path));
     }
-    return put_file(r, NULL, path) ? EXIT_DONE : EXIT_FAILED;
+    const size_t told = outcome_count_complaints();
+    return put_file(r, NULL, path) ? EXIT_DONE : fail_page(told);
 }
 
 /* ---- the command -----------------------------------------------------------------------------*/
@@ -791,7 +801,7 @@ const command_entry report_entry = {
     .files = "yaml yml json csv",
     .summary = "run models and write one page of curves and tables",
     .text = "Runs the models and writes report.html: of each a sketch, its parameters, and for "
-            "every file of results a table and curves, one frame for each quantity. Curves of "
+            "every CSV file of results a table and curves, one frame for each quantity. Curves of "
             "kinematics are drawn over their first channel (the travel of a wheel, the angle of "
             "the hand wheel), the others over time. The CSV files lie beside the page, which "
             "needs no network.\n\n"

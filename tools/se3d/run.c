@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "interrupt.h"
+#include "io/base/file.h"
 #include "notes.h"
 #include "options.h"
 #include "outcome.h"
@@ -382,11 +383,13 @@ typedef struct told {
 static void print_json(const options *o, const se3d_model *model, const se3d_run *run,
                        const char *message, const told *n)
 {
+    char strict[WARNING_SIZE];
+    const char *why = message[0] ? message : warnings_get_verdict(n->warnings, strict);
     outcome_tell();
-    printf("{\"status\": \"%s\", \"model\": ", message[0] ? "failed" : "done");
+    printf("{\"status\": \"%s\", \"model\": ", why[0] ? "failed" : "done");
     json_put_text(o->model);
     fputs(", \"message\": ", stdout);
-    json_put_text(message);
+    json_put_text(why);
     fputs(", \"analyses\": [", stdout);
     for (size_t k = 0; k < se3d_run_count_analyses(run); ++k) {
         se3d_run_analysis analysis;
@@ -595,13 +598,13 @@ static int run_model(const warnings *warned, se3d_model *model, const char *pict
     return code;
 }
 
-/* The first results that have channels. */
+/* The first CSV file of results that has channels. */
 static int find_csv(const options *o, const se3d_model *model, char *csv, size_t size)
 {
     for (size_t k = 0; k < se3d_model_count_outputs(model); ++k) {
         se3d_model_output output;
         se3d_model_get_output(model, k, &output);
-        if (output.channel_count > 0) {
+        if (output.channel_count > 0 && !se3di_file_is_hdf5(output.file)) {
             char *folder = results_folder(o, model);
             const int length = folder ? snprintf(csv, size, "%s/%s", folder, output.file) : -1;
             free(folder);
@@ -719,8 +722,7 @@ static int command_run(int count, char *const *words)
         return EXIT_USAGE;
     }
     if (o.print && o.json) {
-        complain("se3d run: standard output is for --print or for --json, not for both\n");
-        return EXIT_USAGE;
+        return options_refuse_both(&run_entry, "--print");
     }
     o.quiet = o.quiet || o.print; /* of what is not an error or a warning */
     warnings warned = {.o = &o};
@@ -768,8 +770,8 @@ const command_entry run_entry = {
             {"--every", NULL, "T", "time between rows of the first of `output` [s]"},
             {"--threads", NULL, "N", "of particles, as contact.threads; results stay the same"},
             {"--print", NULL, "FILE",
-             "print the rows of this file of `output` (-: of the first with channels) instead of "
-             "the summary"},
+             "print the rows of this file of `output` (-: of the first CSV file with channels) "
+             "instead of the summary"},
             {"--checkpoint", NULL, "T",
              "every T seconds of the clock, write all that is needed to go on to run.checkpoint, "
              "beside the results; 0: at every row"},

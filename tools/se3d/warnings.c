@@ -56,14 +56,24 @@ void warnings_conclude(const warnings *w)
     }
 }
 
-int warnings_forbid(const warnings *w, int code)
+const char *warnings_get_verdict(const warnings *w, char text[WARNING_SIZE])
 {
     const size_t count = w->count + w->more;
-    if (!w->o->strict || count == 0 || code != EXIT_DONE) {
+    text[0] = '\0';
+    if (w->o->strict && count > 0) {
+        snprintf(text, WARNING_SIZE, "--strict: %zu warning%s, must be none", count,
+                 count == 1 ? "" : "s");
+    }
+    return text;
+}
+
+int warnings_forbid(const warnings *w, int code)
+{
+    char text[WARNING_SIZE];
+    if (code != EXIT_DONE || !*warnings_get_verdict(w, text)) {
         return code;
     }
-    complain("%s: --strict: %zu warning%s, must be none\n", w->o->model, count,
-             count == 1 ? "" : "s");
+    complain("%s: %s\n", w->o->model, text);
     return EXIT_FAILED;
 }
 

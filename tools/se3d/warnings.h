@@ -19,6 +19,9 @@ typedef struct warnings {
 void warnings_add(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message);
 /* After the run, how many were not shown. */
 void warnings_conclude(const warnings *w);
+/* What --strict says of them, without the name of the model: "" if there is nothing to say.
+ * @return text */
+const char *warnings_get_verdict(const warnings *w, char text[WARNING_SIZE]);
 /* With --strict, a command that would end well fails if anything was warned of, after a message.
  * @return the exit code */
 int warnings_forbid(const warnings *w, int code);

@@ -428,6 +428,12 @@ bool se3di_file_join(const char *folder, const char *file, char *path, size_t si
     return true;
 }
 
+bool se3di_file_is_hdf5(const char *name)
+{
+    const char *ending = strrchr(name, '.');
+    return ending && (strcmp(ending, ".h5") == 0 || strcmp(ending, ".hdf5") == 0);
+}
+
 bool se3di_file_find_folder(const char *folder, char *path, size_t size)
 {
     char *whole = find_whole(folder[0] ? folder : ".");

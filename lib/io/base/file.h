@@ -32,6 +32,8 @@ bool se3di_file_find_folder(const char *folder, char *path, size_t size);
 bool se3di_file_seek(FILE *file, uint64_t place);
 /* Cut an open file to its first `size` bytes and go on there. */
 bool se3di_file_cut(FILE *file, uint64_t size);
+/* Whether results of this name are HDF5. */
+bool se3di_file_is_hdf5(const char *name);
 /* Why a file must not take this name: EISDIR, EINVAL; 0: it may. A link is replaced, not what it
  * leads to. */
 int se3di_file_forbid(const char *path);

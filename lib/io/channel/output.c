@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/base/file.h"
 #include "io/base/sized.h"
 #include "io/channel/channel.h"
 #include "io/channel/sample.h"
@@ -79,7 +80,7 @@ se3di_output_format se3di_output_get_format(const se3di_output_entry *output)
     if (!ending || output->vtk) {
         return SE3DI_OUTPUT_CSV;
     }
-    if (strcmp(ending, ".h5") == 0 || strcmp(ending, ".hdf5") == 0) {
+    if (se3di_file_is_hdf5(output->file)) {
         return SE3DI_OUTPUT_HDF5;
     }
     const bool vtk = strcmp(ending, ".vtp") == 0 || strcmp(ending, ".vti") == 0 ||
