@@ -40,9 +40,7 @@ se3d_status se3di_adaptive_blame(const se3di_integration *integration, double t,
     return cause;
 }
 
-/* Whether a shorter step may do what this one did not; a callback that returns a failure ends the
- * run, one that writes a number that is not finite asks for a shorter step. */
-static int may_shrink(se3d_status status)
+int se3di_adaptive_may_shrink(se3d_status status)
 {
     return status != SE3D_ERR_INTERRUPTED && status != SE3D_ERR_NO_MEMORY &&
            status != SE3D_ERR_CALLBACK;
@@ -69,7 +67,7 @@ static se3d_status try_steps(se3di_adaptive *step, double next)
         double error;
         SE3DI_TRY(se3di_equations_try_step(equations, begin));
         const se3d_status status = attempt(step, h, &error);
-        if (status < 0 ? !may_shrink(status) : error <= 1.0) {
+        if (status < 0 ? !se3di_adaptive_may_shrink(status) : error <= 1.0) {
             return status;
         }
         ++equations->counters.rejected;

@@ -45,6 +45,10 @@ struct se3di_adaptive {
  * (integrator/kink_step.h). */
 se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end);
 
+/* Whether a shorter step may do what one that failed did not; a callback that returns a failure
+ * ends the run, one that writes a number that is not finite asks for a shorter step. */
+int se3di_adaptive_may_shrink(se3d_status status);
+
 /* Whether the next step may not go past the end of the run: what acts has changed and may soon do
  * so again; or shapes touch or are near, where forces and accelerations follow from what contacts
  * remember of the end of a step, and cannot be told within it. */

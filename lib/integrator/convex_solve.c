@@ -649,6 +649,9 @@ static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
  * 1996), but no less than it needs. */
 static double share_of(double rest, double before)
 {
+    if (!(rest > 0.0 && before > 0.0)) { /* a host may trap divisions by zero */
+        return SHARE;
+    }
     const double ratio = before < HUGE_VAL ? rest / before : 1.0;
     return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }

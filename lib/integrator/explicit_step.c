@@ -77,14 +77,18 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
     if (!may_be_wide(m, *error)) {
         return SE3D_OK;
     }
-    const double narrow = *error;
+    const double narrow = *error, fraction = m->step.fraction;
     m->past->wide = 1.0;
     const se3d_status status = attempt_once(m, h, error);
     if (status >= 0 && *error < WIDE_PART * narrow) {
         return status;
     }
     m->past->wide = 0.0;
+    if (status < 0 && !se3di_adaptive_may_shrink(status)) {
+        return status;
+    }
     m->past->narrow += 1.0;
+    m->step.fraction = fraction;
     *error = narrow;
     return SE3D_OK;
 }
@@ -354,7 +358,13 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     if (m->step.integration->repeat) {
         return repeat(m);
     }
-    SE3DI_TRY(se3di_adaptive_advance(&m->step, t_end));
+    const double wide = m->past->wide, narrow = m->past->narrow;
+    const se3d_status status = se3di_adaptive_advance(&m->step, t_end);
+    if (status < 0) { /* nothing is learnt from attempts that end the run */
+        m->past->wide = wide;
+        m->past->narrow = narrow;
+        return status;
+    }
     return se3di_step_list_note(m->step.integration, m->past->at.time);
 }
 

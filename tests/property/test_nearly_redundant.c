@@ -427,6 +427,50 @@ static void steps_of_bennetts_linkage_follow_the_motion(void)
     text_model_close(&truth);
 }
 
+static long calls, fails_at;
+
+static se3d_status push(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
+                        double *K, double *D)
+{
+    (void)ctx, (void)t, (void)motion, (void)K, (void)D;
+    wrench[6] = 0.1;
+    return ++calls == fails_at ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
+}
+
+static se3d_status run_pushed(int32_t formulation)
+{
+    text_model m = open_bennett(0.0);
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_force_callback_def force = se3d_force_callback_def_default();
+    se3d_force made;
+    CHECK(!se3d_system_get_ground(m.system, &force.body_i));
+    CHECK(!se3d_body_find(m.system, "b2", &force.body_j));
+    force.callback = push;
+    CHECK(!se3d_force_create_callback(m.system, &force, &made));
+    def.formulation = formulation;
+    def.method = SE3D_METHOD_DOP853;
+    se3d_solver_destroy(m.solver);
+    CHECK(!se3d_solver_create(m.system, &def, &m.solver));
+    calls = 0;
+    const se3d_status status = se3d_solver_run(m.solver, 0.5);
+    text_model_close(&m);
+    return status;
+}
+
+/* Also in a step that is tried again with the filter of rows that are redundant by geometry. */
+static void no_failure_of_a_callback_is_lost(void)
+{
+    for (int32_t formulation = 0; formulation < 3; ++formulation) {
+        fails_at = 0;
+        CHECK(run_pushed(formulation) == SE3D_INFO_REDUNDANT);
+        const long count = calls;
+        for (long n = 1; n <= count; n += count / 150 + 1) {
+            fails_at = n;
+            CHECK(run_pushed(formulation) == SE3D_ERR_CALLBACK);
+        }
+    }
+}
+
 /* A slider-crank in the plane y = 0 whose slide is 1e-6 m beside it, all joints 3-D. */
 static void a_slide_beside_the_plane_is_met(void)
 {
@@ -784,6 +828,7 @@ int main(void)
     RUN(cranks_of_nearly_one_length_carry_a_rod);
     RUN(bennetts_linkage_of_five_digits_moves);
     RUN(steps_of_bennetts_linkage_follow_the_motion);
+    RUN(no_failure_of_a_callback_is_lost);
     RUN(a_slide_beside_the_plane_is_met);
     RUN(a_door_on_two_hinges_opens);
     RUN(rows_by_callback_are_left_out_as_others_are);
