@@ -246,7 +246,7 @@ static se3d_status follow_driven(se3di_run *run, se3di_run *from)
     SE3DI_TRY(follow_accelerations(equations, &from->equations));
     SE3DI_TRY(follow_multipliers(equations, &from->equations));
     run->model->settled = SE3DI_SETTLED;
-    run->model->work_valid = -1;
+    run->model->work_valid = SE3DI_WORK_UNKNOWN;
     for (int k = 0; k < 3; ++k) { /* they are no function of the state alone */
         run->model->work[k] = equations->audits ? (double)NAN : 0.0;
     }

@@ -481,7 +481,7 @@ static se3d_status run_kinematics(se3di_run *run, double t_end)
         SE3DI_TRY(se3di_work_accept(run->model, 0.0));
     } else {
         memset(run->model->work, 0, sizeof run->model->work);
-        run->model->work_valid = -1;
+        run->model->work_valid = SE3DI_WORK_UNKNOWN;
     }
     se3di_kink kink;
     const double step = run->integration.settings.step;

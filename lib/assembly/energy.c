@@ -148,7 +148,7 @@ void se3di_work_take(se3di_model *model, double h, const double power[3])
 se3d_status se3di_work_fed(const se3di_model *model, double *fed)
 {
     double stored = 0.0;
-    if (model->work_valid > 0) {
+    if (se3di_has_work(model)) {
         SE3DI_TRY(se3di_callbacks_energy(model, model->time, &stored));
     }
     *fed = model->work[1] + stored;
@@ -157,5 +157,5 @@ se3d_status se3di_work_fed(const se3di_model *model, double *fed)
 
 double se3di_work_lost(const se3di_model *model, double springs)
 {
-    return model->work_valid > 0 ? model->work[0] - springs : model->work[0];
+    return se3di_has_work(model) ? model->work[0] - springs : model->work[0];
 }

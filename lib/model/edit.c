@@ -78,7 +78,7 @@ void se3di_model_touch_state(se3di_model *model)
     model->history_tag = 0;
     ++model->history_stamp;
     ++model->poses_version;
-    model->work_valid = 0;
+    model->work_valid = se3di_has_work(model) ? SE3DI_WORK_LEFT : SE3DI_WORK_NONE;
     if (!model->remembers) {
         return;
     }

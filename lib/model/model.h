@@ -222,12 +222,19 @@ typedef struct se3di_force {
 
 enum { SE3DI_SETTLED = 1, SE3DI_LACKING = 2 }; /* bits of se3di_model.settled */
 
+/* Of se3di_model.work. */
+enum se3di_work_state {
+    SE3DI_WORK_LEFT = -2, /* what was done before the state was changed; the next run begins anew */
+    SE3DI_WORK_UNKNOWN = -1, /* the last analysis (kinematics) computes none */
+    SE3DI_WORK_NONE = 0,
+    SE3DI_WORK_VALID = 1 /* and `power` belongs to the present state */
+};
+
 typedef struct se3di_model {
     se3d_allocator allocator;
     double gravity[3];
     int32_t gravity_function[3]; /* of time, -1: `gravity` */
-    int32_t work_valid;          /* 1: `power` belongs to the present state; 0: void; -1: the last
-                                    analysis (kinematics) computes no works */
+    int32_t work_valid;          /* se3di_work_state */
     double time;
     double time_rest, rest_time; /* what rounding took from the steps of a caller's on the way to
                                     rest_time [s] */
@@ -322,6 +329,12 @@ typedef struct se3di_model {
     struct se3di_pending *pending; /* the same, see base/pending.h: accelerations, multipliers,
                                       powers and what the history has of them */
 } se3di_model;
+
+/* Of the present state, or of the one before it was changed. */
+static inline int se3di_has_work(const se3di_model *model)
+{
+    return model->work_valid == SE3DI_WORK_VALID || model->work_valid == SE3DI_WORK_LEFT;
+}
 
 /* The bodies of two shapes stay in the step under way. */
 static inline int se3di_contact_is_frozen(const se3di_model *model, uint32_t i, uint32_t j)

@@ -350,13 +350,13 @@ se3d_status se3d_system_get_work_sized(const se3d_system *system, se3d_work *wor
     if (!system || !work) {
         return SE3D_ERR_NULL;
     }
-    if (system->model.work_valid < 0) {
+    if (system->model.work_valid == SE3DI_WORK_UNKNOWN) {
         return SE3D_ERR_STATE;
     }
     double fed = 0.0;
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    const double springs = system->model.work_valid > 0
+    const double springs = se3di_has_work(&system->model)
                                ? se3di_contacts_potential(&system->model, system->model.time)
                                : 0.0;
     const double lost = se3di_work_lost(&system->model, springs);
