@@ -434,6 +434,7 @@ SE3D_API se3d_status se3d_force_get_callback(const se3d_system *system, se3d_for
 
 /* ---- Elements that are defined again, with other points, functions, bodies, by what the readers
  * above give: see se3d_body_set_def. What an element remembers (sticking, an impact) begins anew.
+ * As long as a function has a signal of an element its bodies cannot be other ones (IN_USE).
  * ---- */
 
 /* Define a tsda again. @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (also of an element of

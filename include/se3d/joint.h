@@ -158,10 +158,12 @@ SE3D_API se3d_status se3d_joint_create_perpendicular2(se3d_system *system,
 SE3D_API se3d_status se3d_joint_get_def(const se3d_system *system, se3d_constraint joint,
                                         se3d_joint_def *def);
 
-/* Define a joint again, of the same type: see se3d_body_set_def. Force elements on it follow;
- * drivers and couplers of it are made of what it was, and go first.
- * @return OK, NULL, STALE_HANDLE, IN_USE (by a driver or coupler), INVALID_ARGUMENT (also of no
- *         joint between two bodies).
+/* Define a joint again, of the same type: see se3d_body_set_def. Force elements on it follow its
+ * new frames; drivers and couplers of it are made of what it was, and go first. So do force
+ * elements on it and functions with a signal of it if its bodies are other ones. A joint that is
+ * broken stays so.
+ * @return OK, NULL, STALE_HANDLE, IN_USE (by a driver or coupler; on other bodies also by a force
+ *         element or a signal), INVALID_ARGUMENT (also of no joint between two bodies).
  * @since 0.1 */
 SE3D_API se3d_status se3d_joint_set_def(se3d_system *system, se3d_constraint joint,
                                         const se3d_joint_def *def);

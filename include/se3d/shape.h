@@ -167,13 +167,13 @@ SE3D_API se3d_status se3d_shape_get_body(const se3d_system *system, se3d_shape s
                                          se3d_body *body);
 
 /* Give a shape another material, or none.
- * @param[in] material  null: nothing touches it
+ * @param[in] material  null: nothing touches it, and bonds of particles to it end
  * @return OK, NULL, STALE_HANDLE.
  * @since 0.1 */
 SE3D_API se3d_status se3d_shape_set_material(se3d_system *system, se3d_shape shape,
                                              se3d_material material);
 
-/* Set what a shape may touch: see se3d_shape_def.
+/* Set what a shape may touch: see se3d_shape_def. Bonds of particles that it no longer touches end.
  * @param[in] group  the bits that it is in
  * @param[in] mask   the bits that it touches
  * @return OK, NULL, STALE_HANDLE.

@@ -472,8 +472,40 @@ static void place_terms(se3di_model *model, const se3di_draft *draft,
     }
 }
 
+/* A function has a signal of the element whose index is at `offset` in signals. */
+static int is_signalled(const se3di_model *model, size_t offset, uint32_t element)
+{
+    for (size_t k = 0; k < model->function_slots.count; ++k) {
+        for (uint32_t s = 0; s < model->functions[k].signal_count; ++s) {
+            uint32_t index;
+            memcpy(&index, (const char *)&model->functions[k].signals[s] + offset, sizeof index);
+            if (index == element) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* Force elements on a joint, and laws that it goes into, have copies of which bodies it joins. */
+static int is_tied(const se3di_model *model, uint32_t joint)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].joint == (int32_t)joint) {
+            return 1;
+        }
+    }
+    return is_signalled(model, offsetof(se3di_signal, joint), joint);
+}
+
+static int has_same_bodies(const se3di_constraint *a, const se3di_constraint *b)
+{
+    return a->body_count == b->body_count &&
+           memcmp(a->bodies, b->bodies, a->body_count * sizeof *a->bodies) == 0;
+}
+
 /* A constraint with as many rows and terms, and with a turn counter or without, takes the place of
- * another one. */
+ * another one. A joint that is defined again stays broken: definitions do not say it. */
 static se3d_status replace_constraint(se3di_model *model, uint32_t index, const se3di_draft *draft)
 {
     se3di_constraint *constraint = &model->constraints[index];
@@ -482,6 +514,11 @@ static se3d_status replace_constraint(se3di_model *model, uint32_t index, const 
         old.term_count != draft->term_count || (old.angle >= 0) != (draft->has_angle != 0)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    if (model->target > 0 && !has_same_bodies(&old, &draft->constraint) && is_tied(model, index)) {
+        return SE3D_ERR_IN_USE;
+    }
+    const int is_broken =
+        model->target > 0 && old.joints[0] < 0 && se3di_is_broken(&old, model->rows);
     count_constraint_users(model, &old, UINT32_MAX);
     *constraint = draft->constraint;
     constraint->name = old.name;
@@ -492,6 +529,7 @@ static se3d_status replace_constraint(se3di_model *model, uint32_t index, const 
     constraint->term_count = old.term_count;
     constraint->angle = old.angle;
     place_terms(model, draft, constraint);
+    leave_out(model, constraint, is_broken);
     count_constraint_users(model, constraint, 1);
     se3di_model_touch(model);
     return SE3D_OK;
@@ -643,6 +681,10 @@ static se3d_status replace_force(se3di_model *model, uint32_t index, const se3di
     if (old->type != force->type || old->type == SE3DI_FORCE_STATE ||
         old->owns_angle != force->owns_angle || !has_same_lags(old->tyre, force->tyre)) {
         return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    const int moves = old->body_i != own.body_i || old->body_j != own.body_j;
+    if (model->target > 0 && moves && is_signalled(model, offsetof(se3di_signal, force), index)) {
+        return SE3D_ERR_IN_USE;
     }
     SE3DI_TRY(se3di_force_own(&model->allocator, &own));
     if (own.tyre) {

@@ -48,6 +48,10 @@ static se3d_status take_relations(se3d_system *system, const se3d_wheel_def *def
     }
     if (!is_null(def->opposite.index1, def->opposite.generation)) {
         SE3DI_TRY(se3di_find_wheel(system, "opposite", def->opposite, &index));
+        if (index == replaced) {
+            return SE3DI_FAIL_OF(system, "opposite", SE3D_ERR_INVALID_ARGUMENT,
+                                 " is the wheel itself, must be another one");
+        }
         const int32_t across = system->model.wheels[index].opposite;
         if (across >= 0 && (uint32_t)across != replaced) {
             return SE3DI_FAIL_OF(system, "opposite", SE3D_ERR_INVALID_ARGUMENT,

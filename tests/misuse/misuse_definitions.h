@@ -126,6 +126,77 @@ static void check_definitions_of_bodies(arguments *a)
     CHECK(!se3d_constraint_destroy(a->system, made));
 }
 
+/* The joint cannot get other bodies, and nothing changes. */
+static void check_stays(arguments *a, se3d_constraint joint)
+{
+    se3d_joint_def def = se3d_joint_def_default(), still = se3d_joint_def_default();
+    CHECK(!se3d_joint_get_def(a->system, joint, &def));
+    CHECK(!se3d_joint_set_def(a->system, joint, &def));
+    const se3d_body own = def.body_j;
+    const uint64_t before = se3d_system_hash(a->system);
+    CHECK(!se3d_body_find(a->system, "another", &def.body_j));
+    CHECK(se3d_joint_set_def(a->system, joint, &def) == SE3D_ERR_IN_USE);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "on other bodies");
+    CHECK(se3d_system_hash(a->system) == before);
+    CHECK(!se3d_joint_get_def(a->system, joint, &still));
+    CHECK(memcmp(&still.body_j, &own, sizeof own) == 0);
+}
+
+static se3d_function make_law_of(arguments *a, const se3d_signal *signal)
+{
+    static const char *const names[2] = {"t", "x"};
+    se3d_function_def law = se3d_function_def_default();
+    se3d_function made;
+    law.expression = "2*x";
+    law.variables = names;
+    law.variable_count = 2;
+    law.signals = signal;
+    law.signal_count = 1;
+    CHECK(!se3d_function_create(a->system, &law, &made));
+    return made;
+}
+
+/* Of a joint, and of another force: what has copies of their bodies holds them. */
+static void check_tied_joint(arguments *a, se3d_constraint joint)
+{
+    se3d_body_def body = se3d_body_def_default();
+    se3d_rsda_def rsda = se3d_rsda_def_default();
+    se3d_joint_def def = se3d_joint_def_default();
+    se3d_signal signal = {.kind = SE3D_SIGNAL_JOINT_COORDINATE, .joint = joint};
+    se3d_body another;
+    se3d_force made;
+    se3d_function function;
+    body.name = "another";
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    CHECK(!se3d_body_create(a->system, &body, &another));
+    rsda.joint = joint;
+    CHECK(!se3d_force_create_rsda(a->system, &rsda, &made));
+    check_stays(a, joint);
+    CHECK(!se3d_force_destroy(a->system, made));
+    function = make_law_of(a, &signal);
+    check_stays(a, joint);
+    CHECK(!se3d_function_destroy(a->system, function));
+
+    se3d_tsda_def tsda = se3d_tsda_def_default(), moved;
+    CHECK(!se3d_force_get_tsda(a->system, a->use.force, &tsda));
+    moved = tsda;
+    moved.body_j = another;
+    CHECK(!se3d_force_set_tsda(a->system, a->use.force, &moved));
+    signal = (se3d_signal){.kind = SE3D_SIGNAL_FORCE_COORDINATE, .force = a->use.force};
+    function = make_law_of(a, &signal);
+    CHECK(se3d_force_set_tsda(a->system, a->use.force, &tsda) == SE3D_ERR_IN_USE);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "on other bodies");
+    CHECK(!se3d_function_destroy(a->system, function));
+    CHECK(!se3d_force_set_tsda(a->system, a->use.force, &tsda));
+
+    CHECK(!se3d_joint_get_def(a->system, joint, &def));
+    def.body_j = another;
+    CHECK(!se3d_joint_set_def(a->system, joint, &def));
+    def.body_j = a->use.body;
+    CHECK(!se3d_joint_set_def(a->system, joint, &def));
+    CHECK(!se3d_body_destroy(a->system, another)); /* nobody counts it any more */
+}
+
 /* The joint has drivers and couplers, or none. */
 static void check_joint_again(arguments *a)
 {
@@ -140,6 +211,7 @@ static void check_joint_again(arguments *a)
     CHECK(!se3d_joint_create_revolute(a->system, &def, &lone));
     DEFINED_AGAIN(joint_get_def, joint_set_def, se3d_constraint, se3d_joint_def, lone, break_force,
                   7.0);
+    check_tied_joint(a, lone);
     CHECK(!se3d_constraint_destroy(a->system, lone));
     CHECK(se3d_joint_set_def(a->system, a->use.driver, &def) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(a->system), "is a driver");
@@ -350,6 +422,11 @@ static void check_definitions_of_the_rest(arguments *a)
     MADE_AGAIN(state_get_def, state_create, se3d_state, se3d_state_def, u->state);
     DEFINITION(wheel_get_def, se3d_wheel, se3d_wheel_def, u->wheel, ((se3d_wheel){9, 9}));
     DEFINED_AGAIN(wheel_get_def, wheel_set_def, se3d_wheel, se3d_wheel_def, u->wheel, radius, 0.5);
+    se3d_wheel_def wheel = se3d_wheel_def_default();
+    CHECK(!se3d_wheel_get_def(a->system, u->wheel, &wheel));
+    wheel.opposite = u->wheel;
+    CHECK(se3d_wheel_set_def(a->system, u->wheel, &wheel) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "is the wheel itself");
     DEFINITION(road_get_def, se3d_road, se3d_road_def, u->road, ((se3d_road){9, 9}));
     CHECK(se3d_system_count_functions(NULL) == 0 && se3d_system_count_functions(a->system) > 0);
     CHECK(!se3d_system_get_function(a->system, 0, &gravity[0]) && gravity[0].index1 > 0);

@@ -670,6 +670,7 @@ static void a_joint_is_broken_and_mended_by_hand(void)
     se3d_body bob;
     double r[3];
     int32_t broken;
+    se3d_joint_def def = se3d_joint_def_default();
     world w = swing_up(0.0, &pin, &bob);
     use(&w, SE3D_METHOD_DOP853, SE3D_FORMULATION_JOINT, 0.0);
     MUST(&w, se3d_solver_run(w.solver, 0.2));
@@ -679,7 +680,14 @@ static void a_joint_is_broken_and_mended_by_hand(void)
     MUST(&w, se3d_solver_run(w.solver, 0.4));
     MUST(&w, se3d_body_get_position(w.system, bob, r));
     CHECK(hypot(r[0], r[1]) > 1.01 * LENGTH);
+    MUST(&w, se3d_joint_get_def(w.system, pin, &def));
+    MUST(&w, se3d_joint_set_def(w.system, pin, &def));
+    MUST(&w, se3d_joint_get_broken(w.system, pin, &broken));
+    CHECK(broken == 1);
     MUST(&w, se3d_joint_set_broken(w.system, pin, 0));
+    MUST(&w, se3d_joint_set_def(w.system, pin, &def));
+    MUST(&w, se3d_joint_get_broken(w.system, pin, &broken));
+    CHECK(broken == 0);
     MUST(&w, se3d_solver_run(w.solver, 0.6));
     MUST(&w, se3d_body_get_position(w.system, bob, r));
     CHECK_NEAR(hypot(r[0], r[1]), LENGTH, 1e-9);
