@@ -23,7 +23,7 @@ static void measure(const bench_request *request, se3di_equations *equations, be
         double begin = bench_clock();
         for (int k = 0; k < evaluations; ++k) {
             if (k % 12 == 0) { /* as in a step of dop853 */
-                se3di_state_begin_step(equations, 0.0);
+                se3di_state_begin_step(equations, 0.0, 0);
             }
             if (equations->tree) {
                 (void)motion->evaluate_at(equations, 0.0, y, derivative);
