@@ -16,14 +16,6 @@
 #define STEP   1e-6
 #define MOMENT 1e-5 /* [m, rad]: how far the bodies move for the rate of an energy */
 
-static void get_motion(const se3di_frame *frame, se3d_body_motion *motion)
-{
-    se3di_copy(frame->r, motion->r);
-    memcpy(motion->p, frame->p, sizeof motion->p);
-    se3di_copy(frame->v, motion->v);
-    se3di_copy(frame->w, motion->w);
-}
-
 /* Displace coordinate k (0..5 body i, 6..11 body j) or velocity k - 12. */
 static void displace(se3d_body_motion motion[2], int k, double by)
 {
@@ -90,8 +82,8 @@ static se3d_status call_energy(const se3di_force *force, double t, const se3d_bo
 static void get_motions(const se3di_model *model, const se3di_force *force,
                         se3d_body_motion motion[2])
 {
-    get_motion(&model->frames[force->body_i], &motion[0]);
-    get_motion(&model->frames[force->body_j], &motion[1]);
+    se3di_frame_get_motion(&model->frames[force->body_i], &motion[0]);
+    se3di_frame_get_motion(&model->frames[force->body_j], &motion[1]);
 }
 
 static se3d_status find_energy(const se3di_model *model, const se3di_force *force, double t,

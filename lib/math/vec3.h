@@ -132,7 +132,7 @@ static inline void se3di_perpendicular(const double axis[3], double out[3])
     se3di_scale(1.0 / se3di_norm(e), e, out);
 }
 
-/* The unit vector along a finite one of any size. Returns 0 if it is zero. */
+/* The unit vector along a finite one of any size; aliasing allowed. Returns 0 if it is zero. */
 static inline int se3di_unit(const double a[3], double out[3])
 {
     const double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));

@@ -464,6 +464,8 @@ void se3di_model_touch_contact(se3di_model *model);
 
 /* Complete a frame (A, pdot) from r, p, v, w. */
 void se3di_frame_update(se3di_frame *frame);
+/* What callbacks see of it. */
+void se3di_frame_get_motion(const se3di_frame *frame, se3d_body_motion *motion);
 
 /* Jet {f, f', f''} of a function at x (variable 0 is time); gradient [variable_count] or NULL. */
 se3d_status se3di_function_eval(const se3di_function *function, const double *x, double jet[3],

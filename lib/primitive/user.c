@@ -14,11 +14,8 @@ static void get_motion(const se3di_model *model, const se3di_constraint *constra
                        se3d_body_motion motion[SE3D_USER_BODIES_MAX])
 {
     for (uint32_t k = 0; k < se3di_user_body_count(constraint); ++k) {
-        const se3di_frame *frame = &model->frames[constraint->bodies[constraint->user_first + k]];
-        se3di_copy(frame->r, motion[k].r);
-        memcpy(motion[k].p, frame->p, sizeof motion[k].p);
-        se3di_copy(frame->v, motion[k].v);
-        se3di_copy(frame->w, motion[k].w);
+        const uint32_t body = constraint->bodies[constraint->user_first + k];
+        se3di_frame_get_motion(&model->frames[body], &motion[k]);
     }
 }
 

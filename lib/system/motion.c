@@ -4,18 +4,12 @@
 #include "math/vec3.h"
 #include "system/system_internal.h"
 
-#include <string.h>
-
 se3d_status se3d_body_get_motion(const se3d_system *system, se3d_body body,
                                  se3d_body_motion *motion)
 {
     uint32_t index;
     SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, body), SE3DI_HANDLE(body), motion, &index));
-    const se3di_frame *frame = &system->model.frames[index];
-    se3di_copy(frame->r, motion->r);
-    memcpy(motion->p, frame->p, sizeof motion->p);
-    se3di_copy(frame->v, motion->v);
-    se3di_copy(frame->w, motion->w);
+    se3di_frame_get_motion(&system->model.frames[index], motion);
     return SE3D_OK;
 }
 

@@ -8,36 +8,10 @@
 #include <string.h>
 
 #include "io/base/rotation.h"
+#include "math/vec3.h"
 
 #define SAME 1e-6 /* of the size of a clump: by how much spheres may be elsewhere */
 #define LINE 1e-7 /* of it: what is nearer to a line is on it */
-
-static void sub(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        out[k] = a[k] - b[k];
-    }
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    const double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                         a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, c, sizeof c);
-}
-
-static void make_unit(double v[3])
-{
-    const double length = sqrt(dot(v, v));
-    for (int k = 0; k < 3 && length > 0.0; ++k) {
-        v[k] /= length;
-    }
-}
 
 /* Which spheres of a template make its frame; 0: they are all in one place, or on a line. */
 typedef struct frame {
@@ -50,18 +24,18 @@ static frame choose(const se3d_clump_def *def, double size)
     double far = LINE * size, beside = LINE * size, axis[3];
     for (size_t k = 1; k < def->count; ++k) {
         double d[3];
-        sub(def->r + 3 * k, def->r, d);
-        if (sqrt(dot(d, d)) > far) {
-            far = sqrt(dot(d, d));
+        se3di_sub(def->r + 3 * k, def->r, d);
+        if (se3di_norm(d) > far) {
+            far = se3di_norm(d);
             f.second = k;
             memcpy(axis, d, sizeof axis);
         }
     }
     for (size_t k = 1; f.second > 0 && k < def->count; ++k) {
         double d[3], across[3];
-        sub(def->r + 3 * k, def->r, d);
-        cross(axis, d, across);
-        const double distance = sqrt(dot(across, across)) / far;
+        se3di_sub(def->r + 3 * k, def->r, d);
+        se3di_cross(axis, d, across);
+        const double distance = se3di_norm(across) / far;
         if (distance > beside) {
             beside = distance;
             f.third = k;
@@ -73,22 +47,18 @@ static frame choose(const se3d_clump_def *def, double size)
 /* Its axes as columns, from places of the spheres. */
 static void make_axes(const frame *f, const double *r, double A[9])
 {
-    double u[3] = {1.0, 0.0, 0.0}, v[3] = {0.0, 1.0, 0.0}, n[3];
+    double u[3] = {1.0, 0.0, 0.0}, v[3], n[3];
     if (f->second > 0) {
-        sub(r + 3 * f->second, r, u);
-        make_unit(u);
-        const int least = fabs(u[0]) <= fabs(u[1]) && fabs(u[0]) <= fabs(u[2]) ? 0
-                          : fabs(u[1]) <= fabs(u[2])                           ? 1
-                                                                               : 2;
-        memset(v, 0, sizeof v);
-        v[least] = 1.0;
-        if (f->third > 0) {
-            sub(r + 3 * f->third, r, v);
-        }
+        se3di_sub(r + 3 * f->second, r, u);
+        (void)se3di_unit(u, u);
     }
-    cross(u, v, n);
-    make_unit(n);
-    cross(n, u, v);
+    se3di_perpendicular(u, v);
+    if (f->third > 0) {
+        se3di_sub(r + 3 * f->third, r, v);
+    }
+    se3di_cross(u, v, n);
+    (void)se3di_unit(n, n);
+    se3di_cross(n, u, v);
     for (int a = 0; a < 3; ++a) {
         A[3 * a] = u[a];
         A[3 * a + 1] = v[a];
@@ -100,7 +70,7 @@ static void multiply_transposed(const double A[9], const double B[9], double C[9
 {
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
-            C[3 * i + j] = dot(A + 3 * i, B + 3 * j);
+            C[3 * i + j] = se3di_dot(A + 3 * i, B + 3 * j);
         }
     }
 }
@@ -109,11 +79,11 @@ static void multiply_transposed(const double A[9], const double B[9], double C[9
 static void carry(const double A[9], double scale, const double *first, const double *point,
                   const double at[3], double out[3])
 {
-    double d[3];
-    sub(point, first, d);
-    for (int a = 0; a < 3; ++a) {
-        out[a] = at[a] + scale * dot(A + 3 * a, d);
-    }
+    double d[3], turned[3];
+    se3di_sub(point, first, d);
+    se3di_mul(A, d, turned);
+    se3di_copy(at, out);
+    se3di_add_scaled(scale, turned, out);
 }
 
 static bool lies(const se3di_clump_entry *entry, const double *r, const double *radius,
@@ -129,8 +99,8 @@ static bool lies(const se3di_clump_entry *entry, const double *r, const double *
     for (size_t k = 0; k < def->count; ++k) {
         double place[3], off[3];
         carry(A, scale, def->r, def->r + 3 * k, r, place);
-        sub(place, r + 3 * k, off);
-        if (!(sqrt(dot(off, off)) <= slack && fabs(scale * def->radius[k] - radius[k]) <= slack)) {
+        se3di_sub(place, r + 3 * k, off);
+        if (!(se3di_norm(off) <= slack && fabs(scale * def->radius[k] - radius[k]) <= slack)) {
             return false;
         }
     }
@@ -160,13 +130,11 @@ bool se3di_clump_recognise(const se3di_tagged *particles, const se3di_clump_rows
         const se3di_clump_entry *entry = &particles->clump_entries[k];
         if (entry->def.count == rows->count && lies(entry, rows->r, rows->radius, pose)) {
             double arm[3], turned[3];
-            sub(pose->r, rows->r, arm);
-            cross(rows->w, arm, turned);
+            se3di_sub(pose->r, rows->r, arm);
+            se3di_cross(rows->w, arm, turned);
             pose->entry = k;
-            for (int a = 0; a < 3; ++a) {
-                pose->v[a] = rows->v[a] + turned[a];
-                pose->w[a] = rows->w[a];
-            }
+            se3di_add(rows->v, turned, pose->v);
+            se3di_copy(rows->w, pose->w);
             return true;
         }
     }
