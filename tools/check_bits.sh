@@ -126,10 +126,8 @@ xargs -P "$(se3d_jobs)" -I@ sh -c '
     object='"$out"'/$(echo @ | tr / _).o
     [ "$object" -nt @ ] || '"${CMAKE_C_COMPILER_LAUNCHER:-} $compile $flags"' -c @ -o "$object"' <"$out/sources"
 touch "$out/done"
-wraps=
-for symbol in kkt_core_avx2 kkt_core_avx512 particle_kernels_avx2 particle_kernels_avx512; do
-    wraps="$wraps -Wl,--wrap=se3di_$symbol"
-done
+wraps=$(find lib -name '*.c' -exec sed -n \
+    's/^SE3DI_TARGET_FINDER([a-z0-9_]*, *\(se3di_[a-z0-9_]*\),.*/-Wl,--wrap=\1/p' {} +)
 # shellcheck disable=SC2086
 $compile $wraps "$out"/*.o $libraries -o "$program"
 # shellcheck disable=SC2086

@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "check.h"
+#include "linsol/block_cg_core.h"
 #include "linsol/kkt_internal.h"
 #include "particles/set.h"
 #include "tree/core.h"
@@ -26,7 +27,8 @@
 static int allowed = 2; /* 0: portable, 1: AVX2 too, 2: AVX-512 too */
 static int levels = 1;  /* that this machine has */
 
-/* The finder of kernels for processors of a level, which linking takes in the place of the own. */
+/* The finder of kernels for processors of a level, which linking takes in the place of the own:
+ * one for each SE3DI_TARGET_FINDER of lib, or the test does not link. */
 #define AT_LEVEL(type, finder, level)                                                              \
     const type *__real_se3di_##finder(void);                                                       \
     const type *__wrap_se3di_##finder(void);                                                       \
@@ -35,8 +37,10 @@ static int levels = 1;  /* that this machine has */
         return allowed >= (level) ? __real_se3di_##finder() : NULL;                                \
     }
 
+AT_LEVEL(se3di_block_cg_core, block_cg_core_avx2, 1)
 AT_LEVEL(se3di_kkt_core, kkt_core_avx2, 1)
 AT_LEVEL(se3di_kkt_core, kkt_core_avx512, 2)
+AT_LEVEL(se3di_kernels, particle_kernels_fma, 0)
 AT_LEVEL(se3di_kernels, particle_kernels_avx2, 1)
 AT_LEVEL(se3di_kernels, particle_kernels_avx512, 2)
 AT_LEVEL(se3di_tree_core, tree_core_avx2, 1)
