@@ -189,8 +189,9 @@ SE3D_API se3d_status se3d_study_get_limit(const se3d_study *study, size_t index,
  * @param[in] values        [se3d_study_count_unknowns], as in se3d_study_get_unknown [SI]
  * @param[out] measures     [se3d_study_count_measures], each in SI units; NaN: it has none
  * @param[out] derivatives  [se3d_study_count_unknowns][se3d_study_count_measures] of each measure
- *                          with respect to each parameter, by differences of fourth order of
- *                          runs within its bounds; NaN: there is none; NULL: not wanted
+ *                          with respect to each parameter, exact to about 1e-9 if models can
+ *                          follow the run (se3d_solver_follow), else by differences of fourth order
+ *                          of runs within its bounds; NaN: there is none; NULL: not wanted
  * @param[out] error        filled on failure: why; may be NULL
  * @return OK, NULL, INVALID_ARGUMENT (a value is not finite), STATE (nothing is sought, or while a
  *         sample runs), or as se3d_study_eval.

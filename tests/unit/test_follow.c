@@ -4,6 +4,7 @@
  * measures of a study those of its runs. docs/theory/sensitivities.md */
 #include "support/text_model.h"
 
+#include "io/study/derive.h"
 #include "se3d/study.h"
 
 #include <limits.h>
@@ -213,6 +214,59 @@ static void derivatives_are_those_of_runs(void)
     }
 }
 
+static const char goal_tail[] =
+    "study:\n"
+    "  every: 0.02\n"
+    "  sensitivities: [m, J, k, c, l0, y, b, w]\n"
+    "  optimize: {minimize: size, parameters: {m: {from: 1, to: 4}, J: {from: 0.05, to: 0.1},\n"
+    "    k: {from: 200, to: 300}, c: {from: 0.1, to: 100}, l0: {from: 0, to: 1}, y: {from: 0.1,\n"
+    "    to: 0.2}, b: {from: 0.4, to: 0.6}, w: {from: 1, to: 5}}}\n"
+    "  measures:\n"
+    "    size: {rms: coil.length}\n"
+    "    most: {max: guide.force.y}\n"
+    "    last: {final: rod.velocity.y}\n"
+    "    off: {misfit: coil.length, curve: {linear: [[0, 0.3], [1, 0.5]]}}\n"
+    "    mixed: m*most + k\n";
+
+/* A search has the derivatives of one run, also at bounds (J, k) and of one process a parameter,
+ * and the bits of the measures are those of a run that nobody follows. */
+static void searches_have_the_derivatives_of_one_run(void)
+{
+    enum { MEASURES = 5 };
+    for (int run = 0; run < 4; ++run) {
+        char text[6000];
+        double plain[MEASURES], y[MEASURES], own[PARAMETERS][MEASURES];
+        double slopes[PARAMETERS * MEASURES];
+        se3d_model *model = NULL;
+        se3d_study *study = NULL;
+        write(text, sizeof text, at, run, run == 1, goal_tail);
+        CHECK(!se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, NULL));
+        CHECK(!se3d_study_create(model, &study, NULL));
+        CHECK(!se3d_study_eval_unknowns(study, at, plain, NULL, NULL));
+        CHECK(!se3d_study_eval_unknowns(study, at, y, slopes, NULL));
+        CHECK(memcmp(plain, y, sizeof y) == 0);
+        for (size_t which = 0; which < PARAMETERS; ++which) {
+            double value, wanted[MEASURES];
+            const int is_run = run == 3 && (which == 1 || which == 2); /* a motion at a bound */
+            CHECK(!se3di_study_derive_unknown(study, which, at, y, own[which]));
+            CHECK(memcmp(own[which], slopes + which * MEASURES, sizeof own[which]) == 0);
+            CHECK(!se3d_study_eval_sensitivity(study, which, &value, wanted, NULL, NULL));
+            for (size_t k = 0; k < MEASURES; ++k) {
+                const double size = fabs(wanted[k]) + (1.0 + fabs(y[k])) / value;
+                const double error = fabs(own[which][k] - wanted[k]) / size;
+                if (getenv("SE3D_SHOW")) {
+                    fprintf(stderr, "%d %s by %s: %.12g %.12g %.2g\n", run,
+                            se3d_study_get_measure_name(study, k), names[which], own[which][k],
+                            wanted[k], error);
+                }
+                CHECK(error < (is_run ? 1e-4 : run == 3 ? 1e-8 : 2e-9));
+            }
+        }
+        se3d_study_destroy(study);
+        se3d_model_destroy(model);
+    }
+}
+
 /* Another structure, friction, and what is no function of the data alone. */
 static void what_cannot_be_followed_is_refused(void)
 {
@@ -399,6 +453,7 @@ int main(void)
     RUN(a_run_that_begins_anew_is_followed_anew);
     RUN(followers_are_interrupted);
     RUN(derivatives_are_those_of_runs);
+    RUN(searches_have_the_derivatives_of_one_run);
     RUN(steps_of_dynamics_are_repeated);
     RUN(what_cannot_be_followed_is_refused);
     RUN(what_is_left_is_of_second_order);

@@ -6,10 +6,10 @@
 
 #include "se3d/study.h"
 
-/* Take the derivatives of all measures with respect to one parameter that is sought; `measures`:
- * those at `values`, as se3d_study_eval_unknowns gives them, as it does these derivatives.
+/* Take the measures at `values`, and the derivatives of all of them with respect to one parameter
+ * that is sought: the same as se3d_study_eval_unknowns gives.
  * @return OK, NO_MEMORY, INTERRUPTED */
 se3d_status se3di_study_derive_unknown(se3d_study *study, size_t index, const double *values,
-                                       const double *measures, double *derivatives);
+                                       double *measures, double *derivatives);
 
 #endif

@@ -216,7 +216,7 @@ static void begin_table(tables *t)
 }
 
 se3d_status se3di_study_differentiate(se3d_study *study, const se3di_study_point *point,
-                                      const double *centre, double *derivatives, double *errors)
+                                      const double *centre)
 {
     const size_t count = study->entry->measure_count;
     se3di_iopool pool;
@@ -233,9 +233,9 @@ se3d_status se3di_study_differentiate(se3d_study *study, const se3di_study_point
     }
     for (size_t k = 0; k < count; ++k) {
         const column *c = status >= 0 && isfinite(centre[k]) ? choose(&all[k]) : NULL;
-        derivatives[k] = c ? c->best : (double)NAN;
-        if (errors) {
-            errors[k] = c ? fmax(c->error, c->corner) : (double)NAN;
+        point->derivatives[k] = c ? c->best : (double)NAN;
+        if (point->errors) {
+            point->errors[k] = c ? fmax(c->error, c->corner) : (double)NAN;
         }
     }
     se3di_iopool_destroy(&pool);

@@ -14,25 +14,37 @@
 #include "io/channel/event.h"
 #include "io/channel/sample.h"
 #include "io/run/watch.h"
+#include "io/study/inplace.h"
 #include "io/study/trial.h"
 
 enum { LEVELS = 5, FOLLOWERS = 2 * LEVELS };
 #define SHARE 0.5  /* of the first step of differences of runs */
 #define ROUGH 1e-6 /* error of the derivative of what is not smooth, */
 #define FINE  1e-3 /* or of this part of what changes it by itself in a step */
+#define APART 2e-2 /* of a slope: what a wide pair of models may tell otherwise */
 
 typedef struct follower {
     se3di_trial trial;
+    se3d_system *system; /* its own; that of its model, unless the model is the prototype's */
     se3di_output_entry output;
     se3di_sample sample;
     se3d_solver *solver;
     double *row;
 } follower;
 
-typedef struct followers {
+/* Those that tell of one parameter. */
+typedef struct group {
+    const se3di_study_point *point;
     follower of[FOLLOWERS];
     size_t count;
+    double h; /* the first step */
     bool has_failed;
+} group;
+
+typedef struct followers {
+    se3d_study *study;
+    group *groups;
+    size_t count;
     se3d_model_error error; /* of any of them: told to nobody */
 } followers;
 
@@ -40,7 +52,8 @@ typedef struct followers {
 static bool is_followable(const se3d_study *study)
 {
     const se3d_model *model = study->model;
-    bool good = !model->particles && model->guest_count == 0;
+    bool good = !model->particles && model->guest_count == 0 &&
+                model->analyses[study->analysis].solver.analysis != SE3D_ANALYSIS_ASSEMBLY;
     for (size_t k = 0; k <= study->analysis && good; ++k) {
         good = !model->analyses[k].modes.file;
     }
@@ -50,14 +63,24 @@ static bool is_followable(const se3d_study *study)
     return good;
 }
 
-static void destroy(followers *all)
+static void destroy(follower *one)
 {
-    for (size_t k = 0; k < all->count; ++k) {
-        follower *one = &all->of[k];
-        se3di_sample_destroy(&one->sample);
-        se3d_solver_destroy(one->solver);
+    se3di_sample_destroy(&one->sample);
+    se3d_solver_destroy(one->solver);
+    if (one->trial.is_set) {
+        se3d_system_destroy(one->system);
+    } else {
         se3d_model_destroy(one->trial.model);
-        se3di_iopool_destroy(&one->trial.pool);
+    }
+    se3di_iopool_destroy(&one->trial.pool);
+}
+
+static void destroy_all(followers *all)
+{
+    for (size_t k = 0; all->groups && k < all->count; ++k) {
+        for (size_t i = 0; i < all->groups[k].count; ++i) {
+            destroy(&all->groups[k].of[i]);
+        }
     }
 }
 
@@ -82,8 +105,9 @@ static bool has_same_times(const se3di_trial *t)
 }
 
 /* Through the analyses before that which is measured, to where it begins. */
-static se3d_status begin(se3di_trial *t)
+static se3d_status begin(follower *one)
 {
+    const se3di_trial *t = &one->trial;
     const size_t index = t->study->analysis;
     const double start = t->model->analyses[index].analysis.start;
     const se3d_run_options how = se3di_study_get_options(t->study);
@@ -95,7 +119,7 @@ static se3d_status begin(se3di_trial *t)
             return status;
         }
     }
-    return isnan(start) ? SE3D_OK : se3d_system_set_time(t->model->system, start);
+    return isnan(start) ? SE3D_OK : se3d_system_set_time(one->system, start);
 }
 
 /* The solver of what is measured, as a run of the model has it. */
@@ -105,18 +129,18 @@ static se3d_status create_solver(follower *one)
     const se3di_analysis_entry *entry = &t->model->analyses[t->study->analysis];
     se3d_solver_def def = entry->solver;
     double start = 0.0;
-    se3d_system_get_time(t->model->system, &start);
+    se3d_system_get_time(one->system, &start);
     const double end = start + entry->analysis.duration;
     def.horizon = fabs(end) > 0.0 ? end : DBL_MIN;
     def.interrupt = t->study->interrupt;
     def.interrupt_ctx = t->study->interrupt_ctx;
-    const se3d_status status = se3d_solver_create(t->model->system, &def, &one->solver);
+    const se3d_status status = se3d_solver_create(one->system, &def, &one->solver);
     return status >= 0 && se3di_analysis_has_motion(entry)
                ? se3di_events_create(t->model, one->solver, se3di_trial_take_event, t)
                : status;
 }
 
-/* Its channels, tallies and solver. */
+/* Its channels, tallies and solver; the system is that of its model. */
 static se3d_status prepare(follower *one)
 {
     se3di_trial *t = &one->trial;
@@ -125,7 +149,7 @@ static se3d_status prepare(follower *one)
         return SE3D_ERR_UNSUPPORTED;
     }
     se3di_trial_sharpen(t);
-    se3d_status status = begin(t);
+    se3d_status status = begin(one);
     status = status < 0 ? status : se3di_trial_find_channels(t, &one->output);
     size_t columns = 1;
     if (status < 0) {
@@ -143,43 +167,108 @@ static se3d_status prepare(follower *one)
     return create_solver(one);
 }
 
-/* A model with the parameter at p + shift. */
-static se3d_status add(followers *all, se3d_study *study, const se3di_study_point *point,
-                       double shift)
+/* A model with the parameter at p + shift. That of the prototype lends its texts and numbers to
+ * all, which have systems of their own. */
+static se3d_status add(followers *all, group *g, double shift)
 {
-    follower *one = &all->of[all->count++];
+    follower *one = &g->of[g->count++];
+    const se3di_study_point *point = g->point;
     double *value = &point->values[point->which].value.v[0];
     const double p = *value;
     memset(one, 0, sizeof *one);
-    one->trial.study = study;
+    one->trial.study = all->study;
     one->trial.error = &all->error;
-    se3di_iopool_init(&one->trial.pool, &study->pool.allocator);
+    se3di_iopool_init(&one->trial.pool, &all->study->pool.allocator);
     *value = p + shift;
-    se3d_status status =
-        se3di_study_read(study, point->values, point->count, &one->trial.model, &all->error);
+    se3d_status status = se3di_trial_make_model(&one->trial, point->values, point->count);
     *value = p;
     if (one->trial.model) {
-        se3di_sample_init(&one->sample, one->trial.model->system,
-                          &one->trial.model->pool.allocator);
+        one->system = one->trial.model->system;
+        se3di_sample_init(&one->sample, one->system, &one->trial.model->pool.allocator);
     }
-    return status < 0 ? status : prepare(one);
-}
-
-static bool is_within(const se3di_study_point *point, double h)
-{
-    const double p = point->values[point->which].value.v[0];
-    return p - h >= point->bounds[0] && p + h <= point->bounds[1];
-}
-
-static se3d_status create(followers *all, se3d_study *study, const se3di_study_point *point)
-{
-    double h = se3di_study_first_step(point);
-    se3d_status status = is_within(point, h) ? SE3D_OK : SE3D_ERR_UNSUPPORTED;
-    for (size_t k = 0; k < LEVELS && status >= 0; ++k, h *= 0.5) {
-        status = add(all, study, point, -h);
-        status = status < 0 ? status : add(all, study, point, h);
+    status = status < 0 ? status : prepare(one);
+    if (one->trial.is_set) {
+        (void)se3di_inplace_take(all->study);
     }
     return status;
+}
+
+static bool is_within(const se3di_study_point *point, double shift)
+{
+    const double p = point->values[point->which].value.v[0];
+    return p + shift >= point->bounds[0] && p + shift <= point->bounds[1];
+}
+
+/* At p +- h, p +- h/2, ... */
+static se3d_status create_ladder(followers *all, group *g)
+{
+    double h = g->h;
+    se3d_status status =
+        is_within(g->point, h) && is_within(g->point, -h) ? SE3D_OK : SE3D_ERR_UNSUPPORTED;
+    for (size_t k = 0; k < LEVELS && status >= 0; ++k, h *= 0.5) {
+        status = add(all, g, -h);
+        status = status < 0 ? status : add(all, g, h);
+    }
+    return status;
+}
+
+static bool is_of_motion(const se3d_study *study)
+{
+    const se3d_solver_def *solver = &study->model->analyses[study->analysis].solver;
+    return solver->analysis == SE3D_ANALYSIS_DYNAMICS;
+}
+
+/* At p +- h; beside a bound at p, p + h, p + 2 h, where h may be negative. The steps of a motion
+ * see no force that jumps unless the parameter moves it from one of their stages to the next: a
+ * wide pair tells. */
+static se3d_status create_pair(followers *all, group *g)
+{
+    const double wide = g->point->step;
+    if (is_of_motion(all->study) && !(is_within(g->point, wide) && is_within(g->point, -wide))) {
+        return SE3D_ERR_UNSUPPORTED;
+    }
+    if (is_within(g->point, g->h) && is_within(g->point, -g->h)) {
+        const double shifts[4] = {-g->h, g->h, -wide, wide};
+        se3d_status status = SE3D_OK;
+        for (int k = 0; k < (is_of_motion(all->study) ? 4 : 2) && status >= 0; ++k) {
+            status = add(all, g, shifts[k]);
+        }
+        return status;
+    }
+    if (!is_within(g->point, 2.0 * g->h)) {
+        g->h = -g->h;
+    }
+    se3d_status status = is_within(g->point, 2.0 * g->h) ? SE3D_OK : SE3D_ERR_UNSUPPORTED;
+    for (int k = 0; k < 3 && status >= 0; ++k) {
+        status = add(all, g, k * g->h);
+    }
+    return status;
+}
+
+/* Differences of runs would fare no better. */
+static bool is_final(se3d_status status)
+{
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED;
+}
+
+/* @return how many groups there are, or why there are none */
+static se3d_status create(followers *all, const se3di_study_point *points, size_t *left)
+{
+    *left = 0;
+    for (size_t k = 0; k < all->count; ++k) {
+        group *g = &all->groups[k];
+        g->point = &points[k];
+        g->h = ldexp(1.0, ilogb(g->point->follow_step > 0.0 ? g->point->follow_step
+                                                            : SHARE * g->point->step));
+        const se3d_status status =
+            g->point->follow_step > 0.0 ? create_pair(all, g) : create_ladder(all, g);
+        if (is_final(status)) {
+            return status;
+        }
+        g->has_failed = status < 0;
+        *left += !g->has_failed;
+    }
+    return SE3D_OK;
 }
 
 /* As se3di_model_watch makes a row of a run. */
@@ -205,89 +294,142 @@ static se3d_status take_row(follower *one, se3d_solver *solver, double time)
     return se3di_trial_take_row(&one->trial, one->row);
 }
 
-/* Differences of runs would fare no better. */
-static bool is_final(se3d_status status)
-{
-    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED;
-}
-
 static se3d_status take_rows(void *ctx, se3d_solver *solver, double time)
 {
     followers *all = ctx;
-    for (size_t k = 0; k < all->count && !all->has_failed; ++k) {
-        const se3d_status status = take_row(&all->of[k], solver, time);
-        if (is_final(status)) {
-            return status;
+    for (size_t n = 0; n < all->count; ++n) {
+        group *g = &all->groups[n];
+        for (size_t k = 0; k < g->count && !g->has_failed; ++k) {
+            const se3d_status status = take_row(&g->of[k], solver, time);
+            if (is_final(status)) {
+                return status;
+            }
+            g->has_failed = status < 0;
         }
-        all->has_failed = status < 0;
     }
     return SE3D_OK;
 }
 
+/* Whether there is a derivative of each measure, which is no corner: forces that jump within a step
+ * are told better by runs with steps of their own. */
+static bool is_good(const se3d_study *study, const group *g, const double *measures,
+                    const double *errors)
+{
+    bool good = true;
+    for (size_t k = 0; k < study->entry->measure_count; ++k) {
+        const double slope = fabs(g->point->derivatives[k]);
+        const double most = ROUGH * (slope + FINE * fabs(measures[k]) / g->h);
+        good = good && (!isfinite(measures[k]) || errors[k] <= most + DBL_MIN);
+    }
+    return good;
+}
+
+/* By the tables of all steps. */
+static se3d_status conclude_ladder(const followers *all, group *g, double *const *beside,
+                                   const double *centre)
+{
+    se3di_study_point known = *g->point;
+    known.beside = beside;
+    known.step = g->h;
+    known.levels = LEVELS;
+    if (!known.errors) {
+        known.errors = se3di_iopool_array(&g->of[0].trial.pool, all->study->entry->measure_count,
+                                          sizeof *known.errors);
+    }
+    const se3d_status status =
+        known.errors ? se3di_study_differentiate(all->study, &known, centre) : SE3D_ERR_NO_MEMORY;
+    g->has_failed = status >= 0 && !is_good(all->study, g, centre, known.errors);
+    return status;
+}
+
+/* By a pair, or beside a bound by three; *spread: how far a wide pair is off. */
+static double get_slope(const group *g, double *const *f, size_t k, double *spread)
+{
+    *spread = 0.0;
+    if (g->count == 3) {
+        return (4.0 * f[1][k] - 3.0 * f[0][k] - f[2][k]) / (2.0 * g->h);
+    }
+    const double slope = (f[1][k] - f[0][k]) / (2.0 * g->h);
+    if (g->count == 4) {
+        *spread = fabs((f[3][k] - f[2][k]) / (2.0 * g->point->step) - slope);
+    }
+    return slope;
+}
+
+static void conclude_pair(const followers *all, group *g, double *const *f, const double *centre)
+{
+    for (size_t k = 0; k < all->study->entry->measure_count; ++k) {
+        double spread;
+        const double slope = get_slope(g, f, k, &spread);
+        const double most = APART * fabs(slope) + FINE * fabs(centre[k]) / g->point->step;
+        const bool has_value = isfinite(centre[k]);
+        g->point->derivatives[k] = has_value ? slope : (double)NAN;
+        g->has_failed = g->has_failed || (has_value && !(spread <= most && isfinite(slope)));
+    }
+}
+
 /* The measures of all, and what they tell. */
-static se3d_status conclude(followers *all, se3d_study *study, const se3di_study_point *point,
-                            const double *centre, double *derivatives, double *errors)
+static se3d_status conclude(const followers *all, group *g, const double *centre)
 {
     double *beside[FOLLOWERS];
-    se3di_study_point known = *point;
-    for (size_t k = 0; k < FOLLOWERS; ++k) {
-        se3di_trial *t = &all->of[k].trial;
-        beside[k] = se3di_iopool_array(&t->pool, study->entry->measure_count, sizeof **beside);
+    for (size_t k = 0; k < g->count; ++k) {
+        se3di_trial *t = &g->of[k].trial;
+        beside[k] = se3di_iopool_array(&t->pool, all->study->entry->measure_count, sizeof **beside);
         const se3d_status status =
             beside[k] ? se3di_trial_conclude(t, beside[k]) : SE3D_ERR_NO_MEMORY;
         if (status == SE3D_ERR_NO_MEMORY) {
             return status;
         }
     }
-    known.beside = beside;
-    return se3di_study_differentiate(study, &known, centre, derivatives, errors);
-}
-
-/* Whether there is a derivative of each measure, which is no corner: forces that jump within a step
- * are told better by runs with steps of their own. */
-static bool is_good(const se3d_study *study, double step, const double *measures,
-                    const double *derivatives, const double *errors)
-{
-    bool good = true;
-    for (size_t k = 0; k < study->entry->measure_count; ++k) {
-        const double most = ROUGH * (fabs(derivatives[k]) + FINE * fabs(measures[k]) / step);
-        good = good && (!isfinite(measures[k]) || errors[k] <= most + DBL_MIN);
+    if (!(g->point->follow_step > 0.0)) {
+        return conclude_ladder(all, g, beside, centre);
     }
-    return good;
+    conclude_pair(all, g, beside, centre);
+    return SE3D_OK;
 }
 
-se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point, double *measures,
-                               double *derivatives, double *errors, bool *done,
-                               se3d_model_error *error)
+/* The run at the point, which the others follow. */
+static se3d_status run(followers *all, double *measures, bool *has_run, se3d_model_error *error)
 {
-    followers all = {.count = 0, .has_failed = false};
-    const se3di_row_listener listener = {.reach = take_rows, .ctx = &all};
-    se3di_study_point near = *point;
-    *done = false;
+    const se3di_row_listener listener = {.reach = take_rows, .ctx = all};
+    const se3di_study_point *point = all->groups[0].point;
+    const se3d_status status =
+        se3di_study_run_with(all->study, point->values, point->count, &listener, measures, error);
+    se3d_status told = SE3D_OK;
+    *has_run = !is_final(status);
+    for (size_t k = 0; k < all->count && *has_run && told >= 0; ++k) {
+        group *g = &all->groups[k];
+        g->has_failed = g->has_failed || (status < 0 && status != SE3D_ERR_NOT_FINITE);
+        told = g->has_failed ? SE3D_OK : conclude(all, g, measures);
+    }
+    *has_run = *has_run && told >= 0;
+    return told < 0 ? told : status;
+}
+
+se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *points, size_t count,
+                               double *measures, bool *done, bool *has_run, se3d_model_error *error)
+{
+    followers all = {.study = study, .count = count};
+    se3di_iopool pool;
+    size_t left = 0;
+    *has_run = false;
+    memset(done, 0, count * sizeof *done);
     memset(error, 0, sizeof *error);
-    if (!is_followable(study)) {
+    if (count == 0 || !is_followable(study)) {
         return SE3D_OK;
     }
-    near.step *= SHARE;
-    near.levels = LEVELS;
+    se3di_iopool_init(&pool, &study->pool.allocator);
+    all.groups = se3di_iopool_array(&pool, count, sizeof *all.groups);
     const se3di_study_work work = se3di_study_begin(study);
-    se3d_status status = create(&all, study, &near);
-    if (status >= 0) {
-        status =
-            se3di_study_run_with(study, point->values, point->count, &listener, measures, error);
-        *done = !all.has_failed && (status >= 0 || status == SE3D_ERR_NOT_FINITE);
+    se3d_status status = all.groups ? create(&all, points, &left) : SE3D_ERR_NO_MEMORY;
+    if (status >= 0 && left > 0) {
+        status = run(&all, measures, has_run, error);
     }
-    if (*done) {
-        double *own =
-            se3di_iopool_array(&all.of[0].trial.pool, study->entry->measure_count, sizeof *own);
-        double *const estimates = errors ? errors : own;
-        const se3d_status told =
-            own ? conclude(&all, study, &near, measures, derivatives, estimates)
-                : SE3D_ERR_NO_MEMORY;
-        status = told < 0 ? told : status;
-        *done = told < 0 || is_good(study, near.step, measures, derivatives, estimates);
+    for (size_t k = 0; k < count && *has_run; ++k) {
+        done[k] = !all.groups[k].has_failed;
     }
-    destroy(&all);
+    destroy_all(&all);
     se3di_study_end(study, work);
-    return *done || is_final(status) ? status : SE3D_OK;
+    se3di_iopool_destroy(&pool);
+    return status;
 }

@@ -10,11 +10,15 @@
 #include "io/document/document.h"
 #include "io/read/study_goal.h"
 #include "io/study/derive.h"
+#include "io/study/follow.h"
 #include "io/study/study.h"
 
-/* Two steps, extrapolated once: what a search needs. */
+/* Of differences of runs, two steps, extrapolated once: what a search needs. Models that follow
+ * have no noise, and so little that rounding and the third derivative take 1e-10. */
 enum { LEVELS = 2 };
-#define SHARE 0.01 /* of from ... to: the first step */
+#define SHARE  0.01   /* of from ... to: the first step */
+#define FOLLOW 1.6e-5 /* of a parameter: the step of models that follow */
+#define LEAST  1e-3   /* of from ... to: less counts as this much */
 
 static const se3di_study_goal *get_goal(const se3d_study *study)
 {
@@ -173,30 +177,72 @@ static se3di_named *name_values(const se3d_study *study, const double *values, s
     return named;
 }
 
-static se3d_status differentiate(se3d_study *study, size_t index, se3di_named *named,
-                                 const double *measures, double *derivatives)
+static se3di_study_point make_point(const se3d_study *study, size_t index, se3di_named *named,
+                                    double *derivatives)
 {
     const se3di_study_goal *goal = study->entry->goal;
     const se3di_study_unknown *u = &goal->unknowns[index];
-    const se3di_study_point point = {.values = named,
-                                     .count = goal->unknown_count,
-                                     .which = index,
-                                     .step = SHARE * (u->to - u->from),
-                                     .bounds = {u->from, u->to},
-                                     .levels = LEVELS};
-    return se3di_study_differentiate(study, &point, measures, derivatives, NULL);
+    const double range = u->to - u->from;
+    const double size = fmin(fmax(fabs(named[index].value.v[0]), LEAST * range), range);
+    return (se3di_study_point){.values = named,
+                               .count = goal->unknown_count,
+                               .which = index,
+                               .step = SHARE * range,
+                               .follow_step = FOLLOW * size,
+                               .bounds = {u->from, u->to},
+                               .levels = LEVELS,
+                               .derivatives = derivatives};
+}
+
+/* What a search asks at one point. */
+typedef struct enquiry {
+    size_t first, count; /* of the unknowns */
+    double *measures;
+    double *derivatives; /* [count][measure_count] */
+} enquiry;
+
+/* The measures and all derivatives, by one run if models can follow it. The bits of the measures
+ * are those of a run that nobody follows. */
+static se3d_status derive(se3d_study *study, const enquiry *q, se3di_named *named,
+                          se3d_model_error *error)
+{
+    const size_t width = study->entry->measure_count;
+    bool has_run;
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &study->pool.allocator);
+    se3di_study_point *points = se3di_iopool_array(&pool, q->count, sizeof *points);
+    bool *done = se3di_iopool_array(&pool, q->count, sizeof *done);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    for (size_t k = 0; points && done && k < q->count; ++k) {
+        points[k] = make_point(study, q->first + k, named, q->derivatives + k * width);
+    }
+    if (points && done) {
+        status = se3di_study_follow(study, points, q->count, q->measures, done, &has_run, error);
+        if (!has_run && status >= 0) {
+            status = se3di_study_run(study, named, study->entry->goal->unknown_count, q->measures,
+                                     error);
+        }
+    }
+    for (size_t k = 0; k < q->count && (status >= 0 || status == SE3D_ERR_NOT_FINITE); ++k) {
+        const se3d_status told =
+            done[k] ? SE3D_OK : se3di_study_differentiate(study, &points[k], q->measures);
+        status = told < 0 ? told : status;
+    }
+    se3di_iopool_destroy(&pool);
+    return status;
 }
 
 se3d_status se3di_study_derive_unknown(se3d_study *study, size_t index, const double *values,
-                                       const double *measures, double *derivatives)
+                                       double *measures, double *derivatives)
 {
+    se3d_model_error error;
     se3di_iopool pool;
+    const enquiry q = {index, 1, measures, derivatives};
     se3di_iopool_init(&pool, &study->pool.allocator);
     se3di_named *named = name_values(study, values, &pool);
-    const se3d_status status =
-        named ? differentiate(study, index, named, measures, derivatives) : SE3D_ERR_NO_MEMORY;
+    const se3d_status status = named ? derive(study, &q, named, &error) : SE3D_ERR_NO_MEMORY;
     se3di_iopool_destroy(&pool);
-    return status;
+    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ? status : SE3D_OK;
 }
 
 se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, double *measures,
@@ -218,14 +264,15 @@ se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, do
     if (!named) {
         return fail(study, error, SE3D_ERR_NO_MEMORY, "out of memory");
     }
-    status = se3di_study_run(study, named, count, measures, error);
-    if (derivatives && (status >= 0 || status == SE3D_ERR_NOT_FINITE)) {
-        se3d_status done = SE3D_OK;
-        for (size_t k = 0; k < count && done >= 0; ++k) {
-            done = differentiate(study, k, named, measures,
-                                 derivatives + k * study->entry->measure_count);
-        }
-        status = done < 0 ? fail(study, error, done, se3d_status_get_text(done)) : status;
+    memset(error, 0, sizeof *error);
+    if (derivatives) {
+        const enquiry q = {0, count, measures, derivatives};
+        status = derive(study, &q, named, error);
+    } else {
+        status = se3di_study_run(study, named, count, measures, error);
+    }
+    if (status < 0 && error->message[0] == '\0') {
+        status = fail(study, error, status, se3d_status_get_text(status));
     }
     se3di_iopool_destroy(&pool);
     return status;

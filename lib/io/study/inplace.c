@@ -164,14 +164,20 @@ static bool set_all(const prototype *p, se3di_reader *reader, const se3di_named 
     return good;
 }
 
-void se3di_inplace_end(se3d_study *study)
+se3d_system *se3di_inplace_take(se3d_study *study)
 {
     prototype *p = study->prototype;
-    if (p && p->is_used) {
-        se3d_system_destroy(p->model->system);
+    se3d_system *taken = p && p->is_used ? p->model->system : NULL;
+    if (taken) {
         p->model->system = p->system;
         p->is_used = false;
     }
+    return taken;
+}
+
+void se3di_inplace_end(se3d_study *study)
+{
+    se3d_system_destroy(se3di_inplace_take(study));
 }
 
 se3d_status se3di_inplace_begin(se3d_study *study, const se3di_named *values, size_t count,

@@ -11,6 +11,9 @@
  * @return OK, NO_MEMORY */
 se3d_status se3di_inplace_begin(se3d_study *study, const se3di_named *values, size_t count,
                                 se3di_iopool *pool, se3d_model **model);
+/* Take the system of the sample that se3di_inplace_begin has begun, which ends: the caller destroys
+ * it. What the model says beside it is that of the next sample. */
+se3d_system *se3di_inplace_take(se3d_study *study);
 /* End the sample that se3di_inplace_begin has begun. */
 void se3di_inplace_end(se3d_study *study);
 /* Whether a model is kept for the parameters of the last sample. */

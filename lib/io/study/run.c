@@ -23,16 +23,33 @@ static se3d_status fail(const trial *t, se3d_status status, const char *text)
     return status;
 }
 
-/* The model with these parameters: set, or read. */
-static se3d_status make_model(trial *t, const se3di_named *values, size_t count)
+/* The parameters as expressions see them: the next sample may change those of the model. */
+static se3d_status keep_symbols(trial *t)
+{
+    const se3di_scope *scope = t->model->scope;
+    t->symbols = se3di_iopool_array(&t->pool, scope->symbol_count + 1, sizeof *t->symbols);
+    if (!t->symbols) {
+        return fail(t, SE3D_ERR_NO_MEMORY, "out of memory");
+    }
+    t->symbol_count = scope->symbol_count;
+    for (size_t k = 0; k < t->symbol_count; ++k) {
+        t->symbols[k] = scope->symbols[k];
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_trial_make_model(trial *t, const se3di_named *values, size_t count)
 {
     se3d_study *study = t->study;
-    const se3d_status status = se3di_inplace_begin(study, values, count, &t->pool, &t->model);
+    se3d_status status = se3di_inplace_begin(study, values, count, &t->pool, &t->model);
     t->is_set = t->model != NULL;
     if (status < 0) {
         return fail(t, status, "out of memory");
     }
-    return t->is_set ? SE3D_OK : se3di_study_read(study, values, count, &t->model, t->error);
+    if (!t->is_set) {
+        status = se3di_study_read(study, values, count, &t->model, t->error);
+    }
+    return status < 0 ? status : keep_symbols(t);
 }
 
 /* What a row is made of. */
@@ -140,8 +157,7 @@ static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue
 static se3d_status eval_expression(trial *t, size_t index, const double *measures, double *value)
 {
     const se3di_study_entry *entry = t->study->entry;
-    const se3di_scope *scope = t->model->scope;
-    const size_t count = index + scope->symbol_count;
+    const size_t count = index + t->symbol_count;
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
     se3d_expression_symbol *symbols = se3di_iopool_array(&t->pool, count, sizeof *symbols);
@@ -156,8 +172,8 @@ static se3d_status eval_expression(trial *t, size_t index, const double *measure
             symbols[used++] = (se3d_expression_symbol){entry->measures[k].name, measures[k]};
         }
     }
-    for (size_t k = 0; k < scope->symbol_count; ++k) {
-        symbols[used++] = scope->symbols[k];
+    for (size_t k = 0; k < t->symbol_count; ++k) {
+        symbols[used++] = t->symbols[k];
     }
     def.text = entry->measures[index].node->text;
     def.symbols = symbols;
@@ -246,7 +262,7 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
     se3d_study *study = t->study;
     se3di_output_entry output;
     const se3d_run_options how = se3di_study_get_options(study);
-    se3d_status status = make_model(t, values, count);
+    se3d_status status = se3di_trial_make_model(t, values, count);
     if (status >= 0) {
         status = se3di_trial_find_channels(t, &output);
     }

@@ -102,22 +102,22 @@ static se3d_status differentiate(se3d_study *study, size_t index, double *deriva
                                      .which = 0,
                                      .step = se3di_study_get_step(study, name, amount->v[0]),
                                      .bounds = {-HUGE_VAL, HUGE_VAL},
-                                     .levels = SE3DI_STUDY_LEVELS};
-    bool followed;
+                                     .levels = SE3DI_STUDY_LEVELS,
+                                     .derivatives = derivatives,
+                                     .errors = errors};
+    bool followed, has_run;
     se3d_status status =
-        se3di_study_follow(study, &point, study->measures, derivatives, errors, &followed, error);
+        se3di_study_follow(study, &point, 1, study->measures, &followed, &has_run, error);
     if (status < 0 && error->message[0] == '\0') {
         return fail(study, error, status, se3d_status_get_text(status));
     }
-    if (status < 0 || followed) {
+    if (!has_run && status >= 0) {
+        status = se3di_study_run(study, &value, 1, study->measures, error);
+    }
+    if (followed || (status < 0 && status != SE3D_ERR_NOT_FINITE)) {
         return status;
     }
-    status = se3di_study_run(study, &value, 1, study->measures, error);
-    if (status < 0 && status != SE3D_ERR_NOT_FINITE) {
-        return status;
-    }
-    const se3d_status done =
-        se3di_study_differentiate(study, &point, study->measures, derivatives, errors);
+    const se3d_status done = se3di_study_differentiate(study, &point, study->measures);
     return done < 0 ? fail(study, error, done, se3d_status_get_text(done)) : status;
 }
 

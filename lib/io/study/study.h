@@ -50,11 +50,14 @@ typedef struct se3di_study_point {
     se3di_named *values; /* [count] of parameters; one of them is changed and put back */
     size_t count, which;
     double step;           /* the first one; those behind it are halves */
+    double follow_step;    /* of the only pair of models that follow; 0: they take `step`, too */
     double bounds[2];      /* nothing outside of them is run */
     double *const *beside; /* [2 levels] the measures below and above p at each step, as they are
                             * known already; NULL: by runs */
     size_t levels;         /* how many steps, 1 to SE3DI_STUDY_LEVELS: two runs each, and more steps
                        * if there are values on one side only */
+    double *derivatives;   /* [measure_count] out; NaN: there is none */
+    double *errors;        /* [measure_count] out, estimates; NULL: not wanted */
 } se3di_study_point;
 
 /* Work on samples: what it calls back may neither begin other work nor destroy the study, and the
@@ -80,10 +83,9 @@ se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, s
 se3d_status se3di_study_read(se3d_study *study, const se3di_named *values, size_t count,
                              se3d_model **model, se3d_model_error *error);
 /* Take derivatives of all measures, by runs beside the point; `centre`: the measures there.
- * `errors` (may be NULL) are estimates. NaN: there is none.
  * @return OK, NO_MEMORY, INTERRUPTED */
 se3d_status se3di_study_differentiate(se3d_study *study, const se3di_study_point *point,
-                                      const double *centre, double *derivatives, double *errors);
+                                      const double *centre);
 /* The first step of a point: a power of two. */
 double se3di_study_first_step(const se3di_study_point *point);
 /* A first step for derivatives with respect to a parameter that has this value. */

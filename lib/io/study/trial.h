@@ -9,14 +9,19 @@
 typedef struct se3di_trial {
     se3d_study *study;
     se3d_model *model;
-    se3di_tally *tallies;               /* [measure_count] */
-    bool is_set;                        /* the model is that of the study's prototype */
-    se3di_iopool pool;                  /* of this sample */
-    size_t *places;                     /* [source_count] in a row */
+    se3di_tally *tallies;            /* [measure_count] */
+    bool is_set;                     /* the model is that of the study's prototype */
+    se3di_iopool pool;               /* of this sample */
+    size_t *places;                  /* [source_count] in a row */
+    se3d_expression_symbol *symbols; /* [symbol_count] parameters of this sample */
+    size_t symbol_count;
     const se3di_row_listener *listener; /* NULL: none */
     se3d_model_error *error;
 } se3di_trial;
 
+/* Make the model with these parameters: set in that of the study's prototype, or read.
+ * @return OK, or why not: t->error says it */
+se3d_status se3di_trial_make_model(se3di_trial *t, const se3di_named *values, size_t count);
 /* What a row is made of. @return OK, NO_MEMORY */
 se3d_status se3di_trial_find_channels(se3di_trial *t, se3di_output_entry *output);
 void se3di_trial_begin(se3di_trial *t);
