@@ -5,6 +5,7 @@
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "particles/clump.h"
+#include "particles/share.h"
 
 #include <string.h>
 
@@ -160,6 +161,15 @@ int se3di_bonds_index(se3di_particles *set)
 }
 
 static void count_gone(se3di_particles *set, const se3di_bond *bond)
+{
+    if (se3di_share_is_spread(set)) {
+        set->share->part(set, bond);
+        return;
+    }
+    se3di_bonds_count(set, bond);
+}
+
+void se3di_bonds_count(se3di_particles *set, const se3di_bond *bond)
 {
     se3di_bond_group *group = &set->bond_groups[bond->group];
     group->torn += bond->fate == SE3DI_BOND_TORN;

@@ -26,6 +26,8 @@ int se3di_bonds_index(se3di_particles *set);
 void se3di_bonds_filter(se3di_particles *set);
 /* Find the walls of the ends in the set's new ones, and drop the bonds of those that are gone. */
 void se3di_bonds_find_walls(se3di_particles *set);
+/* Count a bond that is gone with its group. */
+void se3di_bonds_count(se3di_particles *set, const se3di_bond *bond);
 /* Take out those that do not hold any more; the ends stay. */
 void se3di_bonds_keep(se3di_particles *set);
 /* End -> ground: how the sphere has turned, its clump or the wall. */
@@ -39,8 +41,10 @@ int se3di_bonds_join(const se3di_particles *set, uint32_t i, uint32_t j);
 
 /* bond_motion.c: what bonds do to their ends, added to the loads; with h > 0 some break. */
 void se3di_bonds_forces(se3di_particles *set, double h);
-/* The same for walls, after their sums. */
+/* The same for walls: after their sums, or, of a set that is spread, added to the exact ones. */
 void se3di_bonds_push_walls(se3di_particles *set);
+/* The forces are complete: those that broke go. */
+void se3di_bonds_finish(se3di_particles *set);
 /* The spheres have moved on for h: their turns. */
 void se3di_bonds_turn(se3di_particles *set, double h);
 /* A step in which no motion on bonds is more than a fifth of what is stable; infinite without. */

@@ -18,6 +18,7 @@
 #include "math/quaternion.h"
 #include "particles/cell.h"
 #include "particles/clump.h"
+#include "particles/share.h"
 #include "particles/slabs.h"
 #include "particles/wall.h"
 
@@ -156,6 +157,7 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     se3di_sub(two.v, one.v, v);
     se3di_particles_nearest(set, d, v);
     const double length = fmax(se3di_norm(d), 1e-300);
+    bond->span = length;
     se3di_scale(1.0 / length, d, e);
     se3di_add(one.x, d, bond->place);
     bond->dissipated += half_work(bond, &one, &two, v, h); /* of the last step's second half */
@@ -198,6 +200,9 @@ static void turn(const se3di_particles *set, se3di_bond_end *end, double h)
 {
     if (end->id == SE3DI_NO_INDEX) {
         return;
+    }
+    if (se3di_share_is_ghost(set, set->index_of[end->id])) {
+        return; /* its owner tells */
     }
     const double *w = set->spins[set->index_of[end->id]].w;
     const double u2 = 0.25 * h * h * se3di_dot(w, w);
@@ -258,26 +263,43 @@ void se3di_bonds_forces(se3di_particles *set, double h)
     }
 }
 
-/* After the forces are complete, those that broke go. */
+static int is_on_wall(const se3di_particles *set, const se3di_bond *bond)
+{
+    return set->bond_ends[bond->end[1]].id == SE3DI_NO_INDEX;
+}
+
+/* Each by one process: that of the sphere, which is always the first end. */
 void se3di_bonds_push_walls(se3di_particles *set)
 {
-    int broken = 0;
     for (size_t k = 0; k < set->bond_count; ++k) {
         const se3di_bond *bond = &set->bonds[k];
-        const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
-        broken = broken || bond->fate != SE3DI_BOND_HOLDS;
-        if (end->id != SE3DI_NO_INDEX) {
+        if (!is_on_wall(set, bond) ||
+            se3di_share_is_ghost(set, set->index_of[set->bond_ends[bond->end[0]].id])) {
             continue;
         }
+        const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
         se3di_wall *wall = &set->walls[end->wall];
         double lever[3], moment[3];
         se3di_mul(wall->pose.R, end->point, lever);
         se3di_add(lever, wall->pose.x, lever);
         se3di_sub(lever, wall->pose.c, lever);
         se3di_cross(lever, bond->force, moment);
+        if (se3di_share_is_spread(set)) {
+            se3di_add(moment, bond->torque[1], moment);
+            se3di_share_add_to_wall(set, end->wall, bond->force, moment);
+            continue;
+        }
         se3di_add(wall->force, bond->force, wall->force);
         se3di_add(wall->torque, moment, wall->torque);
         se3di_add(wall->torque, bond->torque[1], wall->torque);
+    }
+}
+
+void se3di_bonds_finish(se3di_particles *set)
+{
+    int broken = 0;
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        broken = broken || set->bonds[k].fate != SE3DI_BOND_HOLDS;
     }
     if (broken) {
         se3di_bonds_keep(set);

@@ -190,7 +190,7 @@ static se3d_status insert(se3di_particles *set, se3di_source *source, double h)
         ++source->inserted;
         const int spread = se3di_share_is_spread(set);
         if (spread) {
-            set->share->insert(set);
+            set->share->insert(set, spheres, source->clump > 0);
         }
         if (set->capacity != capacity) { /* order[] is a new one */
             capacity = set->capacity;

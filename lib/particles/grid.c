@@ -167,6 +167,7 @@ static double measure(se3di_particles *set, grid *g)
     const double largest = measure_box(set);
     double most[SE3DI_PARTICLE_CLASSES + 1] = {0.0};
     double *differs = &most[SE3DI_PARTICLE_CLASSES];
+    *differs = set->clump_count > 0 ? 1.0 : 0.0;
     for (size_t k = 0; k < set->count; ++k) {
         const double radius = set->particles[k].radius;
         double *of_class = &most[class_of(radius, largest)];
@@ -177,7 +178,7 @@ static double measure(se3di_particles *set, grid *g)
     for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
         g->classes[c].radius = most[c];
     }
-    set->uniform = set->stuff_count == 1 && set->clump_count == 0 && !(*differs > 0.0);
+    set->uniform = set->stuff_count == 1 && !(*differs > 0.0);
     set->skin = choose_skin(set, largest);
     return largest;
 }

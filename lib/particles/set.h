@@ -350,6 +350,8 @@ typedef struct se3di_bond_end {
     double point[3];       /* in its frame */
     double q[4];           /* turn of a free sphere since it got its first bond */
     uint32_t begin, count; /* of what its bonds do to it, in bond_places */
+    uint32_t number;       /* in the whole of a set that is spread: share.h */
+    uint32_t reserved;
 } se3di_bond_end;
 
 /* Bonds that were made together, and what became of them. */
@@ -376,7 +378,10 @@ typedef enum se3di_bond_fate {
 typedef struct se3di_bond {
     uint32_t end[2]; /* of the set's bond_ends */
     uint32_t group;
-    int32_t fate;        /* se3di_bond_fate; those that do not hold go after the step */
+    int32_t fate;    /* se3di_bond_fate; those that do not hold go after the step */
+    uint32_t number; /* in the whole of a set that is spread: share.h */
+    uint32_t reserved;
+    double span;         /* its length at the last forces */
     double length;       /* without load */
     double radius;       /* of its section */
     double stiffness[4]; /* normal, shear [N/m], bending, twisting [N m] */
@@ -515,6 +520,7 @@ typedef struct se3di_particles {
     size_t bond_end_of_capacity;
     int32_t bonds_changed; /* pairs that may touch are others than in the list */
     int32_t bonds_reserved;
+    size_t bonds_gone; /* since the set was spread: share.h */
     uint64_t touching;
     int32_t starved;       /* memory was missing in the last evaluation of the forces */
     int32_t failed_placed; /* the overlap was there before any step was made */

@@ -14,6 +14,8 @@
 typedef struct se3di_share {
     int32_t is_spread;               /* 0: the set is whole here */
     uint32_t owned;                  /* own particles have the ids below this, ghosts the others */
+    uint32_t owned_clumps;           /* the first ones; their spheres are own particles */
+    se3d_status told;                /* of the call under way, which has failed for all; else 0 */
     const uint32_t *number;          /* [id] their ids in the whole */
     uint64_t total;                  /* own particles of all processes */
     size_t ids;                      /* of the whole so far */
@@ -30,15 +32,20 @@ typedef struct se3di_share {
     void (*migrate)(se3di_particles *set);
     /* Ghosts as far as `reach` from the places of the own ones, and the history. */
     void (*border)(se3di_particles *set, double reach);
-    /* Of the particle that a source has just appended, which is taken out again: it is its owner's
-     * when lists are made. */
-    void (*insert)(se3di_particles *set);
-    void (*renew)(se3di_particles *set); /* places and velocities of ghosts */
+    /* Of the `spheres` that a source has just appended, which are one clump or a free one, and are
+     * taken out again: they are their owner's when lists are made. */
+    void (*insert)(se3di_particles *set, size_t spheres, int is_clump);
+    void (*renew)(se3di_particles *set); /* places, velocities and turns of ghosts */
+    /* A bond goes, with its fate: all processes that have it say so. */
+    void (*part)(se3di_particles *set, const se3di_bond *bond);
     void (*largest)(const se3di_particles *set, size_t count,
                     double *values);                                       /* of all processes */
     void (*add)(const se3di_particles *set, size_t count, double *values); /* without rounding */
     /* The worst status of all, and what it is about. */
     se3d_status (*agree)(se3di_particles *set, se3d_status status);
+    /* The worst status of all, with the message of the first process that has it; also between
+     * runs. */
+    se3d_status (*settle)(se3di_particles *set, se3d_status status, se3di_error *error);
     void (*give_up)(se3di_particles *set, const char *why); /* ends all processes */
     void (*forget)(se3di_particles *set);                   /* the set goes */
 } se3di_share;
@@ -78,6 +85,28 @@ static inline void se3di_share_largest(const se3di_particles *set, size_t count,
 static inline se3d_status se3di_share_agree(se3di_particles *set, se3d_status status)
 {
     return se3di_share_is_spread(set) ? set->share->agree(set, status) : status;
+}
+
+/* Clumps that are moved here: the first ones. */
+static inline size_t se3di_share_clumps(const se3di_particles *set)
+{
+    return se3di_share_is_spread(set) ? set->share->owned_clumps : set->clump_count;
+}
+
+/* What a wall gets, force and torque, to the exact sums: in parts that are multiples of powers of
+ * two. */
+static inline void se3di_share_add_to_wall(const se3di_particles *set, uint32_t wall,
+                                           const double force[3], const double torque[3])
+{
+    double *sum = set->share->sums + (size_t)(6 * SE3DI_EXACT_PARTS) * wall;
+    for (int a = 0; a < 6; ++a) {
+        double rest = a < 3 ? force[a] : torque[a - 3];
+        for (int n = 0; n < SE3DI_EXACT_PARTS; ++n) {
+            const double step = set->share->steps[n], part = (rest + step) - step;
+            sum[SE3DI_EXACT_PARTS * a + n] += part;
+            rest -= part;
+        }
+    }
 }
 
 static inline void se3di_share_gather(se3di_particles *set)

@@ -185,6 +185,7 @@ static void sum_walls(se3di_particles *set)
 {
     size_t walls = set->wall_count;
     if (se3di_share_is_spread(set)) {
+        se3di_bonds_push_walls(set);
         sum_exactly(set);
         return;
     }
@@ -198,6 +199,13 @@ static void sum_walls(se3di_particles *set)
         memcpy(set->walls[w].force, sum, 3 * sizeof(double));
         memcpy(set->walls[w].torque, sum + 3, 3 * sizeof(double));
     }
+    se3di_bonds_push_walls(set);
+}
+
+/* In any process. */
+static int has_clumps(const se3di_particles *set)
+{
+    return set->clump_count > 0 || (se3di_share_is_spread(set) && set->template_count > 0);
 }
 
 static se3di_force_task prepare(se3di_particles *set, double h, const se3di_strain *strain)
@@ -220,7 +228,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .stuffs = set->stuffs,
         .callback = set->callback,
         .ctx = set->ctx,
-        .clumped = set->clump_count > 0 ? set : NULL,
+        .clumped = has_clumps(set) ? set : NULL,
         .strain = se3di_domain_strains(set) ? strain : NULL,
     };
     if (set->audits) {
@@ -271,23 +279,24 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     se3di_force_task task = prepare(set, h, &strain);
     se3di_particles_sweep(set, &task, motion);
     sum_walls(set);
-    se3di_bonds_push_walls(set);
+    se3di_bonds_finish(set);
     if (motion->drift != 0.0) {
         se3di_servos_drift(set, motion->drift);
     }
-    double excess = 0.0;
+    double most[2] = {0.0, set->bonds_changed}; /* the largest excess, and whether a bond broke */
     for (uint32_t s = 0; s < set->slab_count; ++s) {
-        excess = se3di_larger(excess, set->slabs[s].overlap);
+        most[0] = se3di_larger(most[0], set->slabs[s].overlap);
         set->touching += set->slabs[s].touching;
         if (set->slabs[s].failure.happened && !set->law_failure.happened) {
             set->law_failure = set->slabs[s].failure;
         }
     }
-    se3di_share_largest(set, 1, &excess);
+    se3di_share_largest(set, 2, most);
+    set->bonds_changed = most[1] > 0.0;
     if (set->law_failure.happened) {
         return SE3D_ERR_CALLBACK;
     }
-    if (excess > 0.0) {
+    if (most[0] > 0.0) {
         return SE3D_ERR_STEP_SIZE;
     }
     return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;

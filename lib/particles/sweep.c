@@ -42,7 +42,7 @@ static haste hastier(haste a, haste b)
 }
 
 /* Which particles a pass leaves alone. */
-enum { SKIP_NONE = 0, SKIP_CLUMPS = 1, SKIP_GHOSTS = 2 };
+enum { SKIP_NONE = 0, SKIP_CLUMPS = 1, SKIP_GHOSTS = 2, SKIP_BOTH = SKIP_CLUMPS | SKIP_GHOSTS };
 
 /* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled;
  * `skips`, too. */
@@ -54,8 +54,8 @@ static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, 
     const double *wear = se3di_particles_wear(set);
     haste most = {0.0, 0.0};
     for (size_t k = begin; k < end; ++k) {
-        if ((skips == SKIP_CLUMPS && se3di_clump_find(set, k)) ||
-            (skips == SKIP_GHOSTS && se3di_share_is_ghost(set, k))) {
+        if (((skips & SKIP_CLUMPS) && se3di_clump_find(set, k)) ||
+            ((skips & SKIP_GHOSTS) && se3di_share_is_ghost(set, k))) {
             continue;
         }
         se3di_particle *particle = &set->particles[k];
@@ -93,10 +93,12 @@ static haste move_range(se3di_particles *set, size_t begin, size_t end,
     if (set->flow_count > 0 && motion->drift != 0.0) {
         se3di_flows_mark(set, begin, end);
     }
+    const int spread = se3di_share_is_spread(set);
     if (set->clump_count > 0) {
-        return move_kicked(set, begin, end, motion->kicks, SKIP_CLUMPS, motion);
+        return spread ? move_kicked(set, begin, end, motion->kicks, SKIP_BOTH, motion)
+                      : move_kicked(set, begin, end, motion->kicks, SKIP_CLUMPS, motion);
     }
-    if (se3di_share_is_spread(set)) {
+    if (spread) {
         return move_kicked(set, begin, end, motion->kicks, SKIP_GHOSTS, motion);
     }
     switch (motion->kicks) {
@@ -188,7 +190,7 @@ typedef struct pass_work {
 static void pass_part(se3di_particles *set, size_t c, void *ctx)
 {
     pass_work *w = ctx;
-    const size_t count = set->count, clumps = set->clump_count;
+    const size_t count = set->count, clumps = se3di_share_clumps(set);
     const size_t first = se3di_part_begin(clumps, c), end = se3di_part_begin(clumps, c + 1);
     w->most[c] =
         move_range(set, se3di_part_begin(count, c), se3di_part_begin(count, c + 1), w->motion);

@@ -34,6 +34,13 @@ static void destroy(team *t)
     free(t->table);
     free(t->removed);
     free(t->arrivals);
+    free(t->clump_arrivals.data);
+    free(t->seen_clumps);
+    free(t->seen_ends);
+    free(t->ties);
+    free(t->ends);
+    free(t->end_of);
+    free(t->gone);
     free(t->share.fresh);
     free(t->share.sums);
     free(t);
@@ -77,7 +84,9 @@ static team *create(int rank, int size)
                              .renew = team_renew,
                              .largest = team_largest,
                              .add = team_add,
+                             .part = team_part,
                              .agree = team_agree,
+                             .settle = team_settle,
                              .give_up = give_up,
                              .forget = forget};
     return t;

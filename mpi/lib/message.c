@@ -5,9 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/quaternion.h"
 #include "team.h"
 
 #define STATE_SIZE 9 /* numbers of a ghost: place, velocity, angular velocity */
+#define TURN_SIZE  4 /* of a clump, or of an end of a bond */
 
 void team_fail(const team *t, const char *what, const char *why)
 {
@@ -193,13 +195,56 @@ se3d_status team_agree(se3di_particles *set, se3d_status status)
     return (se3d_status)worst.status;
 }
 
-static void pack(const se3di_particles *set, const uint32_t *seen, size_t count, double *out)
+se3d_status team_settle(se3di_particles *set, se3d_status status, se3di_error *error)
 {
-    for (size_t k = 0; k < count; ++k, out += STATE_SIZE) {
-        const uint32_t index = set->index_of[seen[k]];
+    team *t = team_of(set);
+    struct {
+        int status, rank;
+    } own = {(int)status, t->rank}, worst;
+    se3di_error told = {.message = ""};
+    check(t, MPI_Allreduce(&own, &worst, 1, MPI_2INT, MPI_MINLOC, t->comm));
+    if (worst.status >= 0) {
+        return status;
+    }
+    t->share.told = (se3d_status)worst.status;
+    if (error->status == status) { /* else the message is an older one */
+        memcpy(told.message, error->message, sizeof told.message);
+        memcpy(told.field, error->field, sizeof told.field);
+    }
+    check(t, MPI_Bcast(told.message, sizeof told.message, MPI_CHAR, worst.rank, t->comm));
+    check(t, MPI_Bcast(told.field, sizeof told.field, MPI_CHAR, worst.rank, t->comm));
+    if (worst.rank != t->rank && told.message[0]) {
+        (void)se3di_error_set(error, (se3d_status)worst.status, "%s", told.message);
+        memcpy(error->field, told.field, sizeof told.field);
+    }
+    return (se3d_status)worst.status;
+}
+
+static size_t count_sent(const peer *p)
+{
+    return STATE_SIZE * p->sent_count + TURN_SIZE * (p->sent_clumps.count + p->sent_ends.count);
+}
+
+static size_t count_received(const peer *p)
+{
+    return STATE_SIZE * p->count + TURN_SIZE * (p->clumps.count + p->ends.count);
+}
+
+static void pack(const se3di_particles *set, const peer *p)
+{
+    const team *t = team_of(set);
+    double *out = p->out;
+    for (size_t k = 0; k < p->sent_count; ++k, out += STATE_SIZE) {
+        const uint32_t index = set->index_of[t->seen[p->sent + k]];
         memcpy(out, set->particles[index].x, 3 * sizeof *out);
         memcpy(out + 3, set->particles[index].v, 3 * sizeof *out);
         memcpy(out + 6, set->spins[index].w, 3 * sizeof *out);
+    }
+    for (size_t k = 0; k < p->sent_clumps.count; ++k, out += TURN_SIZE) {
+        memcpy(out, set->clumps[t->seen_clumps[p->sent_clumps.from + k]].q, 4 * sizeof *out);
+    }
+    for (size_t k = 0; k < p->sent_ends.count; ++k, out += TURN_SIZE) {
+        memcpy(out, set->bond_ends[t->seen_ends[p->sent_ends.from + k]].q, 4 * sizeof *out);
     }
 }
 
@@ -213,6 +258,14 @@ static void unpack(se3di_particles *set, const peer *p)
         memcpy(set->spins[index].w, in + 6, 3 * sizeof *in);
         set->loads[index] = (se3di_load){{0.0}, {0.0}};
     }
+    for (size_t k = 0; k < p->clumps.count; ++k, in += TURN_SIZE) {
+        se3di_clump *clump = &set->clumps[p->clumps.from + k];
+        memcpy(clump->q, in, sizeof clump->q);
+        se3di_quat_to_matrix(clump->q, clump->A);
+    }
+    for (size_t k = 0; k < p->ends.count; ++k, in += TURN_SIZE) {
+        memcpy(set->bond_ends[p->ends.from + k].q, in, 4 * sizeof *in);
+    }
 }
 
 /* The buffers of all peers lie one after the other. */
@@ -220,15 +273,15 @@ static void place_values(team *t)
 {
     size_t size = 0;
     for (size_t k = 0; k < t->peer_count; ++k) {
-        size += STATE_SIZE * (t->peers[k].sent_count + t->peers[k].count);
+        size += count_sent(&t->peers[k]) + count_received(&t->peers[k]);
     }
     team_reserve(t, &t->values, &t->value_capacity, size + 1, sizeof *t->values);
     double *at = t->values;
     for (size_t k = 0; k < t->peer_count; ++k) {
         peer *p = &t->peers[k];
         p->out = at;
-        p->in = at + STATE_SIZE * p->sent_count;
-        at = p->in + STATE_SIZE * p->count;
+        p->in = at + count_sent(p);
+        at = p->in + count_received(p);
     }
 }
 
@@ -240,15 +293,15 @@ void team_renew(se3di_particles *set)
     place_values(t);
     for (size_t k = 0; k < t->peer_count; ++k) {
         const peer *p = &t->peers[k];
-        check(t, MPI_Irecv(p->in, small(t, STATE_SIZE * (size_t)p->count), MPI_DOUBLE, p->rank, 2,
-                           t->comm, &t->requests[active++]));
+        check(t, MPI_Irecv(p->in, small(t, count_received(p)), MPI_DOUBLE, p->rank, 2, t->comm,
+                           &t->requests[active++]));
     }
     for (size_t k = 0; k < t->peer_count; ++k) {
         const peer *p = &t->peers[k];
-        pack(set, t->seen + p->sent, p->sent_count, p->out);
-        check(t, MPI_Isend(p->out, small(t, STATE_SIZE * p->sent_count), MPI_DOUBLE, p->rank, 2,
-                           t->comm, &t->requests[active++]));
-        t->stats.bytes += STATE_SIZE * p->sent_count * sizeof(double);
+        pack(set, p);
+        check(t, MPI_Isend(p->out, small(t, count_sent(p)), MPI_DOUBLE, p->rank, 2, t->comm,
+                           &t->requests[active++]));
+        t->stats.bytes += count_sent(p) * sizeof(double);
     }
     check(t, MPI_Waitall(active, t->requests, MPI_STATUSES_IGNORE));
     for (size_t k = 0; k < t->peer_count; ++k) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "particles/clump.h"
 #include "particles/contacts.h"
 #include "particles/grid.h"
 #include "particles/list.h"
@@ -17,28 +18,29 @@ typedef struct loaded {
     se3di_load load;
 } loaded;
 
+/* All of one kind from all processes: particles, pairs and walls that touch, the same on meshes and
+ * their triangles, clumps, ends of bonds, bonds, and those that are gone. */
+enum { PARTICLES, PAIRS, WALLS, TOUCHES, FACES, CLUMPS, ENDS, TIES, GONE, KINDS };
+
+static const size_t sizes[KINDS] = {sizeof(loaded),          sizeof(history),  sizeof(history),
+                                    sizeof(se3di_mesh_pair), sizeof(uint32_t), sizeof(se3di_clump),
+                                    sizeof(se3di_bond_end),  sizeof(tie),      sizeof(parting)};
+
 typedef struct head {
-    uint64_t particles, pairs, walls, touches, faces;
+    uint64_t count[KINDS];
 } head;
 
-/* All of one kind from all processes. */
 typedef struct whole {
-    head counts;
-    loaded *particles;
-    history *pairs, *walls; /* those that touch */
-    se3di_mesh_pair *touches;
-    uint32_t *faces;
+    uint64_t count[KINDS];
+    void *of[KINDS];
 } whole;
 
-/* The ends of bonds stay when these break, and name particles by the ids of the whole. */
 static const char *refusal(const se3di_particles *set)
 {
-    return set->clump_count > 0 || set->template_count > 0 ? "cannot be clumps"
-           : set->flow_count > 0                           ? "cannot be counted by flows"
-           : set->audits                                   ? "cannot be audited"
-           : set->servo_count > 0                          ? "cannot be pressed by servo walls"
-           : set->cell.count > 0                           ? "cannot be in a cell that strains"
-           : set->bond_end_count > 0                       ? "cannot be bonded, nor have been"
+    return set->flow_count > 0              ? "cannot be counted by flows"
+           : set->audits                    ? "cannot be audited"
+           : set->servo_count > 0           ? "cannot be pressed by servo walls"
+           : set->cell.count > 0            ? "cannot be in a cell that strains"
            : set->law == SE3DI_LAW_CALLBACK ? "cannot have a law of contact of the user's own"
                                             : NULL;
 }
@@ -172,7 +174,8 @@ static void number_all(se3di_particles *set)
     }
     t->share.number = t->number;
     t->share.owned = SE3DI_NO_INDEX;
-    t->share.fresh_count = t->arrival_count = 0;
+    t->share.owned_clumps = (uint32_t)set->clump_count;
+    team_forget_arrivals(t);
     t->share.total = set->count;
 }
 
@@ -187,6 +190,7 @@ se3d_status team_spread(se3di_particles *set, const char **why)
     divide(set);
     choose_steps(set);
     number_all(set);
+    team_begin_bonds(set);
     se3di_load *loads = save_loads(set);
     const int32_t valid = loads != NULL;
     t->from_whole = t->share.is_spread = 1;
@@ -270,7 +274,8 @@ static void pack_touch(const se3di_particles *set, se3di_mesh_pair pair, bytes *
 static void pack(const se3di_particles *set, bytes *out)
 {
     const team *t = team_of(set);
-    bytes part[5] = {{NULL, 0, 0}};
+    bytes part[KINDS] = {{NULL, 0, 0}};
+    head h;
     for (size_t k = 0; k < set->count; ++k) {
         if (!se3di_share_is_ghost(set, k)) {
             loaded p = {{se3di_share_number(set, k), 0, set->particles[k], set->spins[k]},
@@ -279,23 +284,31 @@ static void pack(const se3di_particles *set, bytes *out)
                 p.load = set->loads[k];
             }
             p.mover.spin.id = p.mover.number;
-            bytes_put(t, &part[0], &p, sizeof p);
+            bytes_put(t, &part[PARTICLES], &p, sizeof p);
         }
     }
     for (uint32_t s = 0; set->list_valid && s < set->slab_count; ++s) {
         const se3di_slab *slab = &set->slabs[s];
         for (uint32_t b = slab->pair_begin; b < slab->wall_end; ++b) {
-            pack_block(set, slab, b, &part[1], &part[2]);
+            pack_block(set, slab, b, &part[PAIRS], &part[WALLS]);
         }
         for (uint32_t k = slab->mesh_begin; k < slab->mesh_end; ++k) {
-            pack_touch(set, set->mesh_pairs[k], &part[3], &part[4]);
+            pack_touch(set, set->mesh_pairs[k], &part[TOUCHES], &part[FACES]);
         }
     }
-    const head h = {part[0].count / sizeof(loaded), part[1].count / sizeof(history),
-                    part[2].count / sizeof(history), part[3].count / sizeof(se3di_mesh_pair),
-                    part[4].count / sizeof(uint32_t)};
+    for (size_t k = 0; k < se3di_share_clumps(set); ++k) {
+        se3di_clump clump = set->clumps[k];
+        clump.first = se3di_share_number(set, set->index_of[clump.first]);
+        bytes_put(t, &part[CLUMPS], &clump, sizeof clump);
+    }
+    team_pack_ends(set, &part[ENDS]);
+    team_pack_ties(set, &part[TIES]);
+    bytes_put(t, &part[GONE], t->gone, set->bonds_gone * sizeof *t->gone);
+    for (int k = 0; k < KINDS; ++k) {
+        h.count[k] = part[k].count / sizes[k];
+    }
     bytes_put(t, out, &h, sizeof h);
-    for (int k = 0; k < 5; ++k) {
+    for (int k = 0; k < KINDS; ++k) {
         bytes_put(t, out, part[k].data, part[k].count);
         free(part[k].data);
     }
@@ -328,52 +341,49 @@ static const unsigned char *take(const unsigned char *at, void *to, uint64_t cou
 
 static whole unpack(const team *t)
 {
-    whole w = {.counts = {0, 0, 0, 0, 0}};
-    head sum = {0, 0, 0, 0, 0};
+    whole w = {.count = {0}};
+    uint64_t sum[KINDS] = {0};
     for (int q = 0; q < t->size; ++q) {
         const head h = head_of(t, q);
-        sum = (head){sum.particles + h.particles, sum.pairs + h.pairs, sum.walls + h.walls,
-                     sum.touches + h.touches, sum.faces + h.faces};
+        for (int k = 0; k < KINDS; ++k) {
+            sum[k] += h.count[k];
+        }
     }
-    w.particles = make(t, sum.particles, sizeof *w.particles);
-    w.pairs = make(t, sum.pairs, sizeof *w.pairs);
-    w.walls = make(t, sum.walls, sizeof *w.walls);
-    w.touches = make(t, sum.touches, sizeof *w.touches);
-    w.faces = make(t, sum.faces, sizeof *w.faces);
+    for (int k = 0; k < KINDS; ++k) {
+        w.of[k] = make(t, sum[k], sizes[k]);
+    }
     for (int q = 0; q < t->size; ++q) {
         const head h = head_of(t, q);
         const unsigned char *at = t->came.data + t->from[q] + sizeof h;
-        at = take(at, w.particles + w.counts.particles, h.particles, sizeof *w.particles);
-        at = take(at, w.pairs + w.counts.pairs, h.pairs, sizeof *w.pairs);
-        at = take(at, w.walls + w.counts.walls, h.walls, sizeof *w.walls);
-        at = take(at, w.touches + w.counts.touches, h.touches, sizeof *w.touches);
-        (void)take(at, w.faces + w.counts.faces, h.faces, sizeof *w.faces);
-        for (uint64_t k = 0; k < h.touches; ++k) {
-            w.touches[w.counts.touches + k].face_begin += (uint32_t)w.counts.faces;
+        se3di_mesh_pair *touches = (se3di_mesh_pair *)w.of[TOUCHES] + w.count[TOUCHES];
+        const uint32_t faces = (uint32_t)w.count[FACES];
+        for (int k = 0; k < KINDS; ++k) {
+            at = take(at, (char *)w.of[k] + w.count[k] * sizes[k], h.count[k], sizes[k]);
+            w.count[k] += h.count[k];
         }
-        w.counts = (head){w.counts.particles + h.particles, w.counts.pairs + h.pairs,
-                          w.counts.walls + h.walls, w.counts.touches + h.touches,
-                          w.counts.faces + h.faces};
+        for (uint64_t k = 0; k < h.count[TOUCHES]; ++k) {
+            touches[k].face_begin += faces;
+        }
     }
     return w;
 }
 
 static void drop(whole *w)
 {
-    free(w->particles);
-    free(w->pairs);
-    free(w->walls);
-    free(w->touches);
-    free(w->faces);
+    for (int k = 0; k < KINDS; ++k) {
+        free(w->of[k]);
+    }
 }
 
 /* Particles by their numbers; index_of[] finds them. */
 static void fill_particles(se3di_particles *set, const whole *w)
 {
     team *t = team_of(set);
-    const size_t count = w->counts.particles;
+    const size_t count = w->count[PARTICLES];
+    const loaded *particles = w->of[PARTICLES];
     set->list_valid = 0;
     set->count = set->id_count = set->carry_count = set->mesh_old_count = 0;
+    set->clump_count = set->bond_count = set->bond_end_count = 0;
     if (se3di_particles_reserve(set, count) < 0 ||
         se3di_particles_grow(set, &set->index_of, &set->index_capacity, t->share.ids) < 0) {
         team_fail(t, "particles", "memory is missing");
@@ -382,19 +392,43 @@ static void fill_particles(se3di_particles *set, const whole *w)
         memset(set->index_of, 0xff, t->share.ids * sizeof *set->index_of); /* SE3DI_NO_INDEX */
     }
     for (size_t k = 0; k < count; ++k) {
-        set->index_of[w->particles[k].mover.number] = (uint32_t)k;
+        set->index_of[particles[k].mover.number] = (uint32_t)k;
     }
     for (size_t id = 0; id < t->share.ids; ++id) {
         const uint32_t from = set->index_of[id];
         if (from != SE3DI_NO_INDEX) {
             const size_t k = set->count++;
-            set->particles[k] = w->particles[from].mover.particle;
-            set->spins[k] = w->particles[from].mover.spin;
-            set->loads[k] = w->particles[from].load;
+            set->particles[k] = particles[from].mover.particle;
+            set->spins[k] = particles[from].mover.spin;
+            set->loads[k] = particles[from].load;
             set->index_of[id] = (uint32_t)k;
         }
     }
     set->id_count = t->share.ids;
+}
+
+static int compare_clumps(const void *a, const void *b)
+{
+    const se3di_clump *c = a, *d = b;
+    return c->first < d->first ? -1 : c->first > d->first;
+}
+
+/* In the order in which they were made, which is that of their first spheres. */
+static void fill_clumps(se3di_particles *set, const whole *w)
+{
+    const size_t count = w->count[CLUMPS];
+    if (set->template_count == 0) {
+        return;
+    }
+    if (se3di_clumps_reserve(set, set->id_count, count) < 0) {
+        team_fail(team_of(set), "particles", "memory is missing");
+    }
+    qsort(w->of[CLUMPS], count, sizeof *set->clumps, compare_clumps);
+    if (count > 0) {
+        memcpy(set->clumps, w->of[CLUMPS], count * sizeof *set->clumps);
+    }
+    set->clump_count = count;
+    team_index_clumps(set);
 }
 
 static int compare_histories(const void *a, const void *b)
@@ -472,51 +506,53 @@ static void fill_lane(se3di_particles *set, const history *h, int lane)
 /* One slab holds all. */
 static void fill_blocks(se3di_particles *set, const whole *w, se3di_slab *slab)
 {
+    const history *pairs = w->of[PAIRS], *walls = w->of[WALLS];
     int lane = SE3DI_PARTICLE_LANES;
-    reserve_blocks(set, w->counts.pairs / SE3DI_PARTICLE_LANES + w->counts.walls + 2);
+    reserve_blocks(set, w->count[PAIRS] / SE3DI_PARTICLE_LANES + w->count[WALLS] + 2);
     set->block_count = 0;
-    for (uint64_t k = 0; k < w->counts.pairs; ++k) {
+    for (uint64_t k = 0; k < w->count[PAIRS]; ++k) {
         if (lane == SE3DI_PARTICLE_LANES) {
             open_block(set);
             lane = 0;
         }
-        fill_lane(set, &w->pairs[k], lane++);
+        fill_lane(set, &pairs[k], lane++);
     }
     slab->pair_end = slab->wall_begin = set->block_count;
-    for (uint64_t k = 0; k < w->counts.walls; ++k) {
-        if (k == 0 || lane == SE3DI_PARTICLE_LANES || w->walls[k].j != w->walls[k - 1].j) {
+    for (uint64_t k = 0; k < w->count[WALLS]; ++k) {
+        if (k == 0 || lane == SE3DI_PARTICLE_LANES || walls[k].j != walls[k - 1].j) {
             open_block(set);
             lane = 0;
         }
-        fill_lane(set, &w->walls[k], lane++);
+        fill_lane(set, &walls[k], lane++);
     }
     slab->wall_end = set->block_count;
 }
 
 static void fill_touches(se3di_particles *set, const whole *w, se3di_slab *slab)
 {
+    const se3di_mesh_pair *touches = w->of[TOUCHES];
     void *memory = set->mesh_pairs;
     se3d_status status = se3di_array_reserve(&set->allocator, &memory, &set->mesh_capacity,
-                                             w->counts.touches, sizeof *set->mesh_pairs);
+                                             w->count[TOUCHES], sizeof *set->mesh_pairs);
     set->mesh_pairs = memory;
     if (status >= 0) {
         memory = set->mesh_old; /* they change places */
         status = se3di_array_reserve(&set->allocator, &memory, &set->mesh_old_capacity,
-                                     w->counts.touches, sizeof *set->mesh_old);
+                                     w->count[TOUCHES], sizeof *set->mesh_old);
         set->mesh_old = memory;
     }
     if (status < 0 ||
-        se3di_particles_grow(set, &set->faces, &set->face_capacity, w->counts.faces) < 0) {
+        se3di_particles_grow(set, &set->faces, &set->face_capacity, w->count[FACES]) < 0) {
         team_fail(team_of(set), "particles", "memory is missing");
     }
-    set->face_count = w->counts.faces;
-    set->mesh_count = w->counts.touches;
-    if (w->counts.faces > 0) {
-        memcpy(set->faces, w->faces, w->counts.faces * sizeof *w->faces);
+    set->face_count = w->count[FACES];
+    set->mesh_count = w->count[TOUCHES];
+    if (w->count[FACES] > 0) {
+        memcpy(set->faces, w->of[FACES], w->count[FACES] * sizeof *set->faces);
     }
     for (size_t k = 0; k < set->mesh_count; ++k) {
-        set->mesh_pairs[k] = w->touches[k];
-        set->mesh_pairs[k].i = set->index_of[w->touches[k].i];
+        set->mesh_pairs[k] = touches[k];
+        set->mesh_pairs[k].i = set->index_of[touches[k].i];
     }
     slab->mesh_end = (uint32_t)set->mesh_count;
 }
@@ -524,9 +560,9 @@ static void fill_touches(se3di_particles *set, const whole *w, se3di_slab *slab)
 /* Lists that hold nothing but what touches, and must be made anew before the next forces. */
 static void fill_lists(se3di_particles *set, whole *w)
 {
-    qsort(w->pairs, w->counts.pairs, sizeof *w->pairs, compare_histories);
-    qsort(w->walls, w->counts.walls, sizeof *w->walls, compare_walls);
-    qsort(w->touches, w->counts.touches, sizeof *w->touches, compare_touches);
+    qsort(w->of[PAIRS], w->count[PAIRS], sizes[PAIRS], compare_histories);
+    qsort(w->of[WALLS], w->count[WALLS], sizes[WALLS], compare_walls);
+    qsort(w->of[TOUCHES], w->count[TOUCHES], sizes[TOUCHES], compare_touches);
     se3di_slab *slab = &set->slabs[0];
     memset(slab, 0, sizeof *slab);
     slab->end = (uint32_t)set->count;
@@ -557,6 +593,13 @@ void team_gather(se3di_particles *set)
     whole w = unpack(t);
     t->share.is_spread = 0;
     fill_particles(set, &w);
+    fill_clumps(set, &w);
+    team_fill_bonds(set, &(all_bonds){.ends = w.of[ENDS],
+                                      .ties = w.of[TIES],
+                                      .gone = w.of[GONE],
+                                      .end_count = w.count[ENDS],
+                                      .tie_count = w.count[TIES],
+                                      .gone_count = w.count[GONE]});
     if (listed && set->count > 0) {
         size_t touching = 0;
         fill_lists(set, &w);

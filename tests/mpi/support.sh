@@ -19,3 +19,25 @@ share() {
         >"$dir/out" 2>"$dir/err" </dev/null
     status=$?
 }
+
+# own_processes WORDS: those of the program that were started with these words, which may end meanwhile.
+own_processes() {
+    for entry in /proc/[0-9]*; do
+        [ -r "$entry/cmdline" ] || continue
+        case $(tr '\0' ' ' 2>/dev/null <"$entry/cmdline") in
+        "$SE3D_MPI_PROGRAM $1 "*) echo "${entry#/proc/}" ;;
+        esac
+    done 2>/dev/null
+}
+
+# kill_one MODEL DIR: one of the processes that run a model, as soon as there is a checkpoint.
+kill_one() {
+    tries=0
+    while [ ! -e "$2/run.checkpoint" ] && [ $tries -lt 1000 ]; do
+        sleep 0.02
+        tries=$((tries + 1))
+    done
+    victim=$(own_processes "run $1 -o $2" | tail -n 1)
+    holds "there is a process to kill" test -n "$victim"
+    kill -9 "$victim"
+}
