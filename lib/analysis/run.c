@@ -24,6 +24,7 @@
 #include "nonlinear/jump.h"
 #include "nonlinear/kink.h"
 #include "nonlinear/ranks.h"
+#include "particles/sets.h"
 #include "primitive/turn_counter.h"
 
 #include <float.h>
@@ -597,6 +598,7 @@ static se3d_status begin(se3di_run *run)
 
 static se3d_status conclude(se3di_run *run, se3d_status status, double t_end, se3d_status told)
 {
+    status = se3di_sets_settle(run->model, status, run->error);
     if (status >= 0) {
         run->error->status = run->error->status < 0 ? run->error->status : told;
         return status;

@@ -86,14 +86,20 @@ static void account(const verlet *m)
     m->model->power[1] += power;
 }
 
+/* The first half of the step of the bodies, and what the particles have to know and to keep before
+ * they move. */
+static se3d_status begin_step(verlet *m)
+{
+    SE3DI_TRY(se3di_sets_aim(m->model, m->bodies.h, m->error));
+    SE3DI_TRY(se3di_lie_verlet_drift(&m->bodies));
+    SE3DI_TRY(se3di_contacts_reserve(m->model, m->bodies.t1, m->error)); /* no lack of it later */
+    return m->keeps ? se3di_sets_keep(m->model, m->error) : SE3D_OK;
+}
+
 /* The particles to t1, and what they do to the bodies there; *contact as se3di_sets_forces has it.
- * Nothing has moved if room is missing. */
+ */
 static se3d_status move_particles(verlet *m, double t1, se3d_status *contact)
 {
-    SE3DI_TRY(se3di_contacts_reserve(m->model, t1, m->error)); /* no failure for memory later */
-    if (m->keeps) {
-        SE3DI_TRY(se3di_sets_keep(m->model, m->error));
-    }
     se3di_sets_move(m->model, m->open ? 2 : 1, m->bodies.h);
     m->moved = 1;
     const se3d_status status = se3di_sets_forces(m->model, t1, m->bodies.h, m->error, contact);
@@ -117,7 +123,8 @@ static se3d_status finish_bodies(verlet *m)
     return status;
 }
 
-/* One step to t1 that leaves the last half kick of the particles open. */
+/* One step to t1 that leaves the last half kick of the particles open. Processes that share them
+ * ask each other before these move, and before some of them come back. */
 static se3d_status advance(verlet *m, double t1)
 {
     se3di_lie_verlet *bodies = &m->bodies;
@@ -127,14 +134,13 @@ static se3d_status advance(verlet *m, double t1)
     }
     bodies->t1 = t1;
     m->moved = 0;
-    SE3DI_TRY(se3di_sets_aim(m->model, bodies->h, m->error));
-    se3d_status status = se3di_equations_keep(bodies->equations);
-    status = status < 0 ? status : se3di_lie_verlet_drift(bodies);
     se3d_status contact = SE3D_OK;
-    if (status >= 0) {
-        status = move_particles(m, t1, &contact);
-    }
+    se3d_status status = se3di_equations_keep(bodies->equations);
+    status = status < 0 ? status : begin_step(m);
+    status = se3di_sets_settle(m->model, status, m->error);
+    status = status < 0 ? status : move_particles(m, t1, &contact);
     status = status < 0 ? status : finish_bodies(m);
+    status = m->keeps ? se3di_sets_settle(m->model, status, m->error) : status;
     const int comes_back = status < 0 && m->moved && m->keeps;
     if (m->moved && !comes_back) { /* else the kick before stays as it was */
         m->open = 1;
@@ -154,9 +160,7 @@ static se3d_status advance(verlet *m, double t1)
 
 static se3d_status finish(verlet *m, se3d_status status)
 {
-    if (status == SE3D_ERR_NO_MEMORY) {
-        se3di_sets_give_up(m->model, "memory is missing");
-    }
+    status = se3di_sets_settle(m->model, status, m->error);
     close_kick(m);
     m->bodies.assembly->push = NULL;
     se3di_sets_end(m->model);
@@ -204,6 +208,7 @@ static se3d_status accelerate(se3di_integration *integration)
     SE3DI_TRY(se3di_sets_begin(model, 0.0, equations->error)); /* any step */
     (void)begin(integration);
     se3d_status status = se3di_acceleration_solve(equations, model->time);
+    status = se3di_sets_settle(model, status, equations->error);
     equations->assembly.push = NULL;
     se3di_sets_end(model);
     return status;

@@ -218,6 +218,53 @@ double se3di_particles_want_step(const se3di_particles *set, const se3di_model *
     return isfinite(safe) ? safe : 0.0;
 }
 
+/* What fails in one process fails in all. */
+static se3d_status settle(se3di_particles *set, se3d_status status, se3di_error *error)
+{
+    if (!set->share) {
+        return status;
+    }
+    return set->share->told < 0 ? set->share->told : set->share->settle(set, status, error);
+}
+
+static se3di_particles *first_shared(const se3di_model *model)
+{
+    se3di_particles *set = model->sets;
+    while (set && !set->share) {
+        set = set->next;
+    }
+    return set;
+}
+
+se3d_status se3di_sets_settle(const se3di_model *model, se3d_status status, se3di_error *error)
+{
+    se3di_particles *set = first_shared(model);
+    return set ? settle(set, status, error) : status;
+}
+
+static se3d_status conclude(se3di_particles *set, se3d_status status, se3di_error *error)
+{
+    status = settle(set, status, error);
+    if (set->share) {
+        set->share->told = SE3D_OK;
+    }
+    return status;
+}
+
+se3d_status se3di_sets_conclude(const se3di_model *model, se3d_status status, se3di_error *error)
+{
+    se3di_particles *set = first_shared(model);
+    return set ? conclude(set, status, error) : status;
+}
+
+/* What a step begins with. */
+static se3d_status begin_step(se3di_particles *set, const se3di_model *model, double h,
+                              se3di_error *error)
+{
+    SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+    return aim_set(set, model, h, error);
+}
+
 static se3d_status run_steps(se3di_particles *set, const se3di_model *model, double length,
                              size_t steps, se3di_error *error)
 {
@@ -226,8 +273,7 @@ static se3d_status run_steps(se3di_particles *set, const se3di_model *model, dou
     size_t done = 0;
     do {
         const size_t now = varies ? 1 : steps;
-        SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
-        SE3DI_TRY(aim_set(set, model, length, error));
+        SE3DI_TRY(settle(set, begin_step(set, model, length, error), error));
         const se3d_status status = se3di_particles_advance(set, length, now, NULL);
         if (status < 0) {
             return report(set, status, error);
@@ -240,12 +286,23 @@ static se3d_status run_steps(se3di_particles *set, const se3di_model *model, dou
 se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, double h,
                                 double length, size_t steps, se3di_error *error)
 {
-    SE3DI_TRY(check_step(set, model, h, error));
-    SE3DI_TRY(place_set(set, model, error));
-    SE3DI_TRY(spread_set(set, error));
-    const se3d_status status = run_steps(set, model, length, steps, error);
+    se3d_status status = check_step(set, model, h, error);
+    status = status < 0 ? status : place_set(set, model, error);
+    status = settle(set, status, error);
+    status = status < 0 ? status : spread_set(set, error);
+    status = status < 0 ? status : run_steps(set, model, length, steps, error);
     se3di_share_gather(set);
-    return status;
+    return conclude(set, status, error);
+}
+
+static se3d_status place(se3di_particles *set, const se3di_model *model, double h,
+                         se3di_error *error)
+{
+    SE3DI_TRY(check_step(set, model, h, error));
+    SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
+    SE3DI_TRY(place_set(set, model, error));
+    se3di_particles_free_walls(set, model);
+    return SE3D_OK;
 }
 
 static se3d_status begin(se3di_particles *set, const se3di_model *model, double h,
@@ -255,10 +312,7 @@ static se3d_status begin(se3di_particles *set, const se3di_model *model, double 
     if (se3di_particles_is_idle(set)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(check_step(set, model, h, error));
-    SE3DI_TRY(se3di_gravity_eval(model, set->time, set->gravity, NULL));
-    SE3DI_TRY(place_set(set, model, error));
-    se3di_particles_free_walls(set, model);
+    SE3DI_TRY(settle(set, place(set, model, h, error), error));
     SE3DI_TRY(spread_set(set, error));
     se3d_status status = se3di_particles_prepare(set);
     return status < 0 ? report(set, status, error) : SE3D_OK;
@@ -281,15 +335,6 @@ se3d_status se3di_sets_begin(se3di_model *model, double h, se3di_error *error)
         se3di_sets_end(model);
     }
     return status;
-}
-
-void se3di_sets_give_up(const se3di_model *model, const char *why)
-{
-    for (se3di_particles *set = model->sets; set; set = set->next) {
-        if (se3di_share_is_spread(set)) {
-            set->share->give_up(set, why);
-        }
-    }
 }
 
 se3d_status se3di_sets_keep(se3di_model *model, se3di_error *error)
@@ -335,7 +380,8 @@ se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_erro
         if (se3di_particles_is_idle(set)) {
             continue;
         }
-        SE3DI_TRY(se3di_gravity_eval(model, t, set->gravity, NULL));
+        const se3d_status drawn = se3di_gravity_eval(model, t, set->gravity, NULL);
+        SE3DI_TRY(se3di_model_gravity_varies(model) ? settle(set, drawn, error) : drawn);
         se3di_particles_move_walls(set, model->frames);
         se3di_particles_free_walls(set, model);
         se3d_status status = se3di_particles_forces(set, h);

@@ -32,9 +32,11 @@ se3d_status se3di_sets_aim(se3di_model *model, double h, se3di_error *error);
 se3d_status se3di_sets_forces(se3di_model *model, double t, double h, se3di_error *error,
                               se3d_status *late);
 void se3di_sets_kick(se3di_model *model, double h);
-/* One process fails alone: sets that are spread over processes end them all, as the others would
- * wait. */
-void se3di_sets_give_up(const se3di_model *model, const char *why);
+/* What fails in one process fails in all that share sets, with its message: all are asked before
+ * they do something together and at the end of a call. A call that has failed asks no more. */
+se3d_status se3di_sets_settle(const se3di_model *model, se3d_status status, se3di_error *error);
+/* The same as the last thing of a public call. */
+se3d_status se3di_sets_conclude(const se3di_model *model, se3d_status status, se3di_error *error);
 /* The run ends: sets that are spread over processes are whole again. */
 void se3di_sets_end(se3di_model *model);
 /* What the particles do to the bodies [bodies * 6]: force (ground frame), torque (body frame). */

@@ -3,6 +3,7 @@
 #include "system/solver.h"
 
 #include "analysis/follow.h"
+#include "particles/sets.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -212,6 +213,12 @@ se3d_status se3d_solver_follow(se3d_solver *solver, se3d_solver *from)
     return se3di_work_end(solver->system, se3di_run_follow(&solver->run, &from->run));
 }
 
+/* What failed for one process of several that share particles has failed for all. */
+static se3d_status share(se3d_system *system, se3d_status status)
+{
+    return se3di_sets_conclude(&system->model, status, &system->found);
+}
+
 se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
 {
     SE3DI_EDIT_OF(solver);
@@ -231,7 +238,7 @@ se3d_status se3d_solver_run(se3d_solver *solver, double t_end)
                              step, most);
     }
     se3di_work_begin(system);
-    return se3di_work_end(system, se3di_run_to(&solver->run, t_end));
+    return se3di_work_end(system, share(system, se3di_run_to(&solver->run, t_end)));
 }
 
 se3d_status se3d_solver_step(se3d_solver *solver, double h)
@@ -245,7 +252,7 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
                              h, STEP_MIN, now);
     }
     se3di_work_begin(solver->system);
-    return se3di_work_end(solver->system, se3di_run_step(&solver->run, h));
+    return se3di_work_end(solver->system, share(solver->system, se3di_run_step(&solver->run, h)));
 }
 
 se3d_status se3d_solver_get_stats_sized(const se3d_solver *solver, se3d_solver_stats *stats,
