@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Adding and removing materials and shapes. */
-#include "model/model.h"
+#include "model/edit.h"
 
 #include <string.h>
 
@@ -89,21 +89,11 @@ se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
     return status;
 }
 
-static se3d_status reserve(se3di_model *model, void **data, size_t *capacity, size_t needed,
-                           size_t size)
-{
-    return se3di_array_reserve(&model->allocator, data, capacity, needed, size);
-}
-
 se3d_status se3di_model_add_shape(se3di_model *model, const se3di_shape *shape,
                                   se3di_handle *handle)
 {
     size_t count = model->shape_slots.count;
-    void *memory = model->shapes;
-    se3d_status status =
-        reserve(model, &memory, &model->shape_capacity, count + 1, sizeof *model->shapes);
-    model->shapes = memory;
-    SE3DI_TRY(status);
+    SE3DI_RESERVE(model, shapes, shape_capacity, count + 1, sizeof *model->shapes);
     SE3DI_TRY(se3di_slots_reserve(&model->shape_slots, &model->allocator));
     SE3DI_TRY(se3di_names_reserve(&model->shape_slots.names, &model->allocator, count + 1));
     se3di_shape copy = *shape;
@@ -133,7 +123,7 @@ void se3di_model_remove_shape(se3di_model *model, uint32_t shape)
         se3di_names_remove(&model->shape_slots.names, 0, gone->name);
     }
     se3di_shape_release(&model->allocator, gone);
-    memmove(gone, gone + 1, (model->shape_slots.count - shape - 1) * sizeof *gone);
+    se3di_array_close_gap(model->shapes, model->shape_slots.count, shape, 1, sizeof *gone);
     se3di_slots_remove(&model->shape_slots, shape);
     se3di_model_touch(model);
 }
@@ -157,19 +147,9 @@ se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *m
     static const se3di_override none = SE3DI_OVERRIDE_NONE;
     size_t n = model->material_slots.count;
     size_t m = n + 1;
-    void *memory = model->materials;
-    se3d_status status =
-        reserve(model, &memory, &model->material_capacity, m, sizeof *model->materials);
-    model->materials = memory;
-    SE3DI_TRY(status);
-    memory = model->overrides;
-    status = reserve(model, &memory, &model->override_capacity, m * m, sizeof *model->overrides);
-    model->overrides = memory;
-    SE3DI_TRY(status);
-    memory = model->pairs;
-    status = reserve(model, &memory, &model->pair_capacity, m * m, sizeof *model->pairs);
-    model->pairs = memory;
-    SE3DI_TRY(status);
+    SE3DI_RESERVE(model, materials, material_capacity, m, sizeof *model->materials);
+    SE3DI_RESERVE(model, overrides, override_capacity, m * m, sizeof *model->overrides);
+    SE3DI_RESERVE(model, pairs, pair_capacity, m * m, sizeof *model->pairs);
     SE3DI_TRY(se3di_slots_reserve(&model->material_slots, &model->allocator));
     for (size_t k = m * m; k-- > 0;) { /* rows become longer, from the last one on */
         size_t row = k / m;
@@ -191,11 +171,10 @@ void se3di_model_remove_material(se3di_model *model, uint32_t material)
             model->overrides[to++] = model->overrides[k];
         }
     }
-    memmove(model->materials + material, model->materials + material + 1,
-            (n - material - 1) * sizeof *model->materials);
+    se3di_array_close_gap(model->materials, n, material, 1, sizeof *model->materials);
     se3di_slots_remove(&model->material_slots, material);
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
-        model->shapes[k].material -= model->shapes[k].material > (int32_t)material;
+        se3di_index_lower_signed(&model->shapes[k].material, material);
     }
 }
 
