@@ -274,8 +274,12 @@ static se3d_status pack(se3d_model *model, const char *path, const se3d_model_op
 {
     const char *object = unit_object();
     FILE *file = tmpfile();
-    se3di_fmi_package package = {
-        .model = model, .path = path, .options = options, .object = object, .version = 3};
+    se3di_fmi_package package = {.model = model,
+                                 .path = path,
+                                 .options = options,
+                                 .object = object,
+                                 .target = "unit",
+                                 .version = 3};
     const se3d_status status = file ? se3di_fmi_package_write(&package, file, error) : SE3D_ERR_IO;
     if (file) {
         fclose(file);

@@ -17,8 +17,7 @@ static int write_layout(const options *o, const char *text, size_t length)
     FILE *file = se3di_partial_open(o->model);
     const int good = file && fwrite(text, 1, length, file) == length;
     if (!file || !file_end(file, o->model, good)) {
-        report_failure(o, o->model, strerror(errno));
-        return EXIT_FAILED;
+        return report_unwritten(o, o->model);
     }
     if (!o->quiet && !o->json) {
         fputs("laid out ", stdout);

@@ -102,8 +102,7 @@ static int write_unit(const options *o, se3di_fmi_package *p, const char *target
     se3d_model_error error = {.message = ""};
     FILE *file = se3di_partial_open(target);
     if (!file) {
-        report_failure(o, target, strerror(errno));
-        return EXIT_FAILED;
+        return report_unwritten(o, target);
     }
     const se3d_status status = se3di_fmi_package_write(p, file, &error);
     if (status < 0) {
@@ -112,8 +111,7 @@ static int write_unit(const options *o, se3di_fmi_package *p, const char *target
         return status == SE3D_ERR_UNSUPPORTED ? EXIT_USAGE : EXIT_FAILED;
     }
     if (!file_end(file, target, 1)) {
-        report_failure(o, target, strerror(errno));
-        return EXIT_FAILED;
+        return report_unwritten(o, target);
     }
     print_done(o, p, target);
     return EXIT_DONE;
@@ -130,8 +128,12 @@ static int make_unit(const options *o, const char *object, int version)
     }
     snprintf(target, sizeof target, "%s%s",
              o->directory ? o->directory : se3d_model_get_name(model), o->directory ? "" : ".fmu");
-    se3di_fmi_package package = {
-        .model = model, .path = o->model, .options = &how, .object = object, .version = version};
+    se3di_fmi_package package = {.model = model,
+                                 .path = o->model,
+                                 .options = &how,
+                                 .object = object,
+                                 .target = target,
+                                 .version = version};
     code = write_unit(o, &package, target);
     se3d_model_destroy(model);
     return code;

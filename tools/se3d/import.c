@@ -78,8 +78,7 @@ static int write_model(const options *o, const se3d_model_import *import)
     FILE *file = se3di_partial_open(o->directory);
     const int good = file && fwrite(text, 1, length, file) == length;
     if (!file || !file_end(file, o->directory, good)) {
-        report_failure(o, o->directory, strerror(errno));
-        return EXIT_FAILED;
+        return report_unwritten(o, o->directory);
     }
     return EXIT_DONE;
 }

@@ -42,7 +42,6 @@ void interrupt_begin(void)
     }
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, NULL);
-    sigaction(SIGXFSZ, &action, NULL); /* a file that is too large is an error of the write */
 }
 #endif
 

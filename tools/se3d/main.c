@@ -3,6 +3,7 @@
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
+#include <signal.h>
 #endif
 #include <stdio.h>
 #include <string.h>
@@ -90,9 +91,19 @@ static void hold_closed_streams(void)
 #endif
 }
 
+/* A file that is larger than a limit is an error of the write, which takes the unfinished file away
+ * and is told, for every command. */
+static void survive_limits(void)
+{
+#if !defined(_WIN32)
+    signal(SIGXFSZ, SIG_IGN);
+#endif
+}
+
 int main(int argc, char **argv)
 {
     hold_closed_streams();
+    survive_limits();
     if (argc < 2) {
         command_print_overview(stderr);
         return EXIT_USAGE;

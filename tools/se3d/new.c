@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* se3d new FILE: a model to begin with. */
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,8 +108,7 @@ static int write_model(const options *o, const char *text)
     FILE *file = se3di_partial_open(o->model);
     const int good = file && fputs(text, file) >= 0;
     if (!file || !file_end(file, o->model, good)) {
-        report_failure(o, o->model, strerror(errno));
-        return EXIT_FAILED;
+        return report_unwritten(o, o->model);
     }
     if (outcome_add_file(o->model, o->quiet, "")) {
         fputs("; next: se3d view ", stdout);

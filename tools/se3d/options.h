@@ -88,6 +88,8 @@ int options_read_model(const options *o, const se3d_model_options *how, se3d_mod
 void report_next(const options *o, const char *folder);
 /* Print a failure as text or, with --json, as an object. */
 void report_failure(const options *o, const char *command, const char *message);
+/* Say that a file cannot be written, and why: errno. @return EXIT_FAILED */
+int report_unwritten(const options *o, const char *path);
 
 /* Say that there is no such command, and which was probably meant. @return EXIT_USAGE */
 int command_report_unknown(const char *name);

@@ -101,7 +101,7 @@ static int convert_table(plot *p, size_t k, char *path, size_t size)
     const int good = values && write_table(t, path, values, rows);
     free(values);
     if (!good) {
-        complain("se3d plot: %s: %s\n", path, strerror(errno ? errno : ENOMEM));
+        complain("se3d plot: %s: cannot be written: %s\n", path, strerror(errno ? errno : ENOMEM));
         return 0;
     }
     if (!table_read(&made, "plot", path)) {

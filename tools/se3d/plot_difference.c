@@ -62,7 +62,7 @@ static int write_difference(plot *p, double *a, double *b, size_t rows)
     snprintf(p->spectra[0], sizeof p->spectra[0], "%s.difference.csv", p->base);
     errno = 0;
     if (!plot_write_curves(p, &made, p->spectra[0])) {
-        complain("se3d plot: %s: %s\n", p->spectra[0], strerror(errno));
+        complain("se3d plot: %s: cannot be written: %s\n", p->spectra[0], strerror(errno));
         return 0;
     }
     return 1;

@@ -4,9 +4,11 @@
 #define _POSIX_C_SOURCE 200809L
 #endif
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 #include "options.h"
@@ -69,6 +71,14 @@ void report_failure(const options *o, const char *command, const char *message)
         json_put_text(text);
         fputs("}\n", stdout);
     }
+}
+
+int report_unwritten(const options *o, const char *path)
+{
+    char text[200];
+    snprintf(text, sizeof text, "cannot be written: %.150s", strerror(errno));
+    report_failure(o, path, text);
+    return EXIT_FAILED;
 }
 
 void progress_begin(progress *p, int quiet, size_t count)

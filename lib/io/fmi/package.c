@@ -315,9 +315,11 @@ se3d_status se3di_fmi_package_write(se3di_fmi_package *package, FILE *file, se3d
         count(package, &variables);
         status = add_all(&k, &variables);
     }
-    errno = 0;
-    if (status >= 0 && !se3di_zip_end(&k.zip)) {
-        status = fail(&k, SE3D_ERR_IO, "", errno ? strerror(errno) : "the archive is too large");
+    const char *why = status >= 0 ? se3di_zip_end(&k.zip) : NULL;
+    if (why) {
+        char text[200];
+        snprintf(text, sizeof text, "cannot be written: %.150s", why);
+        status = fail(&k, SE3D_ERR_IO, package->target, text);
     }
     se3di_fmi_variables_destroy(&variables);
     se3di_iopool_destroy(&k.pool);

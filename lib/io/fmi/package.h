@@ -13,6 +13,7 @@ typedef struct se3di_fmi_package {
     const char *path;                   /* of the model file */
     const se3d_model_options *options;  /* its texts are kept in the unit */
     const char *object;                 /* path of the shared object */
+    const char *target;                 /* path of the archive, for messages */
     int version;                        /* of the standard: 2 or 3 */
     size_t inputs, parameters, outputs; /* how many there are; filled */
     size_t states;                      /* of model exchange; filled. 0: none, as `reason` says */

@@ -4,13 +4,16 @@
  * less than 4 GiB and 65535 files. */
 #include "io/fmi/zip.h"
 
+#include <errno.h>
 #include <string.h>
 
+#include "io/base/file.h"
 #include "io/base/inflate.h"
 
 enum { LOCAL_SIZE = 30, CENTRAL_SIZE = 46, END_SIZE = 22, FILES_MAX = 65534 };
 enum { VERSION = 20, UTF8 = 1 << 11, DATE = 1 << 5 | 1 };
 #define BYTES_MAX UINT64_C(0xfffffff0)
+static const char too_large[] = "the archive is too large";
 
 typedef struct se3di_zip_entry {
     const char *name;
@@ -19,8 +22,9 @@ typedef struct se3di_zip_entry {
 
 static void write_bytes(se3di_zip *zip, const void *bytes, size_t size)
 {
-    if (!zip->failed && size > 0) {
-        zip->failed = fwrite(bytes, 1, size, zip->file) != size;
+    errno = 0;
+    if (!zip->problem && size > 0 && fwrite(bytes, 1, size, zip->file) != size) {
+        zip->problem = se3di_file_get_text(errno ? errno : ENOSPC);
     }
     zip->written += size;
 }
@@ -65,8 +69,8 @@ void se3di_zip_add(se3di_zip *zip, const char *name, const void *bytes, size_t s
         se3di_iopool_grow(zip->pool, zip->entries, zip->count, &zip->capacity, sizeof *grown);
     const char *copy = se3di_iopool_copy(zip->pool, name, strlen(name));
     if (!grown || !copy || strlen(name) > UINT16_MAX || zip->count >= FILES_MAX ||
-        size > BYTES_MAX || zip->written > BYTES_MAX - size) {
-        zip->failed = true;
+        size > BYTES_MAX || zip->written > BYTES_MAX - size) { /* the pool knows if it is short */
+        zip->problem = zip->problem ? zip->problem : too_large;
         return;
     }
     zip->entries = grown;
@@ -94,14 +98,16 @@ static void write_central(se3di_zip *zip, const se3di_zip_entry *e)
     write_bytes(zip, e->name, strlen(e->name));
 }
 
-bool se3di_zip_end(se3di_zip *zip)
+const char *se3di_zip_end(se3di_zip *zip)
 {
     record r = {.used = 0};
     const uint64_t begin = zip->written;
     for (size_t k = 0; k < zip->count; ++k) {
         write_central(zip, &zip->entries[k]);
     }
-    zip->failed = zip->failed || zip->written > BYTES_MAX;
+    if (!zip->problem && zip->written > BYTES_MAX) {
+        zip->problem = too_large;
+    }
     put(&r, 4, 0x06054b50U);
     put(&r, 4, 0); /* disks */
     put(&r, 2, (uint32_t)zip->count);
@@ -110,5 +116,5 @@ bool se3di_zip_end(se3di_zip *zip)
     put(&r, 4, (uint32_t)begin);
     put(&r, 2, 0);
     write_bytes(zip, r.bytes, END_SIZE);
-    return !zip->failed;
+    return zip->problem;
 }

@@ -28,6 +28,13 @@ static se3d_status fail(se3d_model_error *error, se3d_status status, const char 
     return status;
 }
 
+static se3d_status fail_write(se3d_model_error *error, const char *path)
+{
+    char text[200];
+    snprintf(text, sizeof text, "cannot be written: %.150s", se3di_file_get_text(errno));
+    return fail(error, SE3D_ERR_IO, path, text);
+}
+
 static void save_all(se3di_save *s)
 {
     if (!se3di_save_name_all(s)) {
@@ -77,16 +84,14 @@ static se3d_status write_file(se3di_save *s, const char *path, const se3d_write_
     }
     FILE *file = se3di_partial_open(path);
     if (!file) {
-        return fail(error, SE3D_ERR_IO, path, se3di_file_get_text(errno));
+        return fail_write(error, path);
     }
     if (fwrite(s->text, 1, s->used, file) != s->used) {
-        status = fail(error, SE3D_ERR_IO, path, se3di_file_get_text(errno));
+        status = fail_write(error, path);
         se3di_partial_abandon(file, path);
         return status;
     }
-    return se3di_partial_close(file, path)
-               ? SE3D_OK
-               : fail(error, SE3D_ERR_IO, path, se3di_file_get_text(errno));
+    return se3di_partial_close(file, path) ? SE3D_OK : fail_write(error, path);
 }
 
 bool se3di_save_takes_source(const se3d_model *model, const char *path)
