@@ -13,6 +13,7 @@
 
 #define BALANCE     8e-15 /* rounding of accelerations, relative to those of forces that balance */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
+#define GAUSS_PART  0.3   /* of the tolerance, instead of SE3DI_EXPLICIT_PART */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
@@ -37,15 +38,19 @@ size_t se3di_explicit_work_count(const se3di_assembly *assembly)
 
 /* Local errors add up; what the user asks for is about the error of a run of some ten motions. Not
  * below what rounding allows. On open trees with nothing but plain forces the estimates of long
- * steps, which are of low orders, are far above the error: at 0.1 by three orders of magnitude. */
+ * steps, which are of low orders, are far above the error: at 0.1 by three orders of magnitude;
+ * those of gauss are at every tolerance. */
 static double inner_tolerance(const se3di_integration *integration, const se3di_motion *motion)
 {
     const double tolerance = integration->settings.tolerance;
-    const int is_loose = tolerance > SE3DI_EXPLICIT_LOOSE &&
-                         integration->method->tag == SE3D_METHOD_DOP853 &&
-                         motion->can_wait(integration->equations);
+    const se3di_integrator *method = integration->method;
+    const int is_gauss = method->tag == SE3D_METHOD_GAUSS;
+    const int is_plain =
+        (is_gauss || method->tag == SE3D_METHOD_DOP853) && motion->can_wait(integration->equations);
+    const int is_loose = is_plain && tolerance > SE3DI_EXPLICIT_LOOSE;
     const double more = is_loose ? sqrt(tolerance / SE3DI_EXPLICIT_LOOSE) : 1.0;
-    return fmax(SE3DI_EXPLICIT_PART * more * tolerance, SE3DI_EXPLICIT_LEAST);
+    const double part = is_plain && is_gauss ? GAUSS_PART : SE3DI_EXPLICIT_PART;
+    return fmax(part * more * tolerance, SE3DI_EXPLICIT_LEAST);
 }
 
 /* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
@@ -100,10 +105,12 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration)
 se3di_explicit se3di_explicit_begin(se3di_integration *integration)
 {
     se3di_explicit m = se3di_explicit_point(integration);
+    const double asked = integration->settings.tolerance;
     m.step.integration = integration;
     se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
-    m.kkt =
-        se3di_state_begin(m.equations, regularisation(m.tolerance), fmin(1e-6, 1e-3 * m.tolerance));
+    const double solved =
+        fmin(m.tolerance, fmax(SE3DI_EXPLICIT_PART * asked, SE3DI_EXPLICIT_LEAST));
+    m.kkt = se3di_state_begin(m.equations, regularisation(solved), fmin(1e-6, 1e-3 * solved));
     return m;
 }
 

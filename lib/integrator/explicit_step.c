@@ -103,7 +103,7 @@ static void accept(se3di_explicit *m, double t)
     m->past->at.time = t;
     m->past->dense = m->past->at.renewed = 0.0;
     m->past->gap = -1.0;
-    m->has_stages = 1;
+    m->has_stages = m->stands = 1;
     const size_t work = m->count - SE3DI_STATE_WORK;
     m->motion->keep(m->equations, m->y1);
     memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
@@ -339,6 +339,18 @@ static se3d_status repeat(se3di_explicit *m)
     return error <= 1.0 ? SE3D_OK : se3di_step_list_fail(m->step.integration);
 }
 
+/* The frames are at the forward state; turns count from step to step, not from an output. */
+static void stand_at_begin(se3di_explicit *m)
+{
+    if (m->stands) {
+        m->motion->set_again(m->equations, m->y1);
+    } else {
+        m->motion->set(m->equations, m->y1);
+        se3di_angles_accept(m->assembly->model);
+    }
+    m->stands = 0;
+}
+
 /* One accepted step with error control. What contacts remember belongs to the end of a step, and
  * cannot be interpolated: if shapes are near each other steps end at t_end. So does the first
  * one after a change of what acts, which may soon change again. */
@@ -351,10 +363,9 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     m->step.at = &m->past->at;
     m->step.ends = se3di_adaptive_ends(m->step.integration, &m->past->at);
     se3di_forces_show(model, 0);
-    m->motion->set(m->equations, m->y1);
+    stand_at_begin(m);
     SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
     se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
-    se3di_angles_accept(model); /* turns count from step to step, not from an output */
     if (m->step.integration->repeat) {
         return repeat(m);
     }

@@ -14,7 +14,7 @@
 #include "integrator/motion.h"
 
 #define SE3DI_EXPLICIT_ROWS  17 /* vectors of work: stages and what a method needs beside them */
-#define SE3DI_EXPLICIT_FORMS 10 /* vectors of history: what it interpolates by */
+#define SE3DI_EXPLICIT_FORMS 11 /* vectors of history: what it interpolates by */
 
 /* The history begins with this, then y_1 (at at.time), y'_1, y_0 (at at.begin) and what the method
  * keeps for its interpolation. */
@@ -95,6 +95,7 @@ struct se3di_explicit {
     int stages;         /* gauss: of this step */
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
+    int stands;         /* the frames are at y_1: a step of this call has ended there */
     int has_stages;     /* K is that of the last step: it was made in this call */
     int leaves_scale;   /* the scale grows when errors are measured again */
     int waits;          /* y'_1, and what the model shows of it, is computed when it is needed */

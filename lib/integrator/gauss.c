@@ -16,9 +16,10 @@
 #include "math/elementary.h"
 
 #include <math.h>
+
 #include <string.h>
 
-#define MANY_FROM       1e-6 /* 8 stages for tolerances below */
+#define MANY_FROM       1e-6 /* 8 stages for tolerances below, if they come one by one */
 #define CONTRACTION_AIM 0.3  /* of the iterations: fewer, longer steps cost more iterations */
 #define CONTRACTION_MAX 0.7  /* above, the step is given up */
 #define ITERATIONS_MAX  12
@@ -28,6 +29,7 @@
 #define NOISE           0.5   /* the same of a change that does not get less */
 #define GUESS           0.5   /* contraction of a step that nothing is known of */
 #define SAFETY          0.8
+#define FAR             0.6 /* into a step: where its prediction is to be at its best */
 #define GROWTH          2.0
 #define EASY            0.01 /* an error that would allow far longer steps */
 #define SHORT           0.02 /* step times that rate: singular positions are not avoided by less */
@@ -35,6 +37,7 @@
 #define ASIDE_MAX       6    /* if it is not tried for longer */
 #define SLOW_MAX        0.05 /* step times the rate of the motion, if stiffness holds it */
 #define STATES          (SE3DI_GAUSS_MAX + 1) /* first vector of work for the states of stages */
+#define END             SE3DI_GAUSS_FORMS     /* the form that is the derivative at the end */
 
 static double *stage_rate(const se3di_explicit *m, int i)
 {
@@ -44,6 +47,12 @@ static double *stage_rate(const se3di_explicit *m, int i)
 static double *stage_state(const se3di_explicit *m, int i)
 {
     return m->K + (size_t)(STATES + i) * m->count;
+}
+
+/* Of the polynomial of this step, in the place of the states, which are no longer needed. */
+static double *get_form(const se3di_explicit *m, int k)
+{
+    return stage_state(m, k);
 }
 
 /* More rows are dependent at the end of the step than are all along. */
@@ -72,32 +81,76 @@ static int choose_stages(const se3di_explicit *m)
     if (settings->order > 0) {
         return settings->order / 2;
     }
-    const int pays = settings->tolerance < MANY_FROM || se3di_gauss_lanes_take_loops(m);
+    const int pays = settings->tolerance < MANY_FROM || se3di_gauss_lanes_suit(m);
     return pays && m->past->lost == 0.0 ? 8 : 4;
 }
 
 /* The motion goes on as in the last step: nothing that acts has jumped. */
 static int is_continued(const se3di_explicit *m)
 {
-    const double *end = m->forms + (SE3DI_GAUSS_MAX + 1) * m->count;
+    const double *end = m->forms + END * m->count;
     return m->past->stages > 0.0 && m->past->at.time > m->past->at.begin &&
            memcmp(end, m->f1, m->count * sizeof *end) == 0;
 }
 
-/* The derivatives of the stages as the last step's polynomial goes on, or all as at its start. */
-static void predict(se3di_explicit *m, const se3di_gauss_rule *rule, double h)
+/* Of a vector of rates but those of the works; to compare such vectors with each other. */
+static double length_of(const se3di_explicit *m, const double *rates)
 {
-    const double before = m->past->at.time - m->past->at.begin;
-    const se3di_gauss_rule *last = se3di_gauss_find((int)m->past->stages);
-    for (int i = 0; i < rule->stages; ++i) {
-        double weights[SE3DI_GAUSS_NODES];
-        if (is_continued(m)) {
-            se3di_gauss_value(last, 1.0 + rule->c[i] * h / before, weights);
-            se3di_explicit_combine(m, m->forms, NULL, 1.0, weights, SE3DI_GAUSS_NODES,
-                                   stage_rate(m, i));
-        } else {
-            memcpy(stage_rate(m, i), m->f1, m->count * sizeof *m->f1);
+    double sum = 0.0;
+    for (size_t k = 0; k < m->count - SE3DI_STATE_WORK; ++k) {
+        sum += rates[k] * rates[k];
+    }
+    return sqrt(sum);
+}
+
+/* How many forms of the last step's polynomial tell of the motion until x: those after the least
+ * part of the sum there are what the iterations have left, which grows with the degree. */
+static int count_forms(const se3di_explicit *m, const se3di_gauss_rule *last, double x)
+{
+    double basis[SE3DI_GAUSS_FORMS], least = HUGE_VAL;
+    int count = 1;
+    se3di_gauss_basis(last, x, basis);
+    for (int k = 1; k < last->stages + 2; ++k) {
+        const double part = (basis[k] - 1.0) * length_of(m, m->forms + (size_t)k * m->count);
+        if (part <= least) {
+            least = part;
+            count = k + 1;
         }
+    }
+    return count;
+}
+
+static void find_prediction(const se3di_explicit *m, const se3di_gauss_rule *rule, double h,
+                            se3di_gauss_prediction *prediction)
+{
+    prediction->forms = 0;
+    if (!is_continued(m)) {
+        return;
+    }
+    const double part = h / (m->past->at.time - m->past->at.begin);
+    const se3di_gauss_rule *last = se3di_gauss_find((int)m->past->stages);
+    const int count = count_forms(m, last, 1.0 + FAR * part);
+    prediction->forms = count - 1;
+    for (int i = 0; i < rule->stages; ++i) {
+        double basis[SE3DI_GAUSS_FORMS];
+        se3di_gauss_basis(last, 1.0 + part * rule->c[i], basis);
+        for (int k = 1; k < count; ++k) {
+            prediction->weights[(k - 1) * SE3DI_GAUSS_MAX + i] = basis[k] - 1.0;
+        }
+    }
+}
+
+/* The derivatives of the stages by it. */
+static void predict(const se3di_explicit *m, const se3di_gauss_rule *rule,
+                    const se3di_gauss_prediction *prediction)
+{
+    for (int i = 0; i < rule->stages; ++i) {
+        double weights[SE3DI_GAUSS_FORMS];
+        for (int k = 0; k < prediction->forms; ++k) {
+            weights[k] = prediction->weights[k * SE3DI_GAUSS_MAX + i];
+        }
+        se3di_explicit_combine(m, m->forms + m->count, m->f1, 1.0, weights, prediction->forms,
+                               stage_rate(m, i));
     }
 }
 
@@ -174,7 +227,7 @@ static double guess_rate(const se3di_explicit *m, double h)
 static void follow(se3di_explicit *m, int k, double change, double *before, double *rate)
 {
     if (k > 0) {
-        *rate = change / *before;
+        *rate = *before > 0.0 ? change / *before : 0.0;
         m->contraction = *before > ROUNDING ? fmax(m->contraction, *rate) : m->contraction;
     }
     *before = change;
@@ -195,15 +248,20 @@ static se3d_status iterate(se3di_explicit *m, const se3di_gauss_rule *rule, doub
         *judgement = judge(m, k, change, rate);
     }
     renew_stages(m, rule, h);
+    for (int k = 0; k < rule->stages; ++k) {
+        se3di_explicit_combine(m, m->K, NULL, 1.0, rule->values + (size_t)k * (size_t)rule->stages,
+                               rule->stages, get_form(m, k));
+    }
     return SE3D_OK;
 }
 
 /* The same with the stages in lanes; 0 if a stage fails: nothing has changed then. */
 static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double h,
-                         se3di_gauss_lanes *lanes, int *judgement)
+                         const se3di_gauss_prediction *prediction, se3di_gauss_lanes *lanes,
+                         int *judgement)
 {
     double change = 0.0, before = 0.0, rate = guess_rate(m, h);
-    se3di_gauss_lanes_begin(lanes, m, rule, h);
+    se3di_gauss_lanes_begin(lanes, m, rule, h, prediction);
     m->contraction = 0.0;
     *judgement = 0;
     for (int k = 0; *judgement == 0; ++k) {
@@ -213,7 +271,7 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
         follow(m, k, change, &before, &rate);
         *judgement = judge(m, k, change, rate);
     }
-    se3di_gauss_lanes_end(lanes, m);
+    se3di_gauss_lanes_end(lanes, m, rule, get_form(m, 0));
     return 1;
 }
 
@@ -222,11 +280,12 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
 static se3d_status find_stages(se3di_explicit *m, double h, int *judgement)
 {
     se3di_gauss_lanes lanes;
+    se3di_gauss_prediction prediction;
     const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
     m->is_closed = m->is_met = 0;
-    predict(m, rule, h);
+    find_prediction(m, rule, h, &prediction);
     if (se3di_gauss_lanes_init(&lanes, m, rule)) {
-        if (iterate_lanes(m, rule, h, &lanes, judgement)) {
+        if (iterate_lanes(m, rule, h, &prediction, &lanes, judgement)) {
             m->is_closed = lanes.has_loops;
             return SE3D_OK;
         }
@@ -238,9 +297,10 @@ static se3d_status find_stages(se3di_explicit *m, double h, int *judgement)
         if (lanes.has_loops && m->step.integration->settings.order == 0) {
             m->stages = 4;
             rule = se3di_gauss_find(m->stages);
-            predict(m, rule, h);
+            find_prediction(m, rule, h, &prediction);
         }
     }
+    predict(m, rule, &prediction);
     return iterate(m, rule, h, judgement);
 }
 
@@ -262,20 +322,25 @@ static se3d_status make_stages(se3di_explicit *m, double h, double *error)
 
 static void arrive(se3di_explicit *m, double h)
 {
-    const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
-    se3di_explicit_combine(m, m->K, m->y1, h, rule->b, rule->stages, m->y);
+    static const double whole = 1.0;
+    se3di_explicit_combine(m, get_form(m, 0), m->y1, h, &whole, 1, m->y);
 }
 
-/* The size of what `weights` say of the derivatives of this step, times h. */
-static double weigh(se3di_explicit *m, double h, const double *weights)
+/* d_0 and d_1: what u' lacks at both ends. */
+static void find_defects(const se3di_explicit *m, double *begin, double *end)
 {
-    se3di_explicit_combine(m, m->K, NULL, h, weights, SE3DI_GAUSS_MAX, m->sum);
-    const double *end = se3di_explicit_end(m);
-    for (size_t k = 0; k < m->count; ++k) {
-        m->sum[k] +=
-            h * (weights[SE3DI_GAUSS_MAX] * m->f1[k] + weights[SE3DI_GAUSS_MAX + 1] * end[k]);
+    const double *f0 = m->f1, *f1 = se3di_explicit_end(m);
+    for (size_t c = 0; c < m->count; ++c) {
+        const double *a = get_form(m, 0) + c;
+        double even = 0.0, odd = 0.0;
+        for (int k = 0; k < m->stages; k += 2) {
+            even += a[0];
+            odd += a[m->count];
+            a += 2 * m->count;
+        }
+        begin[c] = f0[c] - (even - odd);
+        end[c] = f1[c] - (even + odd);
     }
-    return se3di_explicit_size(m, m->sum);
 }
 
 /* The defects at both ends, integrated, are the error of u within the step, of local order s + 1;
@@ -288,27 +353,31 @@ static double estimate_end(se3di_explicit *m, double h, double error)
         return HUGE_VAL;
     }
     const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
-    double begin[SE3DI_GAUSS_NODES], end[SE3DI_GAUSS_NODES], mean[SE3DI_GAUSS_NODES] = {0.0};
-    se3di_gauss_defects(rule, begin, end);
-    memcpy(mean, rule->b, (size_t)rule->stages * sizeof *mean);
-    const double defect = fmax(weigh(m, h, begin), weigh(m, h, end));
-    const double whole = weigh(m, h, mean);
-    if (!(defect > 0.0)) {
-        return defect == 0.0 ? 0.0 : HUGE_VAL;
+    find_defects(m, m->sum, m->sum3);
+    const double begin = length_of(m, m->sum), end = length_of(m, m->sum3);
+    const double defect = fmax(begin, end), whole = length_of(m, get_form(m, 0));
+    const double size = h * se3di_explicit_size(m, begin > end ? m->sum : m->sum3);
+    const double part = defect < whole ? defect / whole : 1.0;
+    if (!(size > 0.0)) {
+        return size == 0.0 ? 0.0 : HUGE_VAL;
     }
-    const double part = fmin(1.0, defect / whole);
-    return rule->largest * defect * se3di_pow(part, 1.0 / (rule->stages + 1)) / m->tolerance;
+    return rule->largest * size * se3di_pow(part, 1.0 / (rule->stages + 1)) / m->tolerance;
 }
 
 /* What the next step is predicted and this one interpolated from. */
 static void accept(se3di_explicit *m, double h)
 {
     (void)h;
+    double *forms = m->forms, *half = forms + (size_t)m->stages * m->count, *skew = half + m->count;
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
-    memcpy(m->forms, m->K, (size_t)m->stages * m->count * sizeof *m->K);
-    memcpy(m->forms + SE3DI_GAUSS_MAX * m->count, m->f1, m->count * sizeof *m->f1);
-    memcpy(m->forms + (SE3DI_GAUSS_MAX + 1) * m->count, se3di_explicit_end(m),
-           m->count * sizeof *m->f1);
+    memcpy(forms, get_form(m, 0), (size_t)m->stages * m->count * sizeof *forms);
+    find_defects(m, half, skew);
+    for (size_t c = 0; c < m->count; ++c) {
+        const double begin = half[c], end = skew[c];
+        half[c] = 0.5 * (begin + end);
+        skew[c] = 0.5 * (end - begin);
+    }
+    memcpy(forms + END * m->count, se3di_explicit_end(m), m->count * sizeof *forms);
     m->past->stages = m->stages;
     m->past->contraction = m->contraction;
     m->past->lost = is_lost(m);
@@ -373,15 +442,13 @@ static void interpolate(const se3di_explicit *m, double t, double *y)
     const se3di_gauss_rule *rule = se3di_gauss_find((int)m->past->stages);
     const double h = m->past->at.time - m->past->at.begin, x = (t - m->past->at.begin) / h;
     const double ramp = x * x * (3.0 - 2.0 * x);
-    double weights[SE3DI_GAUSS_NODES];
-    se3di_gauss_integral(rule, x, weights);
-    for (int i = 0; i < rule->stages; ++i) {
-        weights[i] -= ramp * rule->b[i];
-    }
+    double integral[SE3DI_GAUSS_FORMS];
+    se3di_gauss_integral(rule, x, integral);
+    integral[0] -= ramp;
     for (size_t k = 0; k < m->count; ++k) {
         m->sum[k] = m->y0[k] + ramp * (m->y1[k] - m->y0[k]);
     }
-    se3di_explicit_combine(m, m->forms, m->sum, h, weights, SE3DI_GAUSS_NODES, y);
+    se3di_explicit_combine(m, m->forms, m->sum, h, integral, rule->stages + 2, y);
 }
 
 static const se3di_explicit_class gauss_class = {

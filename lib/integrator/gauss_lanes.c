@@ -12,7 +12,7 @@
 /* Numbers per stage besides those of the tree: K, and those of a group. */
 static size_t count_numbers(size_t state, size_t stages)
 {
-    return 5 * state + stages + 3 + 4 + 1;
+    return 5 * state + stages + SE3DI_GAUSS_FORMS + 3 + 4 + 1;
 }
 
 size_t se3di_gauss_work_count(const se3di_assembly *assembly)
@@ -61,6 +61,19 @@ int se3di_gauss_lanes_take_loops(const se3di_explicit *m)
            se3di_gauss_lanes_suit_loops(m->equations);
 }
 
+/* Open, and moved by nothing but gravity. */
+static int is_bare_tree(const se3di_explicit *m)
+{
+    const se3di_model *model = m->assembly->model;
+    return m->motion == &se3di_motion_joints && m->equations->is_open_tree && is_bare(model) &&
+           is_gravity_constant(model);
+}
+
+int se3di_gauss_lanes_suit(const se3di_explicit *m)
+{
+    return is_bare_tree(m) || se3di_gauss_lanes_take_loops(m);
+}
+
 /* The widest core that stages fill. */
 static const se3di_lane_core *find_core(int stages)
 {
@@ -83,7 +96,8 @@ static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m, size_t 
     own->next = own->closed + state;
     own->change = own->next + state;
     own->weights = own->change + state;
-    own->gravity = own->weights + w * g->stages;
+    own->forms = own->weights + w * g->stages;
+    own->gravity = own->forms + w * SE3DI_GAUSS_FORMS;
     own->parts = own->gravity + 3 * w;
     own->verdict = own->parts + 4 * w;
     se3di_lanes_lay_out(&own->lanes, tree, g->core, own->verdict + w);
@@ -106,9 +120,7 @@ static void take_least(se3di_explicit *m)
 int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule)
 {
     g->has_loops = se3di_gauss_lanes_take_loops(m);
-    const int is_open = m->motion == &se3di_motion_joints && m->equations->is_open_tree;
-    const se3di_model *model = m->assembly->model;
-    if (!g->has_loops && !(is_open && is_bare(model) && is_gravity_constant(model))) {
+    if (!g->has_loops && !is_bare_tree(m)) {
         return 0;
     }
     g->core = find_core(rule->stages);
@@ -135,21 +147,26 @@ int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_
 /* ---- states and derivatives ---- */
 
 void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
-                             const se3di_gauss_rule *rule, double h)
+                             const se3di_gauss_rule *rule, double h,
+                             const se3di_gauss_prediction *prediction)
 {
-    const size_t s = g->stages, w = g->width, state = g->positions + g->velocities;
+    const size_t s = g->stages, w = g->width, terms = (size_t)prediction->forms;
     for (size_t i = 0; i < s; ++i) {
         se3di_gauss_group *own = &g->groups[i / w];
         const size_t lane = i % w;
-        for (size_t c = 0; c < state; ++c) {
-            g->K[c * s + i] = m->K[i * m->count + c];
-        }
         for (size_t j = 0; j < s; ++j) {
             own->weights[j * w + lane] = h * rule->A[i * s + j];
+        }
+        for (size_t k = 0; k < terms; ++k) {
+            own->forms[k * w + lane] = prediction->weights[k * SE3DI_GAUSS_MAX + i];
         }
         for (size_t c = 0; c < 3; ++c) {
             own->gravity[c * w + lane] = m->assembly->model->gravity[c];
         }
+    }
+    for (size_t k = 0; k < s / w; ++k) {
+        g->core->extend(g->positions + g->velocities, m->f1, terms, g->groups[k].forms,
+                        m->forms + m->count, m->count, g->K + k * w, s);
     }
 }
 
@@ -264,15 +281,26 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
     return 1;
 }
 
-void se3di_gauss_lanes_end(se3di_gauss_lanes *g, se3di_explicit *m)
+void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m,
+                           const se3di_gauss_rule *rule, double *forms)
 {
-    const size_t state = g->positions + g->velocities;
+    const size_t s = g->stages, w = g->width, state = g->positions + g->velocities;
     renew(g, m->y1);
-    for (size_t i = 0; i < g->stages; ++i) {
-        double *to = m->K + i * m->count;
-        for (size_t c = 0; c < state; ++c) {
-            to[c] = g->K[c * g->stages + i];
+    memset(m->sum, 0, state * sizeof *m->sum);
+    for (size_t i = 0; i < s / w; ++i) {
+        const se3di_gauss_group *own = &g->groups[i];
+        for (size_t lane = 0; lane < w; ++lane) {
+            for (size_t j = 0; j < s; ++j) {
+                own->weights[j * w + lane] = rule->values[(i * w + lane) * s + j];
+            }
         }
-        memset(to + state, 0, SE3DI_STATE_WORK * sizeof *to);
+        g->core->combine(state, m->sum, s, own->weights, g->K, own->Y);
+        for (size_t lane = 0; lane < w; ++lane) {
+            double *to = forms + (i * w + lane) * m->count;
+            for (size_t c = 0; c < state; ++c) {
+                to[c] = own->Y[c * w + lane];
+            }
+            memset(to + state, 0, SE3DI_STATE_WORK * sizeof *to);
+        }
     }
 }

@@ -21,7 +21,8 @@ typedef struct se3di_gauss_group {
     double *closed;  /* the same with their loops closed */
     double *next;    /* derivatives there */
     double *change;  /* times h, of the derivatives */
-    double *weights; /* [stages][w] h a_ij, of stage i in its lane */
+    double *weights; /* [stages][w] h a_ij, of stage i in its lane; */
+    double *forms;   /* [SE3DI_GAUSS_FORMS][w] of the prediction, and of the forms of the step */
     double *gravity; /* [3][w] */
     double *parts;   /* [4][w] */
     double *verdict; /* [w] */
@@ -42,16 +43,21 @@ size_t se3di_gauss_work_count(const se3di_assembly *assembly);
 int se3di_gauss_lanes_suit_loops(const se3di_equations *equations);
 /* Whether they are in the next step: not where functions change gravity. */
 int se3di_gauss_lanes_take_loops(const se3di_explicit *m);
+/* Whether stages are: where they are loops or the open tree are so on every processor. */
+int se3di_gauss_lanes_suit(const se3di_explicit *m);
 /* @return whether the stages of the step can be computed so */
 int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule);
-/* Take the derivatives of the stages in m->K. */
+/* The derivatives of the stages are those of the prediction. */
 void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
-                             const se3di_gauss_rule *rule, double h);
+                             const se3di_gauss_rule *rule, double h,
+                             const se3di_gauss_prediction *prediction);
 /* Iteration k; *change, relative to the scales, of a step by the derivatives. @return whether all
  * are finite: they are not where rows of loops are not clear of each other */
 int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
                             int k, double h, double *change);
-/* Give the derivatives back, those of positions at the velocities of the last iteration. */
-void se3di_gauss_lanes_end(se3di_gauss_lanes *g, se3di_explicit *m);
+/* The forms of the polynomial through the derivatives, those of positions at the velocities of the
+ * last iteration: `forms` [stages][m->count]. */
+void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m,
+                           const se3di_gauss_rule *rule, double *forms);
 
 #endif

@@ -87,61 +87,34 @@ const se3di_gauss_rule *se3di_gauss_find(int stages)
     return stages == 8 ? &eight : &four;
 }
 
-/* P_0 ... P_{s+2} at xi in [-1, 1] and beyond. */
-static void legendre(int s, double xi, double P[SE3DI_GAUSS_MAX + 3])
+/* P_0 ... P_{s+1} at xi in [-1, 1] and beyond. */
+static void legendre(int s, double xi, double P[SE3DI_GAUSS_FORMS])
 {
     P[0] = 1.0;
     P[1] = xi;
-    for (int k = 1; k < s + 2; ++k) {
+    for (int k = 1; k <= s; ++k) {
         P[k + 1] = ((2 * k + 1) * xi * P[k] - k * P[k - 1]) / (k + 1);
     }
 }
 
-/* weights = sum_k basis_k l_i's coefficients, beside the parts of both defects. */
-static void assemble(const se3di_gauss_rule *rule, const double *basis, double begin, double end,
-                     double weights[SE3DI_GAUSS_NODES])
+void se3di_gauss_basis(const se3di_gauss_rule *rule, double x, double basis[SE3DI_GAUSS_FORMS])
 {
-    const int s = rule->stages;
-    for (int i = 0; i < SE3DI_GAUSS_NODES; ++i) {
-        weights[i] = 0.0;
-    }
-    for (int k = 0; k < s; ++k) {
-        const double at_begin = k % 2 == 0 ? begin : -begin; /* P_k(-1) */
-        for (int i = 0; i < s; ++i) {
-            weights[i] += rule->values[k * s + i] * (basis[k] - at_begin - end);
-        }
-    }
-    weights[SE3DI_GAUSS_MAX] = begin;
-    weights[SE3DI_GAUSS_MAX + 1] = end;
-}
-
-void se3di_gauss_value(const se3di_gauss_rule *rule, double x, double weights[SE3DI_GAUSS_NODES])
-{
-    double P[SE3DI_GAUSS_MAX + 3];
-    legendre(rule->stages, 2.0 * x - 1.0, P);
-    const double last = P[rule->stages];
-    assemble(rule, P, last * (1.0 - x), last * x, weights);
+    const double xi = 2.0 * x - 1.0;
+    legendre(rule->stages, xi, basis);
+    basis[rule->stages + 1] = xi * basis[rule->stages];
 }
 
 /* int_0^x P_n = (P_{n+1} - P_{n-1}) / (2 (2n + 1)), and
  * (2n + 1) xi P_n = (n + 1) P_{n+1} + n P_{n-1}. */
-void se3di_gauss_integral(const se3di_gauss_rule *rule, double x, double weights[SE3DI_GAUSS_NODES])
+void se3di_gauss_integral(const se3di_gauss_rule *rule, double x,
+                          double integral[SE3DI_GAUSS_FORMS])
 {
     const int s = rule->stages;
-    double P[SE3DI_GAUSS_MAX + 3], integral[SE3DI_GAUSS_MAX + 2];
-    legendre(s, 2.0 * x - 1.0, P);
+    double P[SE3DI_GAUSS_FORMS + 1];
+    legendre(s + 1, 2.0 * x - 1.0, P);
     integral[0] = x;
     for (int n = 1; n < s + 2; ++n) {
         integral[n] = (P[n + 1] - P[n - 1]) / (2 * (2 * n + 1));
     }
-    const double moment = ((s + 1) * integral[s + 1] + s * integral[s - 1]) / (2 * s + 1);
-    assemble(rule, integral, 0.5 * (integral[s] - moment), 0.5 * (integral[s] + moment), weights);
-}
-
-void se3di_gauss_defects(const se3di_gauss_rule *rule, double begin[SE3DI_GAUSS_NODES],
-                         double end[SE3DI_GAUSS_NODES])
-{
-    const double none[SE3DI_GAUSS_MAX] = {0.0};
-    assemble(rule, none, 1.0, 0.0, begin);
-    assemble(rule, none, 0.0, 1.0, end);
+    integral[s + 1] = ((s + 1) * integral[s + 1] + s * integral[s - 1]) / (2 * s + 1);
 }

@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Gauss collocation on [0, 1]: the polynomial u' of degree s - 1 through the derivatives K_i at the
- * zeros c_i of the Legendre polynomial P_s(2x - 1), in Lagrange's basis
+ * zeros c_i of the Legendre polynomial P_s(xi), xi = 2x - 1,
  *
- *     l_i(x) = b_i sum_{k<s} (2k + 1) P_k(2c_i - 1) P_k(2x - 1),    a_ij = int_0^{c_i} l_j
+ *     u' = sum_{k<s} a_k P_k(xi),    a_k = sum_i b_i (2k + 1) P_k(2c_i - 1) K_i,
+ *     a_ij = int_0^{c_i} l_j    (l_j: Lagrange's basis)
  *
  * and the one of degree s + 1 that goes through the derivatives at both ends, too (s even):
  *
- *     u'(x) + P_s(2x - 1) (d_0 (1 - x) + d_1 x),    d_0 = f_0 - u'(0),  d_1 = f_1 - u'(1)
+ *     u' + P_s(xi) (d_0 (1 - x) + d_1 x),    d_0 = f_0 - u'(0),  d_1 = f_1 - u'(1)
  *
  * (Hairer, Wanner 1996, sec. IV.5.)  docs/theory/gauss.md */
 #ifndef SE3DI_GAUSS_RULE_H
 #define SE3DI_GAUSS_RULE_H
 
-#define SE3DI_GAUSS_MAX   8  /* stages */
-#define SE3DI_GAUSS_NODES 10 /* derivatives: of the stages, and at [8] the start, at [9] the end */
+#define SE3DI_GAUSS_MAX 8 /* stages */
+#define SE3DI_GAUSS_FORMS                                                                          \
+    10 /* of the polynomial through both ends: a_0 ... a_{s-1} of P_k, then
+                              * (d_0 + d_1)/2 of P_s and (d_1 - d_0)/2 of xi P_s */
 
 typedef struct se3di_gauss_rule {
     int stages;
@@ -23,16 +26,19 @@ typedef struct se3di_gauss_rule {
     const double *values; /* [k * stages + i]: b_i (2k + 1) P_k(2c_i - 1) */
 } se3di_gauss_rule;
 
+/* Derivatives of stages as the polynomial of the step before goes on: that at its end, and of each
+ * form but the first one (which is constant) weights[(k - 1) * SE3DI_GAUSS_MAX + i]. */
+typedef struct se3di_gauss_prediction {
+    int forms; /* 0: all are that at the end */
+    double weights[(SE3DI_GAUSS_FORMS - 1) * SE3DI_GAUSS_MAX];
+} se3di_gauss_prediction;
+
 /* Of 4 or 8 stages. */
 const se3di_gauss_rule *se3di_gauss_find(int stages);
 
-/* The polynomial of degree s + 1 at x, and its integral from 0 to x, as sums over the nodes. */
-void se3di_gauss_value(const se3di_gauss_rule *rule, double x, double weights[SE3DI_GAUSS_NODES]);
+/* What the s + 2 forms are multiplied by at x, all 1 at the end; and the integrals from 0 to x. */
+void se3di_gauss_basis(const se3di_gauss_rule *rule, double x, double basis[SE3DI_GAUSS_FORMS]);
 void se3di_gauss_integral(const se3di_gauss_rule *rule, double x,
-                          double weights[SE3DI_GAUSS_NODES]);
-
-/* d_0 and d_1 as sums over the nodes. */
-void se3di_gauss_defects(const se3di_gauss_rule *rule, double begin[SE3DI_GAUSS_NODES],
-                         double end[SE3DI_GAUSS_NODES]);
+                          double integral[SE3DI_GAUSS_FORMS]);
 
 #endif

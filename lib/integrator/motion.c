@@ -94,6 +94,7 @@ const se3di_motion se3di_motion_bodies = {
     .count = count,
     .get = get,
     .set = set,
+    .set_again = set,
     .get_rates = pass,
     .evaluate = evaluate,
     .evaluate_at = evaluate_at,

@@ -77,6 +77,21 @@ static void set(se3di_equations *equations, const double *y)
     place(equations);
 }
 
+/* Unit length may round to another neighbour twice, so that the whole state is compared. */
+static void set_again(se3di_equations *equations, const double *y)
+{
+    const se3di_tree *tree = equations->tree;
+    const size_t size = tree->v_count * sizeof *y;
+    double *before = equations->joint_before;
+    memcpy(before, tree->q, tree->q_count * sizeof *before);
+    const int is_same = memcmp(tree->qdot, y + tree->q_count, size) == 0;
+    take_state(equations->tree, y);
+    if (!is_same || !equations->is_placed ||
+        memcmp(tree->q, before, tree->q_count * sizeof *before) != 0) {
+        place(equations);
+    }
+}
+
 static void keep(se3di_equations *equations, double *y)
 {
     const se3di_tree *tree = equations->tree;
@@ -687,6 +702,7 @@ const se3di_motion se3di_motion_joints = {
     .count = count,
     .get = get,
     .set = set,
+    .set_again = set_again,
     .get_rates = get_rates,
     .evaluate = evaluate,
     .evaluate_at = evaluate_at,

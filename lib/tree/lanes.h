@@ -92,6 +92,10 @@ typedef struct se3di_lane_core {
      * weights [terms]. */
     void (*combine)(size_t count, const double *base, size_t terms, const double *weights,
                     const double *x, double *out);
+    /* The same with the terms in rows, rows[k * row + c] weights[k]; numbers of out are `stride`
+     * doubles apart. */
+    void (*extend)(size_t count, const double *base, size_t terms, const double *weights,
+                   const double *rows, size_t row, double *out, size_t stride);
     /* Rates of positions of which quaternions are not unit ones. */
     void (*find_free_rates)(const se3di_lanes *lanes, const double *q, const double *qdot,
                             double *rates);
