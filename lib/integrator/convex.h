@@ -34,8 +34,10 @@ typedef struct se3di_convex_contact {
     double lever[2][9]; /* a turning of the body, in its frame, to the velocity of the point */
     double turn[2][9];  /* an impulse on the point to the turning of the body: J^-1 lever^T */
     double response[2]; /* of the velocity to an impulse: along the normal; at most across it */
-    double xi[3];       /* stretch of the spring that sticks */
-    double drift[3];    /* velocity of surface j on its body less that of i */
+    double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
+    double rise, steepness;           /* p_n = rise - steepness v_n, if it is linear */
+    double xi[3];                     /* stretch of the spring that sticks */
+    double drift[3];                  /* velocity of surface j on its body less that of i */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
     double tangential, drag;           /* k_t; -dy/dv_t */
@@ -43,7 +45,8 @@ typedef struct se3di_convex_contact {
     double wanted_before, gap;         /* at the last look; wanted - bound */
     double before[3], v[3], change[3]; /* velocity of the point: at the start, now, of the search */
     double impulse[3];                 /* on j */
-    double slope[9];                   /* minus the derivative of the impulse */
+    double now[9];                     /* minus the derivative of the impulse, */
+    double slope[9];                   /* that which the matrix has */
     double held;                       /* energy of its springs at the start of the step */
 } se3di_convex_contact;
 
@@ -100,6 +103,7 @@ typedef struct se3di_convex {
     double *reach;   /* [free bodies]: of its shapes */
     size_t sleep_capacity, nest_capacity, reach_capacity;
     size_t asleep_count;
+    size_t changed; /* slopes of contacts since the preconditioner was made */
     int32_t sleeps; /* it is wanted */
     int32_t reserved;
     double gravity[3]; /* at the start of the step */

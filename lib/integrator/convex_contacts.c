@@ -20,6 +20,7 @@
 #define SETTLING   4.0  /* steps in which a resting contact comes to rest */
 #define RIGID      1e3  /* an impact of one step, over what moves its bodies as one */
 #define FAST_TIMES 2.0  /* an impact approaches so much faster than loads make it in a step */
+#define PASSED_ON  0.1 /* of what loads do across the normal: others may make it of them along it */
 
 void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3])
 {
@@ -229,10 +230,11 @@ static void set_drift(se3di_convex_contact *c, const se3di_model *model, double 
 }
 
 /* What loads alone make of the velocities of the two points in the step, along the normal: of each
- * body by itself, since what carries one of them lets the other go on. */
+ * body by itself, since what carries one of them lets the other go on; and what comes through other
+ * contacts of loads across it. */
 static double loads_change(const se3di_convex *convex, const se3di_convex_contact *c)
 {
-    double sum = 0.0;
+    double sum = 0.0, all = 0.0;
     for (int k = 0; k < 2; ++k) {
         if (c->free[k] >= 0) {
             const size_t at = 6 * (size_t)c->free[k];
@@ -242,9 +244,10 @@ static double loads_change(const se3di_convex *convex, const se3di_convex_contac
             se3di_add(change, convex->aim + at, change);
             se3di_sub(change, convex->start + at, change);
             sum += fabs(se3di_dot(change, c->normal));
+            all += se3di_norm(change);
         }
     }
-    return sum;
+    return fmax(sum, PASSED_ON * all);
 }
 
 static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,

@@ -25,6 +25,7 @@
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
 #define SAME        1e-2 /* of a slope: changes that the matrix need not know */
 #define SOLVES_MOST 500
+#define KEPT        16   /* if one in so many slopes has changed the preconditioner is made anew */
 #define GUESSES     6    /* at which contacts act and how, before */
 #define GUESSED     1e-3 /* of the largest impulse: they will hardly change */
 #define LINE_STEPS  60
@@ -240,7 +241,7 @@ static void evaluate(se3di_convex *c, const se3di_convex_island *island)
     clear_gradient(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, NULL);
+        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, contact->now);
         subtract_impulse(contact, c->gradient);
     }
 }
@@ -265,21 +266,19 @@ static int is_small(const se3di_convex_contact *contact, const double change[9])
     return fabs(less) <= SAME * along && off <= SAME * across;
 }
 
-/* The slope of a contact at a velocity of its point into the matrix, if it is clearly another than
- * the one that is there. Returns 1 if so. */
-static int set_slope(se3di_convex *c, se3di_convex_contact *contact, const double v[3])
+/* A slope of a contact into the matrix, if it is clearly another than the one that is there. */
+static void set_slope(se3di_convex *c, se3di_convex_contact *contact, const double slope[9])
 {
-    double impulse[3], slope[9], change[9];
-    se3di_convex_impulse(contact, c->h, v, impulse, slope);
+    double change[9];
     for (int k = 0; k < 9; ++k) {
         change[k] = slope[k] - contact->slope[k];
     }
     if (is_small(contact, change)) {
-        return 0;
+        return;
     }
-    memcpy(contact->slope, slope, sizeof slope);
+    memcpy(contact->slope, slope, sizeof contact->slope);
     add_contact(c, contact, change);
-    return 1;
+    ++c->changed;
 }
 
 /* What normal impulses make of the caps of friction, and how that differs from those in use.
@@ -380,14 +379,17 @@ static se3di_block_matrix matrix_of(const se3di_convex *c, const se3di_convex_is
                                 .coupling = has_pairs ? c->coupling + 36 * island->pair : NULL};
 }
 
-/* `change` to the accuracy that an iteration needs; the matrix is another than before, or not. */
+/* `change` to the accuracy that an iteration needs. */
 static void solve_free(se3di_convex *c, se3di_equations *equations,
-                       const se3di_convex_island *island, int is_new, double share)
+                       const se3di_convex_island *island, double share)
 {
     const se3di_block_matrix A = matrix_of(c, island);
-    if (is_new) {
+    if (KEPT * c->changed > island->contact_end - island->contact) {
         ++equations->counters.factorizations;
         se3di_block_cg_factor(&c->cg, &A);
+        c->changed = 0;
+    } else if (c->changed > 0) {
+        se3di_block_cg_renew(&c->cg, &A);
     }
     const size_t begin = 6 * island->body;
     for (size_t k = begin; k < 6 * island->body_end; ++k) {
@@ -402,15 +404,16 @@ static void solve_free(se3di_convex *c, se3di_equations *equations,
  * them near the end of the iteration is rounding, by which the solver would measure its residual.
  */
 static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
-                               const se3di_convex_island *island, int is_new)
+                               const se3di_convex_island *island)
 {
     const se3di_assembly *assembly = &equations->assembly;
     const se3di_block_matrix A = matrix_of(c, island);
     const se3di_kkt_values values = {
         .body = c->body, .coupling_upper = c->coupling, .joint = assembly->C};
     se3d_status status = SE3D_OK;
-    if (is_new) {
+    if (c->changed > 0) {
         ++equations->counters.factorizations;
+        c->changed = 0;
         status = se3di_kkt_factor(c->kkt, &values, NULL);
     }
     ++equations->counters.solves;
@@ -534,6 +537,7 @@ static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_i
     }
     mul_mass(c, assembly, island, c->change, c->moved);
     clear_blocks(c, island);
+    c->changed = island->contact_end - island->contact + 1; /* all */
     memset(c->change + first, 0, count * sizeof *c->change);
     memset(c->carried + first, 0, count * sizeof *c->carried);
     move(c, island, 0.0);
@@ -561,8 +565,8 @@ static double foresee(se3di_convex *c, const se3di_convex_island *island)
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         double ahead[3], less[3];
         far = se3di_larger(far, se3di_convex_foresee(c, contact, ahead));
-        set_slope(c, contact, ahead);
-        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, NULL);
+        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, contact->now);
+        set_slope(c, contact, contact->now);
         largest = fmax(largest, se3di_norm(contact->impulse));
         se3di_sub(contact->v, ahead, ahead);
         se3di_mul(contact->slope, ahead, less);
@@ -600,7 +604,7 @@ static void approach(se3di_convex *c, se3di_equations *equations, const se3di_co
 {
     for (int guess = 0; guess < GUESSES; ++guess) {
         const double far = foresee(c, island);
-        solve_free(c, equations, island, 1, SHARE);
+        solve_free(c, equations, island, SHARE);
         ++equations->counters.iterations;
         carry(c, &equations->assembly, island);
         for (size_t k = island->contact; k < island->contact_end; ++k) {
@@ -629,15 +633,14 @@ static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
                            const se3di_convex_island *island, int is_first, double share)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    int is_new = is_first;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        is_new |= set_slope(c, contact, contact->v);
+        set_slope(c, contact, contact->now);
     }
     if (assembly->row_count > 0) {
-        SE3DI_TRY(solve_bound(c, equations, island, is_new));
+        SE3DI_TRY(solve_bound(c, equations, island));
     } else {
-        solve_free(c, equations, island, is_new, share);
+        solve_free(c, equations, island, share);
     }
     ++equations->counters.iterations;
     carry(c, assembly, island);

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SWEEPS         20
+#define SWEEPS         10
 #define SWEEPS_AT_REST 2    /* impulses are those of the step before */
 #define SWEEPS_BETWEEN 8    /* guesses of all contacts at once */
 #define LOOKS          3    /* for an impulse of a spring that is not linear */
@@ -19,32 +19,73 @@
 #define PASSED_ON      0.2  /* of such a change: those on the same bodies are looked at again */
 #define NEAR           1e-6 /* of an impulse: what is left of it */
 
+/* Whether its normal impulse is a linear function of the velocity, while there is any. */
+static int is_linear(const se3di_convex_contact *contact)
+{
+    return contact->way == SE3DI_CONVEX_IMPACT || !(contact->power > 1.0);
+}
+
+/* (I + D W)^-1, D the slope of a law that sticks, W what an impulse does to the velocity. */
+static void invert_law(se3di_convex_contact *contact, const double W[9])
+{
+    const double *n = contact->normal;
+    double A[9], nW[3];
+    for (int k = 0; k < 3; ++k) {
+        nW[k] = n[0] * W[k] + n[1] * W[3 + k] + n[2] * W[6 + k];
+    }
+    for (int r = 0; r < 3; ++r) {
+        const double more = (contact->steepness - contact->drag) * n[r];
+        for (int k = 0; k < 3; ++k) {
+            A[3 * r + k] = (r == k) + contact->drag * W[3 * r + k] + more * nW[k];
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double one[3] = {k == 0, k == 1, k == 2};
+        double column[3];
+        se3di_solve3(A, one, column);
+        for (int r = 0; r < 3; ++r) {
+            contact->answer[3 * r + k] = column[r];
+        }
+    }
+}
+
+static void respond_alone(const se3di_convex *c, se3di_convex_contact *contact, const double W[9])
+{
+    double turned[3];
+    se3di_mul(W, contact->normal, turned);
+    contact->response[0] = se3di_dot(turned, contact->normal);
+    contact->response[1] = fmax(0.0, W[0] + W[4] + W[8] - contact->response[0]);
+    if (is_linear(contact)) {
+        contact->rise = contact->way == SE3DI_CONVEX_IMPACT
+                            ? contact->damping * contact->rebound
+                            : c->h * contact->stiffness * contact->overlap;
+        contact->steepness = contact->way == SE3DI_CONVEX_IMPACT
+                                 ? contact->damping
+                                 : c->h * (c->h * contact->stiffness + contact->damping);
+        invert_law(contact, W);
+    }
+}
+
 /* What an impulse on the point does to its velocity. */
 static void respond(const se3di_convex *c, se3di_convex_contact *contact)
 {
-    double along = 0.0, all = 0.0;
+    double W[9] = {0.0};
     for (int k = 0; k < 2; ++k) {
         if (contact->free[k] >= 0) {
             const double *mobility = c->mobility + 10 * (size_t)contact->free[k];
-            double *turn = contact->turn[k], turning[3], turned[3];
+            double *turn = contact->turn[k], turning[9];
             for (int r = 0; r < 3; ++r) { /* J^-1 is symmetric: its rows times those of the lever */
                 for (int e = 0; e < 3; ++e) {
                     turn[3 * r + e] = se3di_dot(mobility + 1 + 3 * r, contact->lever[k] + 3 * e);
                 }
             }
-            se3di_mul(turn, contact->normal, turned);
-            se3di_mul(contact->lever[k], turned, turning);
-            along += mobility[0] + se3di_dot(turning, contact->normal);
-            all += 3.0 * mobility[0];
-            for (int r = 0; r < 3; ++r) {
-                for (int e = 0; e < 3; ++e) {
-                    all += contact->lever[k][3 * r + e] * turn[3 * e + r];
-                }
+            se3di_mat_mul(contact->lever[k], turn, turning);
+            for (int e = 0; e < 9; ++e) {
+                W[e] += turning[e] + (e % 4 == 0 ? mobility[0] : 0.0);
             }
         }
     }
-    contact->response[0] = along;
-    contact->response[1] = fmax(0.0, all - along);
+    respond_alone(c, contact, W);
 }
 
 /* v += M^-1 J^T p */
@@ -65,6 +106,10 @@ static void apply(se3di_convex *c, const se3di_convex_contact *contact, const do
 static double find_normal(const se3di_convex_contact *contact, double h, double vn, double response)
 {
     double p = 0.0;
+    if (is_linear(contact)) {
+        return fmax(0.0, (contact->rise - contact->steepness * vn) /
+                             (1.0 + response * contact->steepness));
+    }
     for (int k = 0; k < LOOKS; ++k) {
         double slope;
         const double gap = se3di_convex_normal(contact, h, vn + response * p, &slope) - p;
@@ -77,8 +122,29 @@ static double find_normal(const se3di_convex_contact *contact, double h, double 
     return p;
 }
 
-/* The impulse p that its law asks for where `impulse` left the velocity v, while all others stay.
- */
+/* The same as find_impulse() where its law is linear and it sticks. Returns 0 if it does not. */
+static int find_held(const se3di_convex *c, const se3di_convex_contact *contact, const double v[3],
+                     double p[3])
+{
+    const double *n = contact->normal;
+    const double vn = se3di_dot(v, n);
+    double missing[3];
+    if (!is_linear(contact)) {
+        return 0;
+    }
+    const double along = contact->rise + (contact->drag - contact->steepness) * vn;
+    for (int k = 0; k < 3; ++k) {
+        missing[k] = along * n[k] - c->h * contact->tangential * contact->xi[k] -
+                     contact->drag * v[k] - contact->impulse[k];
+    }
+    se3di_mul(contact->answer, missing, p);
+    se3di_add(p, contact->impulse, p);
+    const double normal = se3di_dot(p, n), cap = contact->friction * normal;
+    return normal >= 0.0 && se3di_dot(p, p) - normal * normal <= cap * cap;
+}
+
+/* The impulse p that its law asks for where `impulse` left the velocity v, while all others stay,
+ * as if p_n and p_t did nothing to each other's velocities. */
 static void find_impulse(const se3di_convex *c, const se3di_convex_contact *contact,
                          const double v[3], double p[3])
 {
@@ -102,7 +168,9 @@ static double settle(se3di_convex *c, se3di_convex_contact *contact)
 {
     double v[3], p[3], change[3];
     se3di_convex_slip(contact, c->v, v);
-    find_impulse(c, contact, v, p);
+    if (!find_held(c, contact, v, p)) {
+        find_impulse(c, contact, v, p);
+    }
     se3di_sub(p, contact->impulse, change);
     se3di_copy(p, contact->impulse);
     apply(c, contact, change);

@@ -87,6 +87,19 @@ void se3di_block_cg_factor(se3di_block_cg *cg, const se3di_block_matrix *A)
     cg->core->factor(A, cg->work, turned_of(cg, A));
 }
 
+void se3di_block_cg_renew(se3di_block_cg *cg, const se3di_block_matrix *A)
+{
+    double *to = turned_of(cg, A);
+    for (size_t k = 0; k < A->pair_count; ++k, to += N * N) {
+        const double *B = A->coupling + N * N * k;
+        for (int r = 0; r < N; ++r) {
+            for (int c = 0; c < N; ++c) {
+                to[N * r + c] = B[N * c + r];
+            }
+        }
+    }
+}
+
 int se3di_block_cg_solve(se3di_block_cg *cg, const se3di_block_matrix *A, const double *b,
                          double share, int most, double *x)
 {

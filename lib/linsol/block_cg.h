@@ -35,6 +35,8 @@ se3d_status se3di_block_cg_reserve(se3di_block_cg *cg, const se3d_allocator *all
                                    size_t count, size_t pair_count);
 /* The preconditioner of A, for solutions until the next call. */
 void se3di_block_cg_factor(se3di_block_cg *cg, const se3di_block_matrix *A);
+/* The same with the D of the last call, for an A that has changed a little since. */
+void se3di_block_cg_renew(se3di_block_cg *cg, const se3di_block_matrix *A);
 /* x for A x = b, from x = 0, until the residual by P^-1 is `share` of that of b, or after `most`
  * iterations: b . x > 0 in any case, unless b = 0. Returns the iterations. */
 int se3di_block_cg_solve(se3di_block_cg *cg, const se3di_block_matrix *A, const double *b,

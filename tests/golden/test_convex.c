@@ -513,6 +513,41 @@ static void the_audit_balances(void)
 }
 
 /* In a step of 5 ms a card of 1 mm falls 10 mm, onto a table or another card. */
+/* A ball wedges two boxes apart, which lean on walls: loads do not act along these normals, and
+ * still the contacts are no impacts for ever, which have no spring. */
+static void what_is_pressed_across_gravity_rests_on_its_spring(void)
+{
+    const double size[3] = {0.1, 0.1, 0.1}, k = 1e5;
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.1, 0.3, k);
+    double r[3] = {0.0, 0.0, 0.17}, force = 0.0;
+    for (int side = -1; side <= 1; side += 2) {
+        const double at[3] = {0.081 * side, 0.0, 0.05};
+        se3d_shape_def wall = scene_shape(&s, scene_ground(&s));
+        se3d_shape made;
+        (void)scene_box(&s, size, 1.0, at, scene_zero);
+        wall.position[0] = 0.1315 * side;
+        wall.normal[0] = -side;
+        wall.normal[2] = 0.0;
+        CHECK(se3d_shape_create_plane(s.system, &wall, &made) == SE3D_OK);
+    }
+    (void)scene_ball(&s, 0.05, 1.0, r, scene_zero);
+    scene_floor(&s, 0.0);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    CHECK(scene_run(&s, 3.0));
+    se3d_contact contacts[32];
+    const size_t count = se3d_system_count_contacts(s.system);
+    CHECK(count >= 12 && count <= 32 &&
+          se3d_system_get_contacts(s.system, count, contacts) == SE3D_OK);
+    for (size_t c = 0; c < count && count <= 32; ++c) {
+        const double *f = contacts[c].force, *n = contacts[c].normal;
+        const double normal = f[0] * n[0] + f[1] * n[1] + f[2] * n[2];
+        force += fabs(n[0]) > 0.99 ? normal : 0.0;
+        CHECK(fabs(normal - k * contacts[c].overlap) < 1e-3);
+    }
+    CHECK(force > 5.0);
+    scene_end(&s);
+}
+
 static void thin_cards_that_fall_fast_land(void)
 {
     const double size[3] = {0.09, 0.06, 0.001}, low[3] = {0.0, 0.0, 0.0005};
@@ -573,6 +608,7 @@ int main(void)
     RUN(a_block_of_boxes_lands_in_few_iterations);
     RUN(what_joints_hold_touches_as_with_verlet);
     RUN(the_audit_balances);
+    RUN(what_is_pressed_across_gravity_rests_on_its_spring);
     RUN(thin_cards_that_fall_fast_land);
     RUN(what_it_does_not_know_is_refused);
     return check_finish();

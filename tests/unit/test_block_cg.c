@@ -103,6 +103,36 @@ static void a_chain_is_solved_at_once(void)
     se3di_block_cg_destroy(&cg, &allocator);
 }
 
+/* D is that of the matrix before one more element, the couplings are those of now. */
+static void a_kept_preconditioner_solves_what_has_changed(void)
+{
+    static problem p;
+    se3di_block_cg cg = {0};
+    int iterations;
+    build(&p, MOST, 0.2, 10.0);
+    (void)solve(&cg, &p, 1e-12, &iterations);
+    const size_t pairs = p.A.pair_count;
+    for (size_t k = 0; k < pairs; k += 5) {
+        static problem more;
+        memset(&more, 0, sizeof more);
+        couple(&more, 0, 1, 3.0);
+        for (size_t e = 0; e < 36; ++e) {
+            p.coupling[36 * k + e] += more.coupling[e];
+            p.diagonal[36 * (size_t)p.pairs[2 * k] + e] += more.diagonal[e];
+            p.diagonal[36 * (size_t)p.pairs[2 * k + 1] + e] += more.diagonal[36 + e];
+        }
+    }
+    memset(p.b, 0, sizeof p.b);
+    se3di_block_cg_add_product(&p.A, p.x, p.b);
+    se3di_block_cg_renew(&cg, &p.A);
+    const int kept = se3di_block_cg_solve(&cg, &p.A, p.b, 1e-13, 500, p.found);
+    CHECK(kept < 500);
+    for (size_t k = 0; k < 6 * MOST; ++k) {
+        CHECK_NEAR(p.found[k], p.x[k], 1e-10);
+    }
+    se3di_block_cg_destroy(&cg, &allocator);
+}
+
 /* The couplings of an island in the list of all. */
 static void blocks_may_be_part_of_more(void)
 {
@@ -170,6 +200,7 @@ int main(void)
     allocator = se3di_alloc_default();
     RUN(random_graphs_are_solved);
     RUN(a_chain_is_solved_at_once);
+    RUN(a_kept_preconditioner_solves_what_has_changed);
     RUN(blocks_may_be_part_of_more);
     RUN(every_beginning_leads_downhill);
     RUN(all_levels_give_the_same_bits);

@@ -17,6 +17,10 @@ static void center_of(const se3di_model *model, uint32_t shape, double x[3])
 {
     const se3di_shape *s = &model->shapes[shape];
     const se3di_frame *frame = &model->frames[s->body];
+    if (s->x[0] == 0.0 && s->x[1] == 0.0 && s->x[2] == 0.0) {
+        se3di_copy(frame->r, x);
+        return;
+    }
     se3di_mul(frame->A, s->x, x);
     se3di_add(frame->r, x, x);
 }
@@ -53,13 +57,13 @@ int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b)
     return are_open_meshes(&model->shapes[a], &model->shapes[b]) && are_meant_to_touch(model, a, b);
 }
 
-double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
+/* For centres x, y of the shapes i, j. */
+static double gap_bound(const se3di_model *model, uint32_t i, const double x[3], uint32_t j,
+                        const double y[3])
 {
     const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
-    double x[2][3], d[3];
-    center_of(model, i, x[0]);
-    center_of(model, j, x[1]);
-    se3di_sub(x[1], x[0], d);
+    double d[3];
+    se3di_sub(y, x, d);
     for (int k = 0; k < 2; ++k) {
         const se3di_shape *plane = s[k];
         if (is_plane(plane)) {
@@ -70,6 +74,14 @@ double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
         }
     }
     return se3di_norm(d) - s[0]->bound - s[1]->bound;
+}
+
+double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    double x[3], y[3];
+    center_of(model, i, x);
+    center_of(model, j, y);
+    return gap_bound(model, i, x, j, y);
 }
 
 double se3di_shapes_gap(const se3di_model *model, uint32_t i, uint32_t j, double normal[3])
@@ -86,6 +98,14 @@ static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
 {
     return model->shapes[i].body != model->shapes[j].body &&
            se3di_shapes_gap_bound(model, i, j) < margin;
+}
+
+/* The same where they were when the list was made. */
+static int were_near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
+{
+    const double *reference = model->contacts.reference;
+    return model->shapes[i].body != model->shapes[j].body &&
+           gap_bound(model, i, reference + 3 * (size_t)i, j, reference + 3 * (size_t)j) < margin;
 }
 
 /* The list of pairs covers the present poses, with a share of the margin left. */
@@ -225,7 +245,7 @@ static se3d_status sweep(se3di_model *model)
     for (uint32_t k = 0; k < shapes; ++k) {
         double high = upper_end(model, c->order[k]) + c->margin;
         for (uint32_t m = k + 1; m < shapes && !(lower_end(model, c->order[m]) > high); ++m) {
-            if (near(model, c->order[k], c->order[m], c->margin) &&
+            if (were_near(model, c->order[k], c->order[m], c->margin) &&
                 se3di_shapes_may_touch(model, c->order[k], c->order[m])) {
                 SE3DI_TRY(add_pair(model, c->order[k], c->order[m]));
             }
