@@ -24,7 +24,8 @@ SHARED = ("io/base/file.h", "io/document/guess.h", "io/document/layout.h", "io/r
           "io/fmi/package.h", "io/live/live.h", "io/study/derive.h", "io/write/save_source.h",
           "io/write/sketch.h", "io/write/svg.h", "player.h")  # the last of record/
 # Functions that are complete in a header, which libse3d-io may have too: nothing is linked.
-INLINE = ("base/hash.h", "base/coder.h", "base/floats.h", "base/shortest.h", "math/vec3.h")
+INLINE = ("base/hash.h", "base/coder.h", "base/floats.h", "base/shortest.h", "math/over.h",
+          "math/vec3.h")
 # Files that call each other, and why they are not one after the other.
 CIRCLES = {
     "primitive/scale primitive/turn_counter":

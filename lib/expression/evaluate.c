@@ -12,6 +12,7 @@
  * operand depends: a term that is zero for that reason stays zero also if f_u is infinite. */
 #include "expression/functions.h"
 #include "expression/program.h"
+#include "math/over.h"
 #include "se3d/expression.h"
 
 #include <math.h>
@@ -41,9 +42,9 @@ static inline jet jet_multiply(jet a, jet b)
 static inline jet jet_divide(jet a, jet b)
 {
     jet q;
-    q.f = a.f / b.f;
-    q.t = (a.t - q.f * b.t) / b.f;
-    q.tt = (a.tt - 2.0 * q.t * b.t - q.f * b.tt) / b.f;
+    q.f = se3di_over(a.f, b.f);
+    q.t = se3di_over(a.t - q.f * b.t, b.f);
+    q.tt = se3di_over(a.tt - 2.0 * q.t * b.t - q.f * b.tt, b.f);
     return q;
 }
 
@@ -240,9 +241,9 @@ static inline void slope_chain(slope *u, const double d[3], unsigned mask, size_
 
 static void slope_divide(slope *a, const slope *b, size_t n)
 {
-    a->f /= b->f;
+    a->f = se3di_over(a->f, b->f);
     for (size_t k = 0; k < n; ++k) {
-        a->x[k] = (a->x[k] - a->f * b->x[k]) / b->f;
+        a->x[k] = se3di_over(a->x[k] - a->f * b->x[k], b->f);
     }
 }
 

@@ -7,6 +7,7 @@
  * come out as infinite or NaN and are reported by the caller. */
 #include "expression/functions.h"
 #include "math/elementary.h"
+#include "math/over.h"
 
 #include <math.h>
 #include <string.h>
@@ -51,7 +52,7 @@ static void eval_round(double u, double d[3])
 static void eval_sqrt(double u, double d[3])
 {
     double s = sqrt(u);
-    set(d, s, 0.5 / s, -0.25 / (s * u));
+    set(d, s, se3di_over(0.5, s), se3di_over(-0.25, s * u));
 }
 
 static void eval_exp(double u, double d[3])
@@ -62,13 +63,13 @@ static void eval_exp(double u, double d[3])
 
 static void eval_log(double u, double d[3])
 {
-    set(d, se3di_log(u), 1.0 / u, -1.0 / (u * u));
+    set(d, se3di_log(u), se3di_over(1.0, u), se3di_over(-1.0, u * u));
 }
 
 static void eval_log10(double u, double d[3])
 {
     const double log_e = 0.43429448190325182765; /* log10(e) */
-    set(d, se3di_log10(u), log_e / u, -log_e / (u * u));
+    set(d, se3di_log10(u), se3di_over(log_e, u), se3di_over(-log_e, u * u));
 }
 
 static void eval_sin(double u, double d[3])
@@ -94,13 +95,13 @@ static void eval_tan(double u, double d[3])
 
 static void eval_asin(double u, double d[3])
 {
-    double w = 1.0 / sqrt((1.0 - u) * (1.0 + u));
+    double w = se3di_over(1.0, sqrt((1.0 - u) * (1.0 + u)));
     set(d, se3di_asin(u), w, u * w * w * w);
 }
 
 static void eval_acos(double u, double d[3])
 {
-    double w = 1.0 / sqrt((1.0 - u) * (1.0 + u));
+    double w = se3di_over(1.0, sqrt((1.0 - u) * (1.0 + u)));
     set(d, se3di_acos(u), -w, -u * w * w * w);
 }
 
@@ -144,13 +145,13 @@ static void eval_max(double a, double b, se3di_partials *d)
 static void eval_atan2(double y, double x, se3di_partials *d)
 {
     double r = se3di_hypot(x, y);
-    double c = x / r, s = y / r; /* scaled first, so that nothing overflows */
+    double c = se3di_over(x, r), s = se3di_over(y, r); /* scaled first, so that nothing overflows */
     d->f = se3di_atan2(y, x);
-    d->a = c / r;
-    d->b = -s / r;
-    d->aa = -2.0 * c * s / r / r;
-    d->bb = 2.0 * c * s / r / r;
-    d->ab = (s - c) * (s + c) / r / r;
+    d->a = se3di_over(c, r);
+    d->b = se3di_over(-s, r);
+    d->aa = se3di_over(se3di_over(-2.0 * c * s, r), r);
+    d->bb = se3di_over(se3di_over(2.0 * c * s, r), r);
+    d->ab = se3di_over(se3di_over((s - c) * (s + c), r), r);
 }
 
 static void eval_hypot(double a, double b, se3di_partials *d)
@@ -171,7 +172,7 @@ static void eval_mod(double a, double b, se3di_partials *d)
     if (r != 0.0 && (r < 0.0) != (b < 0.0)) {
         r += b;
     }
-    *d = (se3di_partials){.f = r, .a = 1.0, .b = -round((a - r) / b)};
+    *d = (se3di_partials){.f = r, .a = 1.0, .b = -round(se3di_over(a - r, b))};
 }
 
 static void eval_power(double a, double b, se3di_partials *d)

@@ -9,6 +9,7 @@
  * a = a_(k+1) (Brenan, Campbell, Petzold 1996, sec. 5.2).  docs/theory/bdf.md */
 #include "integrator/bdf.h"
 
+#include "math/over.h"
 #include "math/quaternion.h"
 
 #include <math.h>
@@ -25,7 +26,7 @@ static void eval_weights(const double *times, int count, double t, weights *w)
         double value = 1.0, rate = 0.0;
         for (int i = 0; i < count; ++i) {
             if (i != j) {
-                const double over = 1.0 / (times[j] - times[i]);
+                const double over = se3di_over(1.0, times[j] - times[i]);
                 rate = (rate * (t - times[i]) + value) * over;
                 value *= (t - times[i]) * over;
             }

@@ -10,6 +10,7 @@
 #include "integrator/step_list.h"
 #include "math/elementary.h"
 #include "math/larger.h"
+#include "math/over.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
@@ -472,14 +473,14 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
         for (size_t k = 0; k < m->count; ++k) {
             m->K[k] -= m->f1[k];
         }
-        d2 = se3di_explicit_measure(m, m->K) / h0;
+        d2 = se3di_over(se3di_explicit_measure(m, m->K), h0);
     }
     m->motion->set(m->equations, m->y1);
     m->equations->error = error;
     if (status == SE3D_ERR_CALLBACK) {
         return se3di_error_set(error, status, "%s", ignored.message);
     }
-    double d = fmax(d1 * m->tolerance, 1e-3 / h0);
+    double d = fmax(d1 * m->tolerance, se3di_over(1e-3, h0));
     double h1 = se3di_pow(0.01 / (fmax(d, sqrt(fmax(d2, 0.0) * m->tolerance)) / m->tolerance),
                           1.0 / m->methods->get_order(m));
     double h = isfinite(h1) && h1 > 0.0 ? fmin(100.0 * h0, h1) : h0;

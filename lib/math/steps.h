@@ -3,6 +3,8 @@
 #ifndef SE3DI_MATH_STEPS_H
 #define SE3DI_MATH_STEPS_H
 
+#include "math/over.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -10,8 +12,8 @@
  * longer than a number of steps by its rounding, which is that of the times and grows with them. */
 static inline double se3di_steps_count(double rest, double step, double t_end)
 {
-    const double rounding = 1e-9 + 4.0 * DBL_EPSILON * fabs(t_end) / step;
-    return fmax(1.0, ceil(rest / step - fmin(rounding, 0.5)));
+    const double rounding = 1e-9 + se3di_over(4.0 * DBL_EPSILON * fabs(t_end), step);
+    return fmax(1.0, ceil(se3di_over(rest, step) - fmin(rounding, 0.5)));
 }
 
 /* The length of a step of h from t, which ends at `end`, both rounded. At late times, after a

@@ -22,6 +22,12 @@ static int are_finite(const double *values, size_t count)
     return 1;
 }
 
+/* Its square is finite, and so is one over it. */
+static int is_size(double x)
+{
+    return x > 1e-100 && x < 1e100;
+}
+
 static int is_surface(const se3di_particles *set, uint32_t wall)
 {
     return se3di_wall_is_mesh(&set->walls[wall]);
@@ -103,10 +109,8 @@ static int are_particles(const se3di_particles *set)
         const se3di_particle *p = &set->particles[k];
         const se3di_spin *spin = &set->spins[k];
         if (!are_finite(p->x, 3) || !are_finite(p->v, 3) || !are_finite(spin->w, 3) ||
-            !(p->radius > 0.0 && isfinite(p->radius)) ||
-            !(p->inverse_mass > 0.0 && isfinite(p->inverse_mass)) ||
-            !is_stuff(set, spin->material) || spin->id >= set->id_count ||
-            set->index_of[spin->id] != k) {
+            !is_size(p->radius) || !is_size(p->inverse_mass) || !is_stuff(set, spin->material) ||
+            spin->id >= set->id_count || set->index_of[spin->id] != k) {
             return 0;
         }
     }

@@ -213,7 +213,8 @@ static int are_poses(const se3di_saved_array *array)
     for (size_t k = 0; k < array->count; ++k) {
         se3di_frame own = frames[k];
         se3di_frame_update(&own);
-        const double size = se3di_quat_normalize(own.p, own.p);
+        const double size = sqrt(own.p[0] * own.p[0] + own.p[1] * own.p[1] + own.p[2] * own.p[2] +
+                                 own.p[3] * own.p[3]);
         const double fast = 1.0 + se3di_norm(own.w);
         int holds = fabs(size - 1.0) <= SAME_ROTATION;
         for (int i = 0; i < 9; ++i) {
@@ -247,7 +248,7 @@ static int are_contacts(const se3di_saved *state, const se3di_model *model)
                            sum_of(c->turn, 4) + sum_of(c->point, 3) + sum_of(c->normal, 3) +
                            sum_of(c->force, 3) + sum_of(c->torque, 3) + fabs(c->twist) +
                            fabs(c->overlap) + fabs(c->inverse_mass) + fabs(c->energy);
-        if (!isfinite(sum) || list[k].shape_i >= list[k].shape_j ||
+        if (!isfinite(sum) || !(c->inverse_mass > 1e-100) || list[k].shape_i >= list[k].shape_j ||
             list[k].shape_j >= model->shape_slots.count || list[k].kind < SE3DI_CONTACT_LAWFUL ||
             list[k].kind > SE3DI_CONTACT_PARTING) {
             return 0;

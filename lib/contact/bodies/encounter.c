@@ -16,6 +16,7 @@
 
 #include "math/elementary.h"
 #include "math/inertia.h"
+#include "math/over.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 
@@ -97,7 +98,7 @@ void se3di_encounter_share(se3di_encounter *points, uint32_t count)
         e->shared = fmax(e->shared, SHARE_MIN * e->alone);
         e->inverse_mass =
             e->memory && e->model->contacts.step > 0.0 ? e->memory->inverse_mass : e->shared;
-        e->root_mass = 1.0 / sqrt(e->inverse_mass);
+        e->root_mass = se3di_over(1.0, sqrt(e->inverse_mass));
     }
 }
 

@@ -15,6 +15,7 @@
 #include "contact/bodies/pace_stop.h"
 #include "force/force.h"
 #include "math/elementary.h"
+#include "math/over.h"
 #include "math/steps.h"
 #include "math/vec3.h"
 
@@ -62,13 +63,13 @@ static double contact_time(const se3di_model *model, uint32_t i, uint32_t j, dou
 {
     const se3di_pair *pair = pair_of(model, i, j);
     if (model->contact.law == SE3DI_LAW_HOOKE) {
-        return 3.14159265358979324 / sqrt(pair->kn * inverse_mass);
+        return se3di_over(3.14159265358979324, sqrt(pair->kn * inverse_mass));
     }
     double R = se3di_shapes_contact_radius(&model->shapes[i], &model->shapes[j]);
     if (!(v > 0.0)) {
         return HUGE_VAL;
     }
-    return 2.943 * se3di_pow(1.25 * v * v / (inverse_mass * pair->kn * sqrt(R)), 0.4) / v;
+    return 2.943 * se3di_pow(se3di_over(1.25 * v * v, inverse_mass * pair->kn * sqrt(R)), 0.4) / v;
 }
 
 static void velocity_at(const se3di_frame *frame, const double point[3], double v[3])
@@ -124,8 +125,9 @@ static void touching(pace *p, const se3di_body_contact *c)
     }
     double energetic = sqrt(vn * vn + 2.0 * potential * c->inverse_mass);
     double time = contact_time(model, c->shape_i, c->shape_j, c->inverse_mass, energetic);
-    double rate = 3.14159265358979324 / time;
-    int rests = se3di_hypot(vn / rate, an / (rate * rate)) < AT_REST * c->overlap;
+    double rate = se3di_over(3.14159265358979324, time);
+    int rests =
+        se3di_hypot(se3di_over(vn, rate), se3di_over(an, rate * rate)) < AT_REST * c->overlap;
     if (p->kind == SE3DI_PACE_EXPLICIT || (!p->checks && !rests)) {
         limit(p, time / (p->checks ? STABLE_PARTS : parts_of(p)), c->shape_i, c->shape_j);
     }

@@ -9,6 +9,7 @@
 
 #include "io/base/number.h"
 #include "io/base/pool.h"
+#include "math/over.h"
 
 bool se3di_formula_fail(se3di_formula *f, const char *place, const char *format, ...)
 {
@@ -71,7 +72,10 @@ bool se3di_formula_join(se3di_formula *f, const char *mark, const se3di_amount *
     const double y = b->v[0];
     if (!a->text[0] && !b->text[0]) {
         *out = (se3di_amount){.rank = 1};
-        out->v[0] = *mark == '+' ? x + y : *mark == '-' ? x - y : *mark == '*' ? x * y : x / y;
+        out->v[0] = *mark == '+'   ? x + y
+                    : *mark == '-' ? x - y
+                    : *mark == '*' ? x * y
+                                   : se3di_over(x, y);
         return true;
     }
     char left[SE3DI_NUMBER_SIZE];

@@ -337,12 +337,12 @@ static bool check_pid(se3di_reader *reader, const se3di_node *node, state_values
         return se3di_reader_fail_key(reader, node, "lower", "is %g, must be below `upper` = %g",
                                      v->lower, v->upper);
     }
-    if (!limited || se3di_node_get(node, "tracking_time")) {
+    if (!limited || se3di_node_get(node, "tracking_time") || !(fabs(v->ki) > 0.0)) {
         return true;
     }
     const double square = v->kd / v->ki;
     v->tracking_time = square > 0.0 && isfinite(square) ? sqrt(square) : v->kp / v->ki;
-    return (v->tracking_time > 0.0 && isfinite(v->tracking_time)) || v->ki == 0.0 ||
+    return (v->tracking_time > 0.0 && isfinite(v->tracking_time)) ||
            se3di_reader_fail_key(reader, node, "tracking_time",
                                  "is missing, must be a number > 0 [s]: kp and ki tell none");
 }
