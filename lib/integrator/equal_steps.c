@@ -168,14 +168,30 @@ static double largest_spin(const se3di_model *model)
     return spin;
 }
 
+/* Some friction has come to a stand, broken loose or turned since the kept state. */
+static int friction_changed(const se3di_equations *equations)
+{
+    const se3di_model *model = equations->assembly.model;
+    const double *before = equations->kept.memory.data;
+    int changed = 0;
+    for (size_t k = 0; k < model->force_slots.count && !changed; ++k) {
+        const se3di_force *force = &model->forces[k];
+        changed = force->type == SE3DI_FORCE_FRICTION &&
+                  fabs(force->state[SE3DI_FRICTION_MODE] -
+                       before[SE3DI_FORCE_STATES * k + SE3DI_FRICTION_MODE]) > 0.0;
+    }
+    return changed;
+}
+
 /* The step was made: is it exact enough to go on from it, and what does it say? */
 static void judge(trial *t, double h)
 {
     se3di_equations *equations = t->integration->equations;
     double speed[2] = {t->speed[0], t->speed[1]}, jerk[3];
     const double e = measure(equations, h, speed, jerk);
-    const int jumps =
-        t->last_h > 0.0 && e * t->last_h > t->last * h * sqrt(h / t->last_h) && h < 0.5 * t->last_h;
+    const int jumps = friction_changed(equations) ||
+                      (t->last_h > 0.0 && e * t->last_h > t->last * h * sqrt(h / t->last_h) &&
+                       h < 0.5 * t->last_h);
     if (e > TRIAL_ERROR && !jumps && h > SHORTEST * (t->t_end - t->begin)) {
         t->last = e;
         t->last_h = h;
@@ -405,21 +421,6 @@ void se3di_equal_steps_watch(se3di_integration *integration, double h)
     } else if (-header[SE3DI_EQUAL_OVER] >= steps_of_phase(integration, CALM)) {
         lengthen(integration);
     }
-}
-
-/* Some friction has come to a stand, broken loose or turned since the kept state. */
-static int friction_changed(const se3di_equations *equations)
-{
-    const se3di_model *model = equations->assembly.model;
-    const double *before = equations->kept.memory.data;
-    int changed = 0;
-    for (size_t k = 0; k < model->force_slots.count && !changed; ++k) {
-        const se3di_force *force = &model->forces[k];
-        changed = force->type == SE3DI_FORCE_FRICTION &&
-                  fabs(force->state[SE3DI_FRICTION_MODE] -
-                       before[SE3DI_FORCE_STATES * k + SE3DI_FRICTION_MODE]) > 0.0;
-    }
-    return changed;
 }
 
 double se3di_equal_steps_review(const se3di_integration *integration, double h, double *most)
