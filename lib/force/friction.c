@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Friction on a joint coordinate x with load L (friction_load.c: times its arm on an angle):
  *
- *     stick   n = n_0 + s (x - z) + viscous xdot         |n_0 + s (x - z)| <= F_s
+ *     stick   n = n_0 + s (x - z + T xdot) + viscous xdot        |n_0 + s (x - z)| <= F_s
  *     slip    n = +-F_c + viscous xdot                   in the direction of the motion
  *     F_c = mu L + limit,  F_s = mu_static L + limit,  s = F_s / presliding when it begins to stick
+ *     T   = 2 sqrt(presliding / 10), 0 from 1e-7 on: what F_s decelerates by 10 m/s^2 is damped
+ *           critically, as no method follows that vibration
  *
  * L belongs to the multipliers of the same instant: it is an unknown of the step. Whether it sticks
  * or slips, the anchor z, n_0 and s do not change within a step, so that the step solves smooth
@@ -27,7 +29,9 @@ enum {
     RATE = SE3DI_FRICTION_RATE
 };
 
-#define STALE 2.0 /* the stiffness of sticking follows the load in such factors */
+#define STALE 2.0  /* the stiffness of sticking follows the load in such factors */
+#define CALM  10.0 /* F_s over the mass of what sticks, m/s^2 or rad/s^2, for critical damping */
+#define RIGID 1e-7 /* a presliding below it, m or rad, stands for none; a larger one is elastic */
 
 double se3di_friction_limit(const se3di_force *force, int slips)
 {
@@ -35,9 +39,21 @@ double se3di_friction_limit(const se3di_force *force, int slips)
     return force->released ? 0.0 : mu * force->state[LOAD] + force->limit;
 }
 
-static double stick_force(const se3di_force *force, double x)
+static double stick_damping(const se3di_force *force)
+{
+    return force->presliding < RIGID
+               ? 2.0 * sqrt(force->presliding / CALM) * force->state[STIFFNESS]
+               : 0.0;
+}
+
+static double spring_force(const se3di_force *force, double x)
 {
     return force->state[FORCE] + force->state[STIFFNESS] * (x - force->state[ANCHOR]);
+}
+
+static double stick_force(const se3di_force *force, double x, double rate)
+{
+    return spring_force(force, x) + stick_damping(force) * rate;
 }
 
 /* The energy that the spring holds more than at the anchor. */
@@ -62,7 +78,7 @@ double se3di_friction_get(const se3di_model *model, const se3di_force *force)
         return force->state[MODE] * se3di_friction_limit(force, 1);
     }
     const double x = coordinate(model, force, &rate);
-    return force->state[SET] > 0.0 ? stick_force(force, x) : 0.0;
+    return force->state[SET] > 0.0 ? spring_force(force, x) : 0.0;
 }
 
 /* Hold on to x with n. */
@@ -119,8 +135,11 @@ static se3d_status eval_friction(const se3di_model *model, const se3di_force *fo
     se3di_law law = {.n_rate = force->viscous};
     effect->potential = force->state[ENERGY];
     if (holds) {
-        law.n = stick_force(force, measure.value);
+        const double damping = stick_damping(force);
+        law.n = stick_force(force, measure.value, measure.rate);
         law.n_x = force->state[STIFFNESS];
+        law.n_rate += damping;
+        effect->power[0] += damping * measure.rate * measure.rate;
         effect->potential += stick_energy(force, measure.value);
     } else if (!sticks) {
         law.n = force->state[MODE] * se3di_friction_limit(force, 1);
@@ -141,7 +160,7 @@ static uint32_t revise_friction(const se3di_model *model, se3di_force *force)
     if (!se3di_friction_sticks(force)) { /* that of the load which came out */
         force->state[STIFFNESS] = se3di_friction_limit(force, 0) / force->presliding;
     }
-    const double x = coordinate(model, force, &rate), n = stick_force(force, x);
+    const double x = coordinate(model, force, &rate), n = spring_force(force, x);
     const double slip = se3di_friction_limit(force, 1);
     const double rounding = 2e-15 * force->state[STIFFNESS] * fabs(x) + 1e-12 * slip;
     if (!se3di_friction_sticks(force)) {
@@ -185,13 +204,9 @@ static void accept_friction(const se3di_model *model, se3di_force *force)
         force->state[MODE] = has_turned(model, force, rate) ? 0.0 : force->state[MODE];
         return;
     }
-    const double n = stick_force(force, x), limit = se3di_friction_limit(force, 0);
+    const double n = spring_force(force, x), limit = se3di_friction_limit(force, 0);
     const double fresh = limit / force->presliding;
-    if (fabs(n) > limit && !(n * rate < 0.0)) { /* else it swings back by itself */
-        const double mode = copysign(1.0, n);
-        anchor(force, x, mode * se3di_friction_limit(force, 1));
-        force->state[MODE] = mode;
-    } else if (force->state[STIFFNESS] > STALE * fresh || force->state[STIFFNESS] < fresh / STALE) {
+    if (force->state[STIFFNESS] > STALE * fresh || force->state[STIFFNESS] < fresh / STALE) {
         anchor(force, x, n);
     }
 }

@@ -32,6 +32,7 @@
 #define FILTERED 1e2  /* or (decay times step)^2, from which forces decide of positions */
 #define DECIDED  3    /* the least order then, once it is reached */
 #define LOOSE    1e-4 /* a tolerance of so few steps that their errors hardly add up */
+#define WORK     0.1  /* weight of the error of works, which disturbs nothing but the audit */
 
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
@@ -154,7 +155,8 @@ static int is_filtered(const se3di_bdf *m)
 /* The same for forces far faster than the step, which decide of positions and velocities as
  * constraints do: (I - c J)^-1 of both, with the Jacobian J of (q, v)' (Hosea, Shampine 1996). What
  * creeps slowly under them stays. Once, positions still count over the step as velocities, which a
- * spring does not let them become: so it is taken twice. */
+ * spring does not let them become: so it is taken twice, and these velocities, differences that are
+ * wrong for one step and do not add up, may be off by the tolerance of the run. */
 static se3d_status leave_slow(se3di_bdf *m, double *q, double *v)
 {
     se3di_equations *equations = m->equations;
@@ -218,15 +220,17 @@ static double measure_six(const se3di_bdf *m, const double *q, const double *v)
 static se3d_status measure_tangent(se3di_bdf *m, double *error)
 {
     double *q = m->relaxation, *v = q + m->assembly->unknown_count;
+    double differences = 0.0;
     get_difference(m, q, v);
     if (is_filtered(m)) {
         SE3DI_TRY(leave_slow(m, q, v));
+        differences = measure_six(m, q, v) * m->tolerance / m->integration->settings.tolerance;
         SE3DI_TRY(leave_slow(m, q, v));
     } else {
         SE3DI_TRY(leave_tangent(m, q));
         SE3DI_TRY(leave_tangent(m, v));
     }
-    const double left = measure_six(m, q, v);
+    const double left = fmax(measure_six(m, q, v), differences);
     *error = is_filtered(m) && !(left < *error) ? *error : left;
     return SE3D_OK;
 }
@@ -286,7 +290,8 @@ static se3d_status settle(se3di_bdf *m, int is_controlled, double *error)
                                     .lambda = m->lambda,
                                     .scale = &m->past->scale,
                                     .memory = m->integration->newton.memory,
-                                    .work = m->work};
+                                    .work = m->work,
+                                    .blur = is_controlled ? m->tolerance : 0.0};
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     m->fraction = end.fraction;
     if (end.has_changed) { /* what stands still does so */
@@ -341,16 +346,45 @@ static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
     ++m->equations->counters.steps;
 }
 
-/* Take y_1, and let the scales follow. */
-static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
+/* The powers at the end of the step. */
+static se3d_status find_power(se3di_bdf *m, double power[SE3DI_STATE_WORK])
 {
     se3di_model *model = m->assembly->model;
-    double power[SE3DI_STATE_WORK];
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
-    se3d_status status = se3di_state_prepare(m->equations, m->t);
-    status = status < 0 ? status : se3di_loads_power(model, m->t, power);
+    SE3DI_TRY(se3di_state_prepare(m->equations, m->t));
+    return se3di_loads_power(model, m->t, power);
+}
+
+/* *error is raised to that of the works: where drivers prescribe the motion, and where nothing but
+ * stiff forces moves, it is the only one. */
+static se3d_status review_work(se3di_bdf *m, int order, double *error)
+{
+    double power[SE3DI_STATE_WORK];
+    const size_t bodies = m->count - SE3DI_STATE_WORK;
+    const se3d_status status = find_power(m, power);
+    if (status < 0) {
+        forget(m);
+        return status;
+    }
+    for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
+        m->y[bodies + k] = m->base[bodies + k] + m->c * power[k];
+    }
+    se3di_bdf_get_error(m, order);
+    const double off = se3di_norm(m->difference + bodies) / m->past->scale.energy;
+    *error = se3di_larger(*error, WORK * off / m->tolerance);
+    if (!(*error <= 1.0)) {
+        forget(m);
+    }
+    return SE3D_OK;
+}
+
+/* Take y_1, and let the scales follow. */
+static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
+{
+    double power[SE3DI_STATE_WORK];
+    se3d_status status = find_power(m, power);
     status = status < 0 ? status
                         : se3di_state_derivative(m->assembly, m->t, m->acceleration, m->lambda,
                                                  m->difference);
@@ -506,6 +540,9 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
     }
     if (s->e.here <= 1.0) {
         SE3DI_TRY(settle(&s->m, 1, &s->e.here));
+    }
+    if (s->e.here <= 1.0) {
+        SE3DI_TRY(review_work(&s->m, s->order, &s->e.here));
     }
     *error = s->e.here;
     step->fraction = s->m.fraction;

@@ -377,6 +377,14 @@ static int must_tell(se3d_status status)
            status == SE3D_ERR_CALLBACK;
 }
 
+int se3di_hold_is_exceeded(const se3di_equations *equations, uint32_t k, int *is_known)
+{
+    const se3di_friction_system *friction = &equations->friction;
+    const double *of = friction->probes + 4 * ((PROBES - 1) * friction->count + k);
+    *is_known = friction->has_end && of[3] > 0.0;
+    return *is_known && fabs(of[0]) > of[1];
+}
+
 se3d_status se3di_hold_review(se3di_equations *equations, const se3di_memory_step *step,
                               se3di_memory_end *end, double *since)
 {
@@ -384,6 +392,7 @@ se3d_status se3di_hold_review(se3di_equations *equations, const se3di_memory_ste
     se3di_error *const error = equations->error, inner = {0};
     const int32_t is_rigid = friction->is_rigid;
     *since = 1.0;
+    friction->has_end = 0;
     if (!isfinite(step->tolerance) || friction->count == 0 || !holds_any(equations)) {
         return SE3D_OK;
     }
@@ -391,6 +400,7 @@ se3d_status se3di_hold_review(se3di_equations *equations, const se3di_memory_ste
     equations->error = &inner;
     friction->is_rigid = SE3DI_FRICTION_LOOKS;
     const se3d_status status = review(equations, step, end, since);
+    friction->has_end = status >= 0;
     friction->is_rigid = is_rigid;
     equations->error = error;
     se3di_equations_restore(equations);

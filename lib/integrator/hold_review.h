@@ -13,6 +13,10 @@
 se3d_status se3di_hold_review(se3di_equations *equations, const se3di_memory_step *step,
                               se3di_memory_end *end, double *since);
 
+/* Whether element k was held at the end of the step that was reviewed last with more than it can
+ * be, by the balance of forces: its spring follows that by what velocities are off. */
+int se3di_hold_is_exceeded(const se3di_equations *equations, uint32_t k, int *is_known);
+
 /* The difference of the accelerations in equations->x from those `before`, times h, relative to the
  * scales. */
 double se3di_hold_change(const se3di_equations *equations, const double *before, double h,

@@ -76,7 +76,8 @@ static int review_slip(const se3di_force *force, const se3di_measure *measure,
         const double way = measure->value - force->state[SE3DI_FRICTION_ANCHOR];
         const double size = fabs(measure->value) + (turns ? 1.0 : step->scale->length);
         const excursion e = {before, -against, mode * way / step->h};
-        review_excursion(&e, allowed + ROUNDING * size / step->h, end);
+        const double blur = step->blur * (turns ? 1.0 : step->scale->length);
+        review_excursion(&e, allowed + (ROUNDING * size + blur) / step->h, end);
         return 0;
     }
     end->error = se3di_larger(end->error, against / allowed);
@@ -104,8 +105,11 @@ static int32_t review_stick(const se3di_equations *equations, uint32_t k, double
         !se3di_friction_system_can_hold(equations, k)) {
         return -1;
     }
-    return fabs(se3di_friction_get(equations->assembly.model, force)) >
-           se3di_friction_limit(force, 0);
+    int is_known;
+    const int is_exceeded = se3di_hold_is_exceeded(equations, k, &is_known);
+    return is_known ? is_exceeded
+                    : fabs(se3di_friction_get(equations->assembly.model, force)) >
+                          se3di_friction_limit(force, 0);
 }
 
 /* Which elements may have to change: friction.rests. *since: the part of the step before its end
@@ -358,6 +362,7 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     se3di_model_save_memory(model, memory);
     end->has_moved = se3di_friction_system_stand(equations);
     end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
+    equations->friction.has_end = 0;
     if (end->error <= 1.0) {
         SE3DI_TRY(se3di_hold_review(equations, step, end, &since));
     }

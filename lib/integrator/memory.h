@@ -24,6 +24,7 @@ typedef struct se3di_memory_step {
     double *memory; /* [forces * SE3DI_FORCE_STATES]: takes that of before, to be restored if the
                        step is not taken */
     double *work;   /* [unknowns] */
+    double blur;    /* of the length: ways within the step that velocities do not make */
 } se3di_memory_step;
 
 /* What the speeds of impacts on stops that begin within a step of h differ from those that are

@@ -19,6 +19,7 @@
 #include "force/friction.h"
 #include "math/elementary.h"
 #include "math/larger.h"
+#include "math/over.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -296,6 +297,7 @@ static se3d_status settle(se3di_radau *m, double tolerance, double *error)
     SE3DI_TRY(se3di_memory_settle(m->equations, &step, &end));
     *error = se3di_larger(*error, end.error);
     m->fraction = end.fraction;
+    m->has_changed = end.has_changed;
     if (!(*error <= 1.0)) {
         forget(m);
     }
@@ -316,9 +318,11 @@ static se3d_status project_end(se3di_radau *m)
 {
     const double accuracy = m->projects ? 1e-15 : 1e-13; /* accelerations magnify it */
     SE3DI_TRY(se3di_state_project(m->equations, m->t + m->h, &m->scale, accuracy, 0));
-    se3di_radau_get_acceleration(m, STAGES - 1, m->vdot);
-    const se3di_relaxation relaxation = get_relaxation(m, m->t + m->h);
-    SE3DI_TRY(se3di_relax(m->integration, &relaxation));
+    if (!m->has_changed) { /* else accelerations jump: that is no force out of balance */
+        se3di_radau_get_acceleration(m, STAGES - 1, m->vdot);
+        const se3di_relaxation relaxation = get_relaxation(m, m->t + m->h);
+        SE3DI_TRY(se3di_relax(m->integration, &relaxation));
+    }
     return se3di_state_prepare(m->equations, m->t + m->h);
 }
 
@@ -378,6 +382,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
 {
     m->h = h;
     m->fraction = 0.0;
+    m->has_changed = 0;
     m->inner = inner;
     m->tolerance = inner > 0.0 ? iteration_tolerance(m, inner) : 1e-12;
     m->accuracy = inner > 0.0 ? fmin(1e-13, fmax(1e-15, 1e-6 * inner)) : 1e-13;
@@ -388,7 +393,7 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     SE3DI_TRY(se3di_radau_solve(m));
     set_defect(m, m->d);
     SE3DI_TRY(se3di_radau_filter(m, m->d, error));
-    *error /= inner;
+    *error = se3di_over(*error, inner);
     if (m->is_stiff && !m->projects) {
         SE3DI_TRY(se3di_radau_close(m));
     }

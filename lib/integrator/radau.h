@@ -45,9 +45,10 @@ typedef struct se3di_radau {
     double size;    /* of the last correction, relative to the tolerance, */
     double past[3]; /* and of those before, newest first: they fall in turns of three */
     int iterations, iterations_max;
-    int is_stiff;  /* d is filtered */
-    int has_lines; /* some force is stiff */
-    int projects;  /* not 0: accelerations of stages are those of the states projected onto the
+    int is_stiff;    /* d is filtered */
+    int has_changed; /* friction its modes, at the end of the step */
+    int has_lines;   /* some force is stiff */
+    int projects;    /* not 0: accelerations of stages are those of the states projected onto the
                      constraints, each with rows of its own: where bodies and joints make loops,
                      rows may be dependent */
 } se3di_radau;

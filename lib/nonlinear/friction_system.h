@@ -47,7 +47,8 @@ typedef struct se3di_friction_system {
     double *loaded;    /* [active]: forces which these follow from */
     double *P, *work;  /* of friction_box.h */
     double *work_x, *work_l; /* [unknowns], [rows] */
-    double *probes;          /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h */
+    double *probes;          /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h, */
+    int32_t has_end;         /* 1: those of the end of the step are known */
 } se3di_friction_system;
 
 struct se3di_equations;

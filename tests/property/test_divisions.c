@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Mechanisms at positions where pivots vanish, by every method: what is found to be singular is
- * found without a division by zero, which hosts may trap (check.h looks at the processor's flag). */
+ * found without a division by zero, which hosts may trap: check.h looks at the processor's flag. */
 #include "check.h"
 #include "se3d/se3d.h"
 #include "support/mechanisms.h"
