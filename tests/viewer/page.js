@@ -292,6 +292,8 @@ const checkSeen = async () => {
   const [x, y] = await evaluate(`se3d.project(se3d.position(${JSON.stringify(body)}))`);
   const there = await pixel("view", x, y), sky = await pixel("view", 5, 60);
   check(apart(there, sky) > 40, `the body is seen at ${x}, ${y}: ${there}, beside ${sky}`);
+  const [triangles, same] = await evaluate("se3d.quick(se3d.start)");
+  check(triangles < 1 && same > 0.99, `a quick picture is alike: ${triangles} of the triangles, ${same} of the points`);
 };
 // What can be coloured by, and what the legend and the picture are if it is one of them.
 const colours = async (hue) => {

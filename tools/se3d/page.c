@@ -179,7 +179,7 @@ int page_put_end(FILE *file, const page_parts *p, const char *script)
     fputs("<script>\n", file);
     int good = put_file(file, p->cache, "three.js");
     fputs("\n", file);
-    const char *const scripts[] = {"plots.js",  "light.js",  "coils.js",
+    const char *const scripts[] = {"plots.js",  "light.js",  "coils.js", "rounds.js",
                                    "grains.js", "viewer.js", script};
     for (size_t k = 0; k < sizeof scripts / sizeof *scripts && scripts[k]; ++k) {
         fputs("</script>\n<script>\n", file);

@@ -53,15 +53,22 @@ void base64_put(FILE *file, const void *data, size_t size)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const unsigned char *at = data;
+    char text[4096];
+    size_t count = 0;
     for (size_t k = 0; k < size; k += 3) {
         const size_t left = size - k;
         const uint32_t bits = (uint32_t)at[k] << 16 | (left > 1 ? (uint32_t)at[k + 1] << 8 : 0) |
                               (left > 2 ? (uint32_t)at[k + 2] : 0);
-        fputc(digits[bits >> 18], file);
-        fputc(digits[bits >> 12 & 63], file);
-        fputc(left > 1 ? digits[bits >> 6 & 63] : '=', file);
-        fputc(left > 2 ? digits[bits & 63] : '=', file);
+        text[count++] = digits[bits >> 18];
+        text[count++] = digits[bits >> 12 & 63];
+        text[count++] = left > 1 ? digits[bits >> 6 & 63] : '=';
+        text[count++] = left > 2 ? digits[bits & 63] : '=';
+        if (count == sizeof text) {
+            fwrite(text, 1, count, file);
+            count = 0;
+        }
     }
+    fwrite(text, 1, count, file);
 }
 
 int snapshots_is(const char *path)

@@ -2,7 +2,11 @@
 // The viewer: reads the embedded glTF (as libse3d-io writes it) and results; z is upwards inside.
 "use strict";
 addEventListener("error", (e) => { window.se3dProblem = String(e.message).replace(/["\\]/g, "'"); });
-const se3dDecode = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+const se3dDecode = (text) => {
+  const code = atob(text), bytes = new Uint8Array(code.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = code.charCodeAt(k);
+  return bytes.buffer;
+};
 let se3dRenderer = null, se3dSlow = 0; // one for all that is shown in this page; how slow pictures are
 let se3dSun = null, se3dClear = null; // live, until the next file: light with its shadows; what was seen through
 // Shows a scene: `glb` with its motion, `other` (null: none) that of another run, `results` {names, units, values} beside
@@ -17,24 +21,34 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const gltf = await new THREE.GLTFLoader().parseAsync(glb, ""), { json } = gltf.parser;
   performance.mark("se3d-parsed");
   // Dark lines where a surface bends: given shapes stand out, also those that are seen through.
-  const edges = new Map(), lineworks = [];
+  const edges = new Map(), ink = new THREE.LineBasicMaterial({ color: 0x10161c, transparent: true, opacity: 0.35 });
   const outline = (o) => {
     if (!edges.has(o.geometry)) edges.set(o.geometry, new THREE.EdgesGeometry(o.geometry, 30));
     if (!edges.get(o.geometry).attributes.position.count && !o.userData.wire) return;
-    const lines = new THREE.LineSegments(edges.get(o.geometry), new THREE.LineBasicMaterial({ color: 0x10161c, transparent: true, opacity: o.userData.wire ? 0.9 : 0.35 }));
-    if (o.userData.wire) { o.material.colorWrite = o.material.depthWrite = false; lines.material.color.copy(o.material.color); }
+    const lines = new THREE.LineSegments(edges.get(o.geometry), ink);
+    if (o.userData.wire) {
+      o.material.colorWrite = o.material.depthWrite = false;
+      lines.material = new THREE.LineBasicMaterial({ color: o.material.color, transparent: true, opacity: 0.9 });
+    }
     o.add(lines);
-    lineworks.push(lines);
   };
-  // The loader makes names of its own; each part gets a material of its own, as they change one by one.
+  // Parts that look alike share a material; what changes on its own gets one of its own first.
+  const owners = new Set();
+  const alone = (o) => {
+    if (!owners.has(o)) o.material = o.material.clone();
+    owners.add(o);
+    return o.material;
+  };
+  // The loader makes names of its own.
   const nodes = await gltf.parser.getDependencies("node"), isDrawn = (o) => o.isMesh || o.isLine;
   nodes.forEach((o, k) => {
     o.name = json.nodes[k].name;
     if (!isDrawn(o)) return;
-    o.material = o.material.clone();
     o.userData.wire = o.material.userData.style === "wire";
     if (!o.isMesh) return;
-    o.material.side = THREE.DoubleSide;
+    if (o.material.opacity < 1 || o.userData.wire) alone(o);
+    o.userData.unit = json.meshes[json.nodes[k].mesh].name;
+    o.material.side = o.material.shadowSide = THREE.DoubleSide;
     if ((o.name === "shape" || o.name === "road") && o.geometry.attributes.position.count < 60000) outline(o);
     if (o.material.opacity === 1 && !o.userData.wire) { o.receiveShadow = true; o.castShadow = o.name !== "road"; }
   });
@@ -50,6 +64,15 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (o.isMesh && meshes[list[k].mesh].name === "coil") coils.push(se3dCoil(o, o.scale.z / o.scale.x));
   });
   coil(nodes, json);
+  // What is round has half as many corners around in pictures that have to be quick.
+  const rounds = se3dRounds(nodes);
+  // What is closed and solid is seen from outside alone, unless it is cut.
+  const closed = nodes.filter((o) => o.isMesh && !o.userData.wire && ["box", "sphere", "cylinder", "cone"].includes(o.userData.unit));
+  const face = (isCut) => closed.forEach(({ material }) => {
+    const side = material.opacity === 1 && !isCut ? 0 : THREE.DoubleSide; // 0: from outside
+    if (material.side !== side) Object.assign(material, { side, needsUpdate: true });
+  });
+  face(false);
   // Motion: a clip of three.js. A long one was thinned out to more than half of the most samples: then a curve
   // through its points.
   const animate = (top, all, { animations: [clip], parser }) => {
@@ -177,7 +200,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   renderer.clippingPlanes = [];
   renderer.shadowMap.enabled = sun.castShadow = true;
   renderer.shadowMap.type = THREE.PCFShadowMap;
-  renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
+  if (!live || !se3dSlow) renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1)); // else `paint` says it
 
   const grains = packed ? se3dGrains(packed, { isLive: !!live, scene, root, renderer, camera, around: () => ({ floor, solids }) }) : null;
 
@@ -198,7 +221,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       if (o.material.opacity < 1 && Math.max(o.scale.x, o.scale.y) > 200 * o.scale.z) { // a plane has no ends; one that stands is hardly seen
         if (!o.userData.isPlane) planes.push(o);
         o.userData.isPlane = true;
-        if (va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z < 0.5) o.material.opacity = 0.08;
+        if (va.set(0, 0, 1).applyQuaternion(o.getWorldQuaternion(qa)).z < 0.5) alone(o).opacity = 0.08;
         return;
       }
       if (!o.geometry.boundingBox) o.geometry.computeBoundingBox();
@@ -351,9 +374,10 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   const clear = new Set();
   const glaze = () => solids.forEach((o) => {
     if (!clear.has(o)) return;
-    Object.assign(o.material, state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
+    Object.assign(alone(o), state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
     o.castShadow = state.solid || !packed; // else grains within it would be dark
     o.material.needsUpdate = true;
+    face(state.cut);
   });
   // Only given shapes are seen through, never a bar or another joint; nor tubes, of which little would be left.
   const isSlim = (o) => {
@@ -438,9 +462,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
 
   const draw = (isQuick) => {
     const [width, height] = film || [innerWidth, innerHeight];
-    if (renderer.domElement.width !== Math.round(width * renderer.getPixelRatio()) || camera.aspect !== width / height) {
+    const ratio = renderer.getPixelRatio(), { domElement } = renderer, isSized = domElement.width === Math.floor(width * ratio) && domElement.height === Math.floor(height * ratio);
+    if (!isSized || camera.aspect !== width / height) {
       const { distance } = orbit;
-      renderer.setSize(width, height, false); fit();
+      if (!isSized) renderer.setSize(width, height, false);
+      fit();
       if (state.zoomed) orbit.distance = distance;
     }
     pose(state.time);
@@ -466,6 +492,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       }
     }
     stretch();
+    rounds.show(isQuick === true);
     light.render(isQuick === true);
     write();
     $("time").value = state.time;
@@ -476,7 +503,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   // Colours by speed, force, size or set.
   const painted = bodies.map((b, k) => {
     const list = [];
-    if (k > 0) b.children.forEach((o) => { if (o.isMesh && o.material.opacity === 1 && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, own: o.material.color.clone() }); });
+    if (k > 0) b.children.forEach((o) => { if (o.isMesh && o.material.opacity === 1 && (o.name === "shape" || o.name === "link" || o.name === "center")) list.push({ o, usual: o.material.color.clone() }); });
     return list;
   });
   // Speeds of bodies from the positions just before and after.
@@ -493,10 +520,10 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const columns = [".force", ".force.x", ".force.y", ".force.z"].map((end) => results.names.indexOf(e.name + end)).filter((k) => k > 0);
     let most = 0;
     for (let r = 0; r < rows; ++r) most = Math.max(most, Math.hypot(...columns.map((k) => at(r, k))) || 0);
-    return { e, columns, most, own: e.parts.map((o) => o.material.color.clone()) };
+    return { e, columns, most, usual: e.parts.map((o) => o.material.color.clone()) };
   }).filter((l) => l.columns.length);
   let range = null;
-  const tint = (o, much) => { const [r, g, b] = se3dRamp(much / (range[1] || 1)).map((v) => v / 255); o.material.color.setRGB(r, g, b); o.material.color.convertSRGBToLinear(); };
+  const tint = (o, much) => { const [r, g, b] = se3dRamp(much / (range[1] || 1)).map((v) => v / 255), { color } = alone(o); color.setRGB(r, g, b); color.convertSRGBToLinear(); };
   const measureRange = () => {
     if (state.colour === "size") return grains.sizes();
     if (state.colour === "set") return [0, 0];
@@ -515,13 +542,13 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     const now = state.colour === "speed" ? speeds(state.time) : null;
     pose(state.time);
     if (grains) { grains.move(state.time); grains.paint(state.colour, range); }
-    painted.forEach((list, k) => list.forEach(({ o, own }) => {
-      o.material.color.copy(own);
+    painted.forEach((list, k) => list.forEach(({ o, usual }) => {
+      alone(o).color.copy(usual);
       if (now) tint(o, now[k]);
       else if (state.colour === "force") o.material.color.setHex(0x9aa5b0);
     }));
-    loads.forEach(({ e, columns, own }) => e.parts.forEach((o, k) => {
-      o.material.color.copy(own[k]);
+    loads.forEach(({ e, columns, usual }) => e.parts.forEach((o, k) => {
+      alone(o).color.copy(usual[k]);
       if (state.colour === "force") tint(o, Math.hypot(...columns.map((c) => value(c, state.time))));
     }));
     $("legend").style.display = state.colour ? "block" : "none";
@@ -592,7 +619,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     document.body.classList.toggle("dark", state.dark);
     if ("dark" in change) plots.theme();
     if (grid) { grid.material.color.set(state.dark ? 0x4a5560 : 0xb4bcc6); }
-    lineworks.forEach((o) => { if (!o.parent.userData.wire) o.material.color.set(state.dark ? 0xaab4be : 0x10161c); });
+    ink.color.set(state.dark ? 0xaab4be : 0x10161c);
     scene.background = new THREE.Color(state.dark ? 0x1d242b : 0xf4f6f8);
     if ("dark" in change) { // dark steel stands out from what is dark, too
       sky.intensity = state.dark ? 2.2 : 1.6;
@@ -609,6 +636,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       if (plane) plane.constant = -plane.normal.dot(center);
       renderer.clippingPlanes = plane ? [plane] : [];
       if (grains) grains.cut = plane;
+      face(state.cut);
     }
     if ("second" in change && secondRoot) {
       // Beside: in the direction in which it is shorter.
@@ -755,10 +783,11 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
   if (isAlike) { se3dClear.list.forEach((k) => clear.add(solids[k])); glaze(); }
   if (!isLate) see();
   // Whether there is another picture than the last one.
+  const isBare = () => document.body.classList.contains("bare");
   let fresh = true, last = "";
   const isOther = () => {
     const what = [innerWidth, innerHeight, JSON.stringify(orbit), JSON.stringify(state), pull ? JSON.stringify(pull.place) : ""].join();
-    const other = fresh || what !== last || document.body.classList.contains("bare"); // who takes a picture waits for one
+    const other = fresh || what !== last || isBare(); // who takes a picture waits for one
     last = what; fresh = false;
     return other;
   };
@@ -784,7 +813,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     if (live && renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
     began = performance.now();
     const isMoving = state.playing || pull || isFirst || performance.now() - moved < 150;
-    isRough = isMoving && se3dSlow > 0; // the fine picture comes when all rests
+    isRough = isMoving && se3dSlow > 0 && !isBare(); // the fine picture comes when all rests
     renderer.shadowMap.autoUpdate = !(isFirst && sun.shadow.map); // until then those of the file before
     draw(isRough);
     renderer.shadowMap.autoUpdate = true;
@@ -835,6 +864,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     se3dClear = { alike, list: solids.flatMap((o, k) => (clear.has(o) ? [k] : [])) };
     return () => {
       light.close();
+      rounds.close();
       scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
     };
   };
@@ -906,6 +936,21 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
         for (let k = 0; k < plain.length; k += 4) points += Math.abs(plain[k] - other[k]) + Math.abs(plain[k + 1] - other[k + 1]) + Math.abs(plain[k + 2] - other[k + 2]) > 60;
         return [e.name, points];
       });
+    },
+    // What a quick picture has of a fine one: its triangles, and points that are the same.
+    quick: (t) => {
+      set({ time: t, playing: false });
+      const w = renderer.domElement.width, h = renderer.domElement.height, gl = renderer.getContext();
+      const look = (few) => {
+        const all = new Uint8Array(4 * w * h);
+        rounds.show(few); renderer.render(scene, camera); gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, all);
+        return { all, triangles: renderer.info.render.triangles };
+      };
+      draw();
+      const many = look(false), few = look(true);
+      let same = 0;
+      for (let k = 0; k < many.all.length; k += 4) same += Math.abs(many.all[k] - few.all[k]) + Math.abs(many.all[k + 1] - few.all[k + 1]) + Math.abs(many.all[k + 2] - few.all[k + 2]) < 60;
+      return [few.triangles / many.triangles, same / (w * h)];
     },
     // How many grains are there, and of how many at least a point is seen.
     seenGrains: (t) => { set({ time: t, playing: false }); draw(); return grains.seen(); },

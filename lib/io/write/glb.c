@@ -401,6 +401,11 @@ static void put_material(se3di_glb *glb, const struct se3di_glb_look *look)
                   look->style == SE3DI_STYLE_WIRE ? ",\"extras\":{\"style\":\"wire\"}" : "");
 }
 
+/* For who bends the wire of a coil, or draws what is closed and round in another way. */
+static const char *const unit_names[SE3DI_UNIT_COUNT] = {
+    "\"name\":\"box\",",  "\"name\":\"sphere\",", "\"name\":\"cylinder\",", "\"name\":\"coil\",",
+    "\"name\":\"grid\",", "\"name\":\"cone\",",   "\"name\":\"sphere\","};
+
 /* Parts of one surface, colour and style share a mesh. */
 size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
 {
@@ -419,10 +424,8 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
     }
     glb->looks = grown;
     glb->looks[index] = look;
-    const bool is_coil =
-        !part->mesh && part->unit == SE3DI_UNIT_SPRING; /* for who bends its wire */
     se3di_glb_put(glb, &glb->meshes, "%s{%s\"primitives\":[{\"attributes\":{\"POSITION\":%ld",
-                  index > 0 ? "," : "", is_coil ? "\"name\":\"coil\"," : "", surface[0]);
+                  index > 0 ? "," : "", part->mesh ? "" : unit_names[part->unit], surface[0]);
     if (surface[2] >= 0) {
         se3di_glb_put(glb, &glb->meshes, ",\"NORMAL\":%ld},\"indices\":%ld", surface[1],
                       surface[2]);
