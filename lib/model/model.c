@@ -6,18 +6,60 @@
 #include "math/vec3.h"
 #include "model/function.h"
 
+#include <stddef.h>
 #include <string.h>
+
+/* A kind of elements: its slots and its array in the model, its names. */
+typedef struct kind {
+    size_t slots, elements; /* offsets in the model */
+    size_t size, name;      /* of an element; where its name is in it */
+    int has_name;
+} kind;
+
+#define NAMED(slots, elements, type)                                                               \
+    {                                                                                              \
+        offsetof(se3di_model, slots), offsetof(se3di_model, elements), sizeof(type),               \
+            offsetof(type, name), 1                                                                \
+    }
+#define BARE(slots, elements, type)                                                                \
+    {                                                                                              \
+        offsetof(se3di_model, slots), offsetof(se3di_model, elements), sizeof(type), 0, 0          \
+    }
+
+/* Names of shapes belong to the shapes: the last kind, so that the others come first. */
+static const kind kinds[] = {
+    NAMED(body_slots, bodies, se3di_body),
+    NAMED(marker_slots, markers, se3di_marker),
+    NAMED(constraint_slots, constraints, se3di_constraint),
+    NAMED(force_slots, forces, se3di_force),
+    NAMED(wheel_slots, wheels, se3di_wheel),
+    NAMED(road_slots, roads, se3di_road),
+    BARE(function_slots, functions, se3di_function),
+    BARE(material_slots, materials, se3di_material),
+    NAMED(shape_slots, shapes, se3di_shape),
+};
+enum { KINDS = sizeof kinds / sizeof *kinds, SHAPES = KINDS - 1 };
+
+static se3di_slots *slots_of(se3di_model *model, int k)
+{
+    return (void *)((char *)model + kinds[k].slots);
+}
+
+/* The place of the name of an element; NULL: such elements have none. */
+static char **name_of(se3di_model *model, int k, size_t index)
+{
+    char *elements;
+    memcpy(&elements, (char *)model + kinds[k].elements, sizeof elements);
+    return kinds[k].has_name ? (void *)(elements + index * kinds[k].size + kinds[k].name) : NULL;
+}
 
 se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator, uint32_t salt)
 {
     memset(model, 0, sizeof *model);
     model->allocator = *allocator;
     model->gravity_function[0] = model->gravity_function[1] = model->gravity_function[2] = -1;
-    se3di_slots *slots[] = {&model->body_slots,       &model->marker_slots, &model->function_slots,
-                            &model->constraint_slots, &model->force_slots,  &model->material_slots,
-                            &model->shape_slots,      &model->wheel_slots,  &model->road_slots};
-    for (size_t k = 0; k < sizeof slots / sizeof slots[0]; ++k) {
-        se3di_slots_init(slots[k], salt);
+    for (int k = 0; k < KINDS; ++k) {
+        se3di_slots_init(slots_of(model, k), salt);
     }
     model->contact.overlap_limit = 0.2;
     char name[] = "ground";
@@ -34,24 +76,10 @@ se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator
 
 static void destroy_names(se3di_model *model)
 {
-    const se3d_allocator *allocator = &model->allocator;
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        se3di_text_free(allocator, model->bodies[k].name);
-    }
-    for (size_t k = 0; k < model->marker_slots.count; ++k) {
-        se3di_text_free(allocator, model->markers[k].name);
-    }
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
-        se3di_text_free(allocator, model->constraints[k].name);
-    }
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        se3di_text_free(allocator, model->forces[k].name);
-    }
-    for (size_t k = 0; k < model->wheel_slots.count; ++k) {
-        se3di_text_free(allocator, model->wheels[k].name);
-    }
-    for (size_t k = 0; k < model->road_slots.count; ++k) {
-        se3di_text_free(allocator, model->roads[k].name);
+    for (int k = 0; k < SHAPES; ++k) {
+        for (size_t i = 0; kinds[k].has_name && i < slots_of(model, k)->count; ++i) {
+            se3di_text_free(&model->allocator, *name_of(model, k, i));
+        }
     }
 }
 
@@ -105,15 +133,9 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
 
 static void destroy_slots(se3di_model *model)
 {
-    se3di_slots_destroy(&model->body_slots, &model->allocator);
-    se3di_slots_destroy(&model->marker_slots, &model->allocator);
-    se3di_slots_destroy(&model->function_slots, &model->allocator);
-    se3di_slots_destroy(&model->constraint_slots, &model->allocator);
-    se3di_slots_destroy(&model->force_slots, &model->allocator);
-    se3di_slots_destroy(&model->material_slots, &model->allocator);
-    se3di_slots_destroy(&model->shape_slots, &model->allocator);
-    se3di_slots_destroy(&model->wheel_slots, &model->allocator);
-    se3di_slots_destroy(&model->road_slots, &model->allocator);
+    for (int k = 0; k < KINDS; ++k) {
+        se3di_slots_destroy(slots_of(model, k), &model->allocator);
+    }
 }
 
 void se3di_model_destroy(se3di_model *model)
@@ -152,15 +174,9 @@ static void disown(se3di_model *copy)
         *arrays[k].data = NULL;
         *arrays[k].capacity = 0;
     }
-    se3di_slots_init(&copy->body_slots, 0);
-    se3di_slots_init(&copy->marker_slots, 0);
-    se3di_slots_init(&copy->function_slots, 0);
-    se3di_slots_init(&copy->constraint_slots, 0);
-    se3di_slots_init(&copy->force_slots, 0);
-    se3di_slots_init(&copy->material_slots, 0);
-    se3di_slots_init(&copy->shape_slots, 0);
-    se3di_slots_init(&copy->wheel_slots, 0);
-    se3di_slots_init(&copy->road_slots, 0);
+    for (int k = 0; k < KINDS; ++k) {
+        se3di_slots_init(slots_of(copy, k), 0);
+    }
     copy->sets = NULL;
     copy->pending = NULL;
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
@@ -183,24 +199,15 @@ static se3d_status copy_names(se3di_model *copy)
 {
     const se3d_allocator *allocator = &copy->allocator;
     se3d_status status = SE3D_OK;
-    for (size_t k = 0; k < copy->body_slots.count; ++k) {
-        status = copy_name(allocator, &copy->bodies[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
-    }
-    for (size_t k = 0; k < copy->marker_slots.count; ++k) {
-        status = copy_name(allocator, &copy->markers[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
-    }
-    for (size_t k = 0; k < copy->constraint_slots.count; ++k) {
-        status = copy_name(allocator, &copy->constraints[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
+    for (int k = 0; k < SHAPES; ++k) {
+        for (size_t i = 0; kinds[k].has_name && i < slots_of(copy, k)->count; ++i) {
+            status = copy_name(allocator, name_of(copy, k, i)) < 0 ? SE3D_ERR_NO_MEMORY : status;
+        }
     }
     for (size_t k = 0; k < copy->force_slots.count; ++k) {
-        status = copy_name(allocator, &copy->forces[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
         status = se3di_force_own(allocator, &copy->forces[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
-    for (size_t k = 0; k < copy->wheel_slots.count; ++k) {
-        status = copy_name(allocator, &copy->wheels[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
-    }
     for (size_t k = 0; k < copy->road_slots.count; ++k) {
-        status = copy_name(allocator, &copy->roads[k].name) < 0 ? SE3D_ERR_NO_MEMORY : status;
         status = se3di_road_own(allocator, &copy->roads[k]) < 0 ? SE3D_ERR_NO_MEMORY : status;
     }
     for (size_t k = 0; k < copy->function_slots.count; ++k) {
@@ -213,61 +220,35 @@ static se3d_status copy_names(se3di_model *copy)
     return status;
 }
 
-static void list_name(se3di_slots *slots, size_t dense, uint32_t owner, const char *name)
-{
-    if (name) {
-        se3di_slots_name(slots, (uint32_t)dense, owner, name);
-    }
-}
-
 /* A copy has its names, and room to find them. */
 static void list_names(se3di_model *copy)
 {
-    for (size_t k = 0; k < copy->body_slots.count; ++k) {
-        list_name(&copy->body_slots, k, 0, copy->bodies[k].name);
-    }
-    for (size_t k = 0; k < copy->marker_slots.count; ++k) {
-        list_name(&copy->marker_slots, k, se3di_model_owner(copy, copy->markers[k].body),
-                  copy->markers[k].name);
-    }
-    for (size_t k = 0; k < copy->constraint_slots.count; ++k) {
-        list_name(&copy->constraint_slots, k, 0, copy->constraints[k].name);
-    }
-    for (size_t k = 0; k < copy->force_slots.count; ++k) {
-        list_name(&copy->force_slots, k, 0, copy->forces[k].name);
-    }
-    for (size_t k = 0; k < copy->shape_slots.count; ++k) {
-        list_name(&copy->shape_slots, k, 0, copy->shapes[k].name);
-    }
-    for (size_t k = 0; k < copy->wheel_slots.count; ++k) {
-        list_name(&copy->wheel_slots, k, 0, copy->wheels[k].name);
-    }
-    for (size_t k = 0; k < copy->road_slots.count; ++k) {
-        list_name(&copy->road_slots, k, 0, copy->roads[k].name);
+    for (int k = 0; k < KINDS; ++k) {
+        se3di_slots *slots = slots_of(copy, k);
+        for (size_t i = 0; kinds[k].has_name && i < slots->count; ++i) {
+            const char *name = *name_of(copy, k, i);
+            const uint32_t owner =
+                slots == &copy->marker_slots ? se3di_model_owner(copy, copy->markers[i].body) : 0;
+            if (name) {
+                se3di_slots_name(slots, (uint32_t)i, owner, name);
+            }
+        }
     }
 }
 
-static se3d_status clone_slots(const se3di_model *model, se3di_model *copy)
+static se3d_status clone_slots(se3di_model *model, se3di_model *copy)
 {
-    const se3d_allocator *allocator = &copy->allocator;
-    SE3DI_TRY(se3di_slots_clone(&model->body_slots, allocator, &copy->body_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->marker_slots, allocator, &copy->marker_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->function_slots, allocator, &copy->function_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->constraint_slots, allocator, &copy->constraint_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->force_slots, allocator, &copy->force_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->material_slots, allocator, &copy->material_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->shape_slots, allocator, &copy->shape_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->wheel_slots, allocator, &copy->wheel_slots));
-    SE3DI_TRY(se3di_slots_clone(&model->road_slots, allocator, &copy->road_slots));
+    for (int k = 0; k < KINDS; ++k) {
+        SE3DI_TRY(se3di_slots_clone(slots_of(model, k), &copy->allocator, slots_of(copy, k)));
+    }
     return SE3D_OK;
 }
 
-static se3d_status clone_arrays(const se3di_model *model, se3di_model *copy)
+static se3d_status clone_arrays(se3di_model *model, se3di_model *copy)
 {
-    se3di_model original = *model; /* list_arrays only takes addresses of its members */
     model_array from[MODEL_ARRAYS];
     model_array to[MODEL_ARRAYS];
-    list_arrays(&original, from);
+    list_arrays(model, from);
     list_arrays(copy, to);
     for (int k = 0; k < MODEL_ARRAYS; ++k) {
         SE3DI_TRY(se3di_array_reserve(&copy->allocator, to[k].data, to[k].capacity, from[k].count,
@@ -296,25 +277,20 @@ se3d_status se3di_model_clone(const se3di_model *model, se3di_model *copy)
     copy->replaces = 0;
     copy->target = 0;
     disown(copy);
-    se3di_model slots = *copy; /* slot counts stay zero in `copy` until its arrays are filled */
-    se3d_status status = clone_slots(model, &slots);
+    se3di_model original = *model; /* of it only addresses of members are taken */
+    se3di_model slots = *copy;     /* slot counts stay zero in `copy` until its arrays are filled */
+    se3d_status status = clone_slots(&original, &slots);
     if (status == SE3D_OK) {
-        status = clone_arrays(model, copy);
+        status = clone_arrays(&original, copy);
     }
     if (status < 0) {
         destroy_slots(&slots);
         se3di_model_destroy(copy);
         return status;
     }
-    copy->body_slots = slots.body_slots;
-    copy->marker_slots = slots.marker_slots;
-    copy->function_slots = slots.function_slots;
-    copy->constraint_slots = slots.constraint_slots;
-    copy->force_slots = slots.force_slots;
-    copy->material_slots = slots.material_slots;
-    copy->shape_slots = slots.shape_slots;
-    copy->wheel_slots = slots.wheel_slots;
-    copy->road_slots = slots.road_slots;
+    for (int k = 0; k < KINDS; ++k) {
+        *slots_of(copy, k) = *slots_of(&slots, k);
+    }
     status = copy_names(copy);
     if (status < 0) {
         se3di_model_destroy(copy);
