@@ -88,26 +88,34 @@ function(se3d_find_io_dependencies)
     se3d_find_math()
 endfunction()
 
-# se3d_find_expat(<wanted>): what reads the XML of robots' formats. SE3D_HAS_EXPAT says whether it is
-# there; without it se3d_deps::expat links nothing.
-function(se3d_find_expat wanted)
+# se3d_find_part(<wanted> <name> <library> <header> <package> <without>): a library that libse3d-io can
+# do without. SE3D_HAS_<NAME> says whether it is there; without it se3d_deps::<name> links nothing, and a
+# message says what is missing.
+function(se3d_find_part wanted name library header package without)
+    string(TOUPPER "SE3D_HAS_${name}" has)
     if(wanted)
-        se3d_find_library(expat expat expat.h libexpat1-dev)
+        se3d_find_library(${name} ${library} ${header} ${package})
     endif()
-    set(SE3D_HAS_EXPAT OFF)
-    if(TARGET se3d_deps::expat)
-        get_target_property(type se3d_deps::expat TYPE)
+    set(${has} OFF)
+    if(TARGET se3d_deps::${name})
+        get_target_property(type se3d_deps::${name} TYPE)
         if(NOT type STREQUAL "INTERFACE_LIBRARY")
-            set(SE3D_HAS_EXPAT ON)
+            set(${has} ON)
         endif()
     else()
-        add_library(se3d_deps::expat INTERFACE IMPORTED GLOBAL)
+        add_library(se3d_deps::${name} INTERFACE IMPORTED GLOBAL)
         if(wanted)
-            message(STATUS "No expat: URDF cannot be imported (Debian: libexpat1-dev)")
+            message(STATUS "No ${name}: ${without} (Debian: ${package})")
         endif()
     endif()
-    set(SE3D_HAS_EXPAT ${SE3D_HAS_EXPAT} PARENT_SCOPE)
+    set(${has} ${${has}} PARENT_SCOPE)
 endfunction()
+
+# What reads the XML of robots' formats, and what compresses results.
+macro(se3d_find_io_parts expat zlib)
+    se3d_find_part("${expat}" expat expat expat.h libexpat1-dev "URDF cannot be imported")
+    se3d_find_part("${zlib}" zlib z zlib.h zlib1g-dev "results are not compressed")
+endmacro()
 
 # se3d_find_optional(<wanted> <name> <header> <package> <without>): a library that the program can do
 # without. SE3D_HAS_<NAME> says whether it is there; if not, a message what is missing without it.

@@ -49,7 +49,7 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 file(WRITE "${PROJECT_BINARY_DIR}/debian/triggers" "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${PROJECT_BINARY_DIR}/debian/triggers")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "${se3d_deb_runtime} (= ${PROJECT_VERSION}), libsuitesparse-dev, libyaml-dev, libexpat1-dev")
+    "${se3d_deb_runtime} (= ${PROJECT_VERSION}), libsuitesparse-dev, libyaml-dev, libexpat1-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "se3d-doc, chromium, ffmpeg")

@@ -9,7 +9,7 @@
 #     se3d_help "$@"               with --help first: prints the head of the script and ends
 
 SE3D_BUILD_PACKAGES="gcc libc6-dev make cmake pkg-config libsuitesparse-dev libyaml-dev libexpat1-dev \
-libmicrohttpd-dev libnlopt-dev"
+zlib1g-dev libmicrohttpd-dev libnlopt-dev"
 SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
 SE3D_PYTHON_PACKAGES="python3-cffi python3-numpy python3-dev mypy"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9 python3-h5py"

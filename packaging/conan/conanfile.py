@@ -21,6 +21,7 @@ class Se3d(ConanFile):
         self.requires("suitesparse-amd/3.3.3")
         self.requires("libyaml/0.2.5")
         self.requires("expat/[>=2.6.2 <3]")
+        self.requires("zlib/[>=1.2.11 <2]")
 
     def build_requirements(self):
         self.tool_requires("cmake/[>=3.25]")
@@ -62,6 +63,6 @@ class Se3d(ConanFile):
         io.libs = ["se3d-io"]
         io.set_property("cmake_target_name", "se3d::se3d-io")
         io.set_property("pkg_config_name", "se3d-io")
-        io.requires = ["core", "libyaml::libyaml", "expat::expat"]
+        io.requires = ["core", "libyaml::libyaml", "expat::expat", "zlib::zlib"]
         if self.settings.os in ("Linux", "FreeBSD"):
             core.system_libs = ["m"]

@@ -11,6 +11,7 @@ class Se3d < Formula
   depends_on "libyaml"
   depends_on "suite-sparse"
   uses_from_macos "expat"
+  uses_from_macos "zlib"
 
   def install
     system "cmake", "-S", ".", "-B", "build", "-DSE3D_BUILD_TESTS=OFF",

@@ -56,6 +56,21 @@ for file in r.h5 p.h5 cone.vtkhdf h/grains_00002.vtkhdf cone.vtp; do
     holds "$file has other bytes" cmp "$run/$file" "$dir/again/$file"
 done
 
+# The same compressed: less of it, and the same numbers.
+if [ -n "${SE3D_HAS_ZLIB:-}" ]; then
+    sed '/file:\|vtk:\|summary:\|wall_map:\|average:/{/\.csv/!s/}$/, compression: 6}/}' "$dir/all.yaml" >"$dir/packed.yaml"
+    is "$(grep -c 'compression: 6' "$dir/packed.yaml")" 13
+    expect 'compressed' 0 "$program" run -q "$dir/packed.yaml" -o "$dir/packed"
+    expect 'compressed once more' 0 "$program" run -q "$dir/packed.yaml" -o "$dir/again"
+    for file in r.h5 p.h5 cone.vtkhdf h/grains_00002.vtkhdf cone.vtp; do
+        holds "$file, compressed, has other bytes" cmp "$dir/packed/$file" "$dir/again/$file"
+    done
+    for file in cone.vtp x/bodies_00000.vtp; do
+        holds "$file is not smaller" [ "$(wc -c <"$dir/packed/$file")" -lt "$(($(wc -c <"$run/$file") * 3 / 4))" ]
+    done
+    [ ! -x "$SE3D_BUILD_DIR/tests/test_unit_hdf5_pieces" ] || "$SE3D_BUILD_DIR/tests/test_unit_hdf5_pieces" "$dir/packed/pieces.h5"
+fi
+
 # Names that are alike without slashes; outputs that are CSV among others.
 cat >"$dir/alike.yaml" <<'END_OF_YAML'
 se3d: 1
@@ -111,6 +126,21 @@ assert grid["Points"].shape == (100, 3) and grid["PointData/radius"].shape == (1
 assert checks > 1000, checks
 alike = h5py.File(sys.argv[1] + "/../alike/r.h5")["/"]
 wanted = {"a:b.velocity.x": 1, "a:b.velocity.x:": 2, "h:t": 2.5, "h:t:": 5, "h:t::": 7.5}
+import os
+import numpy as np
+packed = sys.argv[1] + "/../packed/"
+for name in "r", "p", "c", "s", "cone", "a":
+    if os.path.exists(packed):
+        a, b = h5py.File(sys.argv[1] + "/%s.h5" % name), h5py.File(packed + "%s.h5" % name)
+        assert list(a) == list(b) and all(a[k].dtype == b[k].dtype and np.array_equal(a[k][:], b[k][:]) for k in a), name
+        assert name != "r" or not b["half"].chunks or b["half"].compression == "gzip" and b["half"].shuffle
+if os.path.exists(packed + "pieces.h5"):
+    file = h5py.File(packed + "pieces.h5")
+    table = 10.0 * np.arange(5000)[:, None] + np.arange(3)
+    for name, piece in ("one", 1), ("some", 64), ("all", 5000), ("chosen", 2730):
+        assert file[name].chunks == (piece, 3), file[name].chunks
+        assert np.array_equal(file[name][:], table) and np.array_equal(file[name][4097:4099, 1], table[4097:4099, 1]), name
+    assert file["small"][:].tolist() == [1, 2, 3] and file["small"].chunks is None
 assert len(alike) == 10 and all(abs(alike[c][1] - wanted[c]) < 1e-12 for c in wanted), list(alike)
 END_OF_PYTHON
 cat >"$dir/pictures.py" <<'END_OF_PYTHON'
@@ -133,6 +163,13 @@ def same(a, b):
         assert x.GetNumberOfValues() == y.GetNumberOfValues() and x.GetNumberOfComponents() == y.GetNumberOfComponents()
         assert all(x.GetValue(n) == y.GetValue(n) for n in range(x.GetNumberOfValues())), x.GetName()
 def compare(hdf, xml):
+    import os
+    for name in hdf, xml:  # the same, compressed
+        if os.path.exists(folder + "../packed/"):
+            a, b = read(name), read("../packed/" + name)
+            assert a.GetNumberOfPoints() == b.GetNumberOfPoints() and a.GetNumberOfCells() == b.GetNumberOfCells(), name
+            same(a.GetPointData(), b.GetPointData())
+            same(a.GetCellData(), b.GetCellData())
     a, b = read(hdf), read(xml)
     if xml.endswith("vti"):  # its cells are the points of the other
         same(a.GetPointData(), b.GetCellData())
@@ -194,6 +231,9 @@ bad() {
 bad "{wall_map: a.vti, shape: cone}" 'must end with .vtp, .vtkhdf, .h5 or .csv'
 bad "{average: a.vtp, $fields}" 'must end with .vti, .vtkhdf, .h5 or .csv'
 bad "{vtk: a.h5}" 'must end with .pvd or .vtkhdf'
+bad "{file: a.csv, compression: 1}" 'compression: has no effect on `a.csv`: CSV is not compressed; .h5 is'
+bad "{file: a.h5, compression: 10}" 'must be a whole number from 0 to 9'
+[ -n "${SE3D_HAS_ZLIB:-}" ] || bad "{file: a.h5, compression: 1}" 'this build of libse3d-io has no zlib'
 bad "{file: a.h5}" "{file: a.h5.csv}" 'written by two outputs'
 bad "{file: a.h5}" "{plot: a.svg, from: a.h5}" 'is HDF5: plots are made of CSV files'
 expect 'a plot of HDF5' 1 "$program" plot "$run/r.h5"
@@ -209,6 +249,11 @@ mkdir -p "$dir/full/p.h5.partial"
 expect 'a folder in the place of a file, later' 1 "$program" run "$dir/all.yaml" -o "$dir/full"
 says "full/p.h5: cannot be written: File exists; its rows are in $dir/full/p.h5.csv"
 is "$(wc -l <"$dir/full/p.h5.csv")" 301
+if [ -n "${SE3D_HAS_ZLIB:-}" ]; then
+    expect 'a full disk, compressed' 1 sh -c 'trap "" XFSZ; ulimit -f 40; exec "$@"' sh "$program" run "$dir/packed.yaml" -o "$dir/limit"
+    says 'File too large'
+    holds 'something unfinished is left' [ -z "$(find "$dir/limit" -name '*.partial')" ]
+fi
 expect 'a full disk' 1 sh -c 'trap "" XFSZ; ulimit -f 40; exec "$@"' sh "$program" run "$dir/all.yaml" -o "$dir/limit"
 says 'File too large'
 holds 'something unfinished is left' [ -z "$(find "$dir/limit" -name '*.partial')" ]

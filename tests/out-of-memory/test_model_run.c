@@ -28,6 +28,12 @@
     "  - {type: effort, joint: slide, coordinate: angle, value: t - q}\n"                          \
     "  - {type: stop, joint: slide, coordinate: displacement, upper: 1, k: 1e3}\n"
 
+#if defined(SE3D_HAS_ZLIB)
+#define COMPRESSED ", compression: 6"
+#else
+#define COMPRESSED ""
+#endif
+
 static const char *const texts[] = {
     HEAD "  - {type: friction, joint: pin, limit: 0.1}\n"
          "analysis:\n"
@@ -66,13 +72,13 @@ static const char *const texts[] = {
     "[0.5, 0.5, 0.5]}]\nbodies: [{name: ground, shapes: [{type: plane, material: m}]}]\n"
     "analysis: {type: dynamics, duration: 0.01}\noutput: [{file: s.csv, every: 0.01, channels: "
     "[contacts.count]}, {file: g.csv, every: 0.01, particles: true}]\n",
-    /* HDF5, and what particles do to a wall, for VTK. */
+    /* HDF5, and what particles do to a wall, for VTK, where it can be compressed. */
     "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1e3}]\ncontact: {}\n"
     "particles: [{material: m, radius: 0.1, lower: [0, 0, 0], upper: [0.3, 0.3, 0.3]}]\n"
     "bodies: [{name: ground, shapes: [{name: tube, type: funnel, bottom_radius: 1, top_radius: 2,\n"
     "  length: 0.5, material: m}]}]\nanalysis: {type: dynamics, duration: 0.01}\noutput:\n"
-    "  - {file: g.h5, every: 0.01, particles: true}\n  - {vtk: motion.vtkhdf, every: 0.01}\n"
-    "  - {wall_map: w.vtp, shape: tube, every: 0.01}\n"
+    "  - {file: g.h5, every: 0.01, particles: true}\n  - {vtk: motion.vtkhdf, every: "
+    "0.01" COMPRESSED "}\n  - {wall_map: w.vtp, shape: tube, every: 0.01" COMPRESSED "}\n"
     "  - {average: a.vtkhdf, every: 0.01, fields: {lower: [0, 0, 0], upper: [1, 1, 1],\n"
     "     cells: [2, 1, 1], width: 1}}\n",
     /* Bars and plates with their joints, mirrored; a table that repeats. */

@@ -19,6 +19,7 @@ typedef struct se3di_output_entry {
     const se3d_field_grid *grid; /* of a series or average: fields of the particles; NULL: none */
     se3d_shape wall;             /* the surface whose patches are averaged */
     double every;                /* 0: the analysis's step */
+    double compression;          /* 1 ... 9 of what is not CSV; 0: none */
     se3di_channel *channels;
     size_t count;
     const se3di_node *node; /* NULL: the default output */

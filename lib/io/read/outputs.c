@@ -4,6 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "io/base/deflate.h"
 #include "io/base/pool.h"
 #include "io/channel/channel.h"
 #include "io/channel/combine.h"
@@ -54,6 +55,9 @@ static const se3di_key output_keys[] = {
      .types = " file vtk summary average wall_map ",
      .standard = "the step; without one a 500th of the duration",
      .text = "time between rows [s]"},
+    {"compression", SE3DI_KIND_COUNT, .most = 9.0,
+     .types = " file vtk summary average wall_map ", .standard = "0: none",
+     .text = "of .h5, .vtkhdf, .vtp, .vti and .pvd: 1 is fast, 9 is small"},
     {"channels", SE3DI_KIND_CHANNELS, .types = " file summary ",
      .standard = "every channel of up to 100 bodies",
      .text = "what is written, a row each time: channels, components of them, and "
@@ -443,6 +447,26 @@ static bool check_picture_of_average(se3di_reader *reader, const se3di_node *fil
                              file->text, kind == KIND_WALL_MAP ? ".vtp" : ".vti");
 }
 
+static bool read_compression(se3di_reader *reader, const se3di_node *node, size_t kind,
+                             se3di_output_entry *output)
+{
+    if (!se3di_read_key(reader, node, &se3di_object_output, output_types[kind], "compression",
+                        &output->compression)) {
+        return false;
+    }
+    if (!(output->compression > 0.0)) {
+        return true;
+    }
+    if (!output->vtk && se3di_output_get_format(output) == SE3DI_OUTPUT_CSV) {
+        return se3di_reader_fail_key(reader, node, "compression",
+                                     "has no effect on `%.60s`: CSV is not compressed; .h5 is",
+                                     output->file);
+    }
+    return se3di_deflate_is_there() ||
+           se3di_reader_fail_key(reader, node, "compression",
+                                 "must be 0 here: this build of libse3d-io has no zlib");
+}
+
 static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kind)
 {
     se3d_model *model = reader->model;
@@ -458,7 +482,8 @@ static bool read_output(se3di_reader *reader, const se3di_node *node, size_t kin
         !check_picture_of_average(reader, file, kind) ||
         !se3di_read_fields(reader, node, &se3di_object_output, NULL, "se3di_output_entry",
                            output) ||
-        !check_window(reader, node, output) || !read_particle_rows(reader, node, kind, output) ||
+        !check_window(reader, node, output) || !read_compression(reader, node, kind, output) ||
+        !read_particle_rows(reader, node, kind, output) ||
         (!output->particles && !output->contacts && !output->vtk && !output->average &&
          !read_channels(reader, node, output))) {
         return false;

@@ -68,7 +68,8 @@ static se3d_status open_vtk(se3di_runner *r, const se3di_output_entry *entry, co
 {
     se3di_output_file *file = &r->files[r->file_count];
     file->entry = entry;
-    file->vtk = se3di_vtk_open(r->model, &r->run->pool, path, file->entry->grid);
+    file->vtk =
+        se3di_vtk_open(r->model, &r->run->pool, path, file->entry->grid, (int)entry->compression);
     if (!file->vtk) {
         return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
@@ -452,10 +453,11 @@ static se3d_status make_file(se3di_runner *r, const se3di_output_file *file, se3
 {
     char text[1600];
     const se3di_table_columns columns = columns_of(file->entry);
-    const bool made =
-        se3di_output_get_format(file->entry) == SE3DI_OUTPUT_VTK
-            ? se3di_average_write_vtk(file->average, file->made)
-            : se3di_table_convert(file->csv.path, file->made, &columns, &r->model->pool.allocator);
+    const int compression = (int)file->entry->compression;
+    const bool made = se3di_output_get_format(file->entry) == SE3DI_OUTPUT_VTK
+                          ? se3di_average_write_vtk(file->average, file->made, compression)
+                          : se3di_table_convert(file->csv.path, file->made, &columns, compression,
+                                                &r->model->pool.allocator);
     if (made) {
         about->path = file->made;
         return SE3D_OK;

@@ -36,6 +36,6 @@ void se3di_average_write(se3di_average_sum *average, se3di_csv *csv);
 void se3di_average_get_means(const se3di_average_sum *average, size_t cell, double *values);
 /* Write them as .vtp (of a wall), .vti (of fields) or .vtkhdf; zeros if nothing was added.
  * @return false: errno says why. */
-bool se3di_average_write_vtk(const se3di_average_sum *average, const char *path);
+bool se3di_average_write_vtk(const se3di_average_sum *average, const char *path, int compression);
 
 #endif

@@ -33,7 +33,7 @@ static double *list_points(const se3di_average_sum *a, se3di_iopool *pool, size_
 }
 
 static bool write_wall(const se3di_average_sum *a, se3di_iopool *pool, const double *values,
-                       const char *path)
+                       const se3di_vtk_target *to)
 {
     size_t each = 0;
     const double *points = list_points(a, pool, &each);
@@ -56,22 +56,22 @@ static bool write_wall(const se3di_average_sum *a, se3di_iopool *pool, const dou
 #undef WALL
     const se3di_vtk_file file = {
         .points = each * n, .polys = n, .arrays = arrays, .array_count = ARRAYS};
-    return se3di_vtk_file_write(&file, &pool->allocator, path);
+    return se3di_vtk_file_write(&file, to);
 }
 
-bool se3di_average_write_vtk(const se3di_average_sum *average, const char *path)
+bool se3di_average_write_vtk(const se3di_average_sum *average, const char *path, int compression)
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, &average->model->pool.allocator);
+    const se3di_vtk_target to = {path, compression, &pool.allocator};
     double *values = se3di_iopool_array(&pool, average->cells + 1, average->width * sizeof *values);
     errno = ENOMEM; /* unless something else fails */
     for (size_t k = 0; values && average->rows > 0 && k < average->cells; ++k) {
         se3di_average_get_means(average, k, values + k * average->width);
     }
-    const bool good =
-        values && (average->grid ? se3di_vtk_write_fields(&pool.allocator, average->grid, values,
-                                                          average->cells, path)
-                                 : write_wall(average, &pool, values, path));
+    const bool good = values && (average->grid ? se3di_vtk_write_fields(average->grid, values,
+                                                                        average->cells, &to)
+                                               : write_wall(average, &pool, values, &to));
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* HDF5 by its published format: superblock 2, object headers 2, links and attributes as messages of
- * them, arrays in one piece. Values come first, then the headers of arrays, of groups, of the root;
- * the superblock, which says where that is, is written at last.                    docs/hdf5.md */
+ * them, arrays in one piece, or in pieces that are shuffled, compressed and found by a B-tree.
+ * Values come first, then trees, the headers of arrays, of groups, of the root; the superblock,
+ * which says where that is, is written at last.                                    docs/hdf5.md */
 #include "io/write/hdf5.h"
 
 #include <errno.h>
@@ -22,14 +23,29 @@ enum {
     MESSAGE_LINK = 0x06,
     MESSAGE_LAYOUT = 0x08,
     MESSAGE_GROUP_INFO = 0x0a,
+    MESSAGE_FILTERS = 0x0b,
     MESSAGE_ATTRIBUTE = 0x0c,
-    MESSAGE_MOST = 65000 /* bytes */
+    MESSAGE_MOST = 65000, /* bytes */
+    /* what is compressed */
+    PIECE_BYTES = 1 << 16,
+    PIECE_MOST = 1 << 30,
+    PIECES_LEAST = 1 << 13, /* of an array: their tree takes 2 kB */
+    FILTER_DEFLATE = 1,
+    FILTER_SHUFFLE = 2,
+    TREE_HEAD = 24,
+    TREE_ENTRIES = 64 /* of a node: the format's own number */
 };
 
 typedef struct bytes {
     unsigned char *data;
     size_t count, capacity;
 } bytes;
+
+/* A piece of an array; or a node of its tree, by the first piece below it. */
+typedef struct piece {
+    uint64_t address, first;
+    uint32_t size, reserved; /* compressed */
+} piece;
 
 struct se3di_hdf5_node {
     const char *name;
@@ -38,7 +54,12 @@ struct se3di_hdf5_node {
     se3di_hdf5_shape shape;
     uint64_t data, size; /* of an array */
     uint64_t header;     /* where it is, once written */
-    bytes attributes;    /* their messages */
+    uint64_t written;    /* bytes of values so far */
+    uint64_t piece_size; /* of an array in pieces, [bytes]; 0: it is in one */
+    bytes waiting;       /* for a piece to be complete */
+    piece *pieces;
+    size_t piece_count, piece_capacity;
+    bytes attributes; /* their messages */
     uint64_t children;
 };
 
@@ -285,14 +306,190 @@ static size_t add_node(se3di_hdf5 *h, size_t parent, const char *name)
     return h->count++;
 }
 
-bool se3di_hdf5_open(se3di_hdf5 *h, const se3d_allocator *allocator, const char *path)
+/* --- arrays in pieces --- */
+
+/* How much of the first dimension is a piece; 0: the array is in one. */
+static void choose_piece(se3di_hdf5 *h, struct se3di_hdf5_node *n)
+{
+    if (h->compression == 0 || n->size < PIECES_LEAST || n->shape.rank == 0) {
+        n->shape.piece = 0;
+        return;
+    }
+    const uint64_t row = n->size / n->shape.dims[0];
+    uint64_t rows = n->shape.piece > 0 ? n->shape.piece : row < PIECE_BYTES ? PIECE_BYTES / row : 1;
+    rows = rows < n->shape.dims[0] ? rows : n->shape.dims[0];
+    if (row > PIECE_MOST || rows > PIECE_MOST / row) {
+        fail(h, E2BIG);
+        return;
+    }
+    n->shape.piece = rows;
+    n->piece_size = rows * row;
+}
+
+/* First bytes of all values, then second ones, ...: they are alike. */
+static const unsigned char *shuffle(se3di_hdf5 *h, const bytes *b, size_t width)
+{
+    if (width == 1) {
+        return b->data;
+    }
+    if (b->count > h->shuffled_size) {
+        h->shuffled = se3di_iopool_alloc(&h->pool, b->count);
+        h->shuffled_size = h->shuffled ? b->count : 0;
+    }
+    if (!h->shuffled) {
+        fail(h, ENOMEM);
+        return NULL;
+    }
+    const size_t count = b->count / width;
+    for (size_t k = 0; k < width; ++k) {
+        for (size_t i = 0; i < count; ++i) {
+            h->shuffled[k * count + i] = b->data[i * width + k];
+        }
+    }
+    return h->shuffled;
+}
+
+static void put_piece(se3di_hdf5 *h, struct se3di_hdf5_node *n)
+{
+    size_t made = 0;
+    const unsigned char *data = shuffle(h, &n->waiting, se3di_hdf5_size_of(&n->shape));
+    data = data ? se3di_deflate_block(&h->deflate, data, n->waiting.count, &made) : NULL;
+    piece *grown = data ? se3di_iopool_grow(&h->pool, n->pieces, n->piece_count, &n->piece_capacity,
+                                            sizeof *grown)
+                        : NULL;
+    if (!grown) {
+        fail(h, data ? ENOMEM : errno);
+        return;
+    }
+    n->pieces = grown;
+    n->pieces[n->piece_count] = (piece){h->end, n->piece_count, (uint32_t)made, 0};
+    ++n->piece_count;
+    write_at(h, h->end, data, made);
+    h->end += made;
+    n->waiting.count = 0;
+}
+
+static void write_pieces(se3di_hdf5 *h, struct se3di_hdf5_node *n, const unsigned char *data,
+                         size_t size)
+{
+    while (size > 0 && h->failure == 0) {
+        const size_t lacks = (size_t)n->piece_size - n->waiting.count;
+        const size_t now = size < lacks ? size : lacks;
+        add(h, &n->waiting, data, now);
+        if (n->waiting.count == n->piece_size) {
+            put_piece(h, n);
+        }
+        data += now;
+        size -= now;
+    }
+}
+
+/* The last piece is as long as the others: filled up with zeros. */
+static void complete_pieces(se3di_hdf5 *h, struct se3di_hdf5_node *n)
+{
+    static const unsigned char zeros[64] = {0};
+    while (n->waiting.count > 0 && h->failure == 0) {
+        const size_t lacks = (size_t)n->piece_size - n->waiting.count;
+        write_pieces(h, n, zeros, lacks < sizeof zeros ? lacks : sizeof zeros);
+    }
+}
+
+/* The beginning of piece `first`, and how long it is. */
+static void add_key(se3di_hdf5 *h, bytes *b, const struct se3di_hdf5_node *n, uint64_t first,
+                    uint32_t size)
+{
+    add_word(h, b, size, 4);
+    add_word(h, b, 0, 4); /* all filters were used */
+    add_word(h, b, first * n->shape.piece, 8);
+    for (int k = 1; k <= n->shape.rank; ++k) { /* the last one is within a value */
+        add_word(h, b, 0, 8);
+    }
+}
+
+/* One node of the tree at h->end, of `count` entries; the next one begins with piece `next`. */
+static void write_node(se3di_hdf5 *h, const struct se3di_hdf5_node *n, const bytes *head,
+                       const piece *entries, size_t count, uint64_t next)
+{
+    const size_t key = 8 + 8 * ((size_t)n->shape.rank + 1);
+    const size_t size = TREE_HEAD + TREE_ENTRIES * 8 + (TREE_ENTRIES + 1) * key;
+    bytes b = {NULL, 0, 0};
+    add(h, &b, head->data, head->count);
+    for (size_t k = 0; k < count; ++k) {
+        add_key(h, &b, n, entries[k].first, entries[k].size);
+        add_word(h, &b, entries[k].address, 8);
+    }
+    add_key(h, &b, n, next, 0);
+    while (b.count < size && h->failure == 0) {
+        add_word(h, &b, 0, 8);
+    }
+    write_at(h, h->end, b.data, b.count);
+    h->end += b.count;
+}
+
+/* The nodes of one level, one after the other; @return how many, which are the entries of the next
+ * level. */
+static size_t write_level(se3di_hdf5 *h, const struct se3di_hdf5_node *n, int level, piece *entries,
+                          size_t count)
+{
+    const size_t nodes = (count + TREE_ENTRIES - 1) / TREE_ENTRIES;
+    uint64_t before = NOWHERE;
+    for (size_t k = 0; k < nodes && h->failure == 0; ++k) {
+        const size_t first = k * TREE_ENTRIES, rest = count - first;
+        const size_t here = rest < TREE_ENTRIES ? rest : TREE_ENTRIES;
+        const uint64_t next = first + here < count ? entries[first + here].first : n->piece_count;
+        const uint64_t address = h->end;
+        const size_t key = 8 + 8 * ((size_t)n->shape.rank + 1);
+        const uint64_t size = TREE_HEAD + TREE_ENTRIES * 8 + (TREE_ENTRIES + 1) * key;
+        bytes head = {NULL, 0, 0};
+        add(h, &head, "TREE\1", 5); /* of pieces */
+        add_word(h, &head, (uint64_t)level, 1);
+        add_word(h, &head, here, 2);
+        add_word(h, &head, before, 8);
+        add_word(h, &head, k + 1 < nodes ? address + size : NOWHERE, 8);
+        write_node(h, n, &head, entries + first, here, next);
+        entries[k] = (piece){address, entries[first].first, entries[first].size, 0};
+        before = address;
+    }
+    return nodes;
+}
+
+static void align_end(se3di_hdf5 *h)
+{
+    h->end = (h->end + ALIGN - 1) / ALIGN * ALIGN;
+}
+
+static void write_tree(se3di_hdf5 *h, struct se3di_hdf5_node *n)
+{
+    size_t count = n->piece_count;
+    align_end(h);
+    for (int level = 0; h->failure == 0 && (level == 0 || count > 1); ++level) {
+        count = write_level(h, n, level, n->pieces, count);
+    }
+    if (h->failure == 0) {
+        n->data = n->pieces[0].address;
+    }
+}
+
+bool se3di_hdf5_open(se3di_hdf5 *h, const se3d_allocator *allocator, const char *path,
+                     int compression)
 {
     memset(h, 0, sizeof *h);
     se3di_iopool_init(&h->pool, allocator);
     h->path = path;
     h->end = SUPERBLOCK;
+    h->compression = compression;
+    if (compression > 0 && !se3di_deflate_open(&h->deflate, &h->pool, compression)) {
+        const int why = errno;
+        se3di_iopool_destroy(&h->pool);
+        errno = why;
+        return false;
+    }
     h->file = se3di_partial_open(path);
     if (!h->file) {
+        const int why = errno;
+        se3di_deflate_close(&h->deflate);
+        se3di_iopool_destroy(&h->pool);
+        errno = why;
         return false;
     }
     static const unsigned char nothing[SUPERBLOCK] = {0};
@@ -323,9 +520,11 @@ size_t se3di_hdf5_add_array(se3di_hdf5 *h, size_t group, const char *name,
         struct se3di_hdf5_node *n = &h->nodes[node];
         n->shape = *shape;
         n->size = count_of(shape) * se3di_hdf5_size_of(shape);
-        if (n->size > 0) {
+        choose_piece(h, n);
+        if (n->size > 0 && n->piece_size == 0) {
             n->data = h->end;
-            h->end += (n->size + ALIGN - 1) / ALIGN * ALIGN;
+            h->end += n->size;
+            align_end(h);
         }
     }
     return node;
@@ -333,28 +532,77 @@ size_t se3di_hdf5_add_array(se3di_hdf5 *h, size_t group, const char *name,
 
 void se3di_hdf5_write(se3di_hdf5 *h, size_t array, uint64_t first, const void *data, size_t size)
 {
-    if (h->failure == 0 && array > 0) {
-        write_at(h, h->nodes[array].data + first, data, size);
+    if (h->failure != 0 || array == 0) {
+        return;
+    }
+    struct se3di_hdf5_node *n = &h->nodes[array];
+    if (n->piece_size == 0) {
+        write_at(h, n->data + first, data, size);
+    } else if (first != n->written || size > n->size - first) {
+        fail(h, EINVAL);
+    } else {
+        write_pieces(h, n, data, size);
+        n->written += size;
     }
 }
 
 /* --- headers --- */
 
+static void add_filter(se3di_hdf5 *h, bytes *b, int id, uint64_t value)
+{
+    add_word(h, b, (uint64_t)id, 2);
+    add_word(h, b, 0, 2); /* it must be there */
+    add_word(h, b, 1, 2); /* one number says how */
+    add_word(h, b, value, 4);
+}
+
+static void put_filters(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
+{
+    const size_t width = se3di_hdf5_size_of(&n->shape);
+    bytes filters = {NULL, 0, 0};
+    add_word(h, &filters, 2, 1); /* version */
+    add_word(h, &filters, width > 1 ? 2 : 1, 1);
+    if (width > 1) {
+        add_filter(h, &filters, FILTER_SHUFFLE, width);
+    }
+    add_filter(h, &filters, FILTER_DEFLATE, (uint64_t)h->compression);
+    add_message(h, to, MESSAGE_FILTERS, &filters);
+}
+
+static void put_layout(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
+{
+    bytes layout = {NULL, 0, 0};
+    add_word(h, &layout, 3, 1); /* version */
+    if (n->piece_size == 0) {
+        add_word(h, &layout, 1, 1); /* in one piece */
+        add_word(h, &layout, n->data, 8);
+        add_word(h, &layout, n->size, 8);
+    } else {
+        add_word(h, &layout, 2, 1); /* in pieces, of so much along each dimension and in a value */
+        add_word(h, &layout, (uint64_t)n->shape.rank + 1, 1);
+        add_word(h, &layout, n->data, 8);
+        for (int k = 0; k < n->shape.rank; ++k) {
+            add_word(h, &layout, k == 0 ? n->shape.piece : n->shape.dims[k], 4);
+        }
+        add_word(h, &layout, se3di_hdf5_size_of(&n->shape), 4);
+    }
+    add_message(h, to, MESSAGE_LAYOUT, &layout);
+}
+
 static void put_array(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
 {
-    bytes space = {NULL, 0, 0}, type = {NULL, 0, 0}, layout = {NULL, 0, 0}, fill = {NULL, 0, 0};
+    bytes space = {NULL, 0, 0}, type = {NULL, 0, 0}, fill = {NULL, 0, 0};
     add_dataspace(h, &space, &n->shape);
     add_datatype(h, &type, &n->shape);
-    add_word(h, &fill, 3, 1);    /* version */
-    add_word(h, &fill, 0x0a, 1); /* no value, place when it is written */
-    add_word(h, &layout, 3, 1);  /* version */
-    add_word(h, &layout, 1, 1);  /* in one piece */
-    add_word(h, &layout, n->data, 8);
-    add_word(h, &layout, n->size, 8);
+    add_word(h, &fill, 3, 1);                               /* version */
+    add_word(h, &fill, n->piece_size > 0 ? 0x0b : 0x0a, 1); /* no value, place when it is written */
     add_message(h, to, MESSAGE_DATASPACE, &space);
     add_message(h, to, MESSAGE_DATATYPE, &type);
     add_message(h, to, MESSAGE_FILL, &fill);
-    add_message(h, to, MESSAGE_LAYOUT, &layout);
+    if (n->piece_size > 0) {
+        put_filters(h, to, n);
+    }
+    put_layout(h, to, n);
 }
 
 /* A child of a group: the order of creation is kept. */
@@ -438,6 +686,12 @@ bool se3di_hdf5_close(se3di_hdf5 *h)
     for (size_t k = 1; k < h->count && h->failure == 0; ++k) {
         ++h->nodes[h->nodes[k].parent].children;
     }
+    for (size_t k = 1; k < h->count && h->failure == 0; ++k) {
+        if (h->nodes[k].piece_size > 0) {
+            complete_pieces(h, &h->nodes[k]);
+            write_tree(h, &h->nodes[k]);
+        }
+    }
     for (size_t k = h->count; k-- > 0 && h->failure == 0;) { /* children come after their group */
         write_header(h, k);
     }
@@ -451,6 +705,7 @@ bool se3di_hdf5_close(se3di_hdf5 *h)
     } else if (!se3di_partial_close(h->file, h->path)) {
         why = errno ? errno : EIO;
     }
+    se3di_deflate_close(&h->deflate);
     se3di_iopool_destroy(&h->pool);
     h->file = NULL;
     errno = why;

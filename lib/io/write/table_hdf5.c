@@ -113,7 +113,7 @@ static bool read_head(table *t, const se3di_table_columns *kinds)
             return false;
         }
         const uint64_t bit = t->count < 64 ? UINT64_C(1) << t->count : 0;
-        t->columns[t->count] = (column){.name = name, .shape = {SE3DI_HDF5_DOUBLE, 1, 1, {0}}};
+        t->columns[t->count] = (column){.name = name, .shape = {SE3DI_HDF5_DOUBLE, 1, 1, {0}, 0}};
         if (kinds->texts & bit) {
             t->columns[t->count].shape.type = SE3DI_HDF5_TEXT;
         } else if (kinds->integers & bit) {
@@ -191,6 +191,7 @@ static bool prepare(table *t, se3di_hdf5 *h)
     for (size_t k = 0; k < t->count; ++k) {
         column *c = &t->columns[k];
         c->shape.dims[0] = t->rows;
+        c->shape.piece = t->block_rows;
         c->array = se3di_hdf5_add_array(h, 0, c->name, &c->shape);
         c->block = se3di_iopool_array(&t->pool, t->block_rows + 1, se3di_hdf5_size_of(&c->shape));
         if (!c->block) {
@@ -225,10 +226,10 @@ static bool write_block(table *t, se3di_hdf5 *h, uint64_t first)
     return true;
 }
 
-static bool write_all(table *t, const char *path, const se3d_allocator *allocator)
+static bool write_all(table *t, const char *path, int compression, const se3d_allocator *allocator)
 {
     se3di_hdf5 h;
-    if (!se3di_hdf5_open(&h, allocator, path)) {
+    if (!se3di_hdf5_open(&h, allocator, path, compression)) {
         return false;
     }
     bool good = prepare(t, &h);
@@ -240,7 +241,7 @@ static bool write_all(table *t, const char *path, const se3d_allocator *allocato
 }
 
 bool se3di_table_convert(const char *csv, const char *path, const se3di_table_columns *columns,
-                         const se3d_allocator *allocator)
+                         int compression, const se3d_allocator *allocator)
 {
     table t = {.in = {.file = se3di_file_open(csv)}};
     if (!t.in.file) {
@@ -250,7 +251,7 @@ bool se3di_table_convert(const char *csv, const char *path, const se3di_table_co
     t.in.buffer = se3di_iopool_alloc(&t.pool, BUFFER);
     errno = t.in.buffer ? 0 : ENOMEM;
     const bool good = t.in.buffer && read_head(&t, columns) && measure(&t) && rewind_to_rows(&t) &&
-                      write_all(&t, path, allocator);
+                      write_all(&t, path, compression, allocator);
     const int why = errno ? errno : EIO;
     fclose(t.in.file);
     se3di_iopool_destroy(&t.pool);

@@ -15,9 +15,9 @@ typedef struct se3di_table_columns {
     uint64_t texts, integers;
 } se3di_table_columns;
 
-/* Make the file of the table in `csv`, which stays. @return false: errno says why; nothing is left.
- */
+/* Make the file of the table in `csv`, which stays; compressed if `compression` is not 0. @return
+ * false: errno says why; nothing is left. */
 bool se3di_table_convert(const char *csv, const char *path, const se3di_table_columns *columns,
-                         const se3d_allocator *allocator);
+                         int compression, const se3d_allocator *allocator);
 
 #endif

@@ -38,6 +38,7 @@ struct se3di_vtk {
     se3d_model *model;
     se3di_iopool *pool;
     const char *path;            /* of the list: ends with .pvd, or with .vtkhdf */
+    int compression;             /* 0: none */
     bool is_hdf5;                /* the latter: each part has a list of its own */
     const char *listed;          /* the list, or the first of them */
     const se3d_field_grid *grid; /* NULL: no fields */
@@ -168,7 +169,7 @@ static bool find_listed(se3di_vtk *vtk)
 }
 
 se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path,
-                          const se3d_field_grid *grid)
+                          const se3d_field_grid *grid, int compression)
 {
     se3di_vtk *vtk = se3di_iopool_alloc(pool, sizeof *vtk);
     if (!vtk) {
@@ -177,6 +178,7 @@ se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *pat
     vtk->model = model;
     vtk->pool = pool;
     vtk->grid = grid;
+    vtk->compression = compression;
     vtk->path = se3di_iopool_copy(pool, path, strlen(path));
     vtk->listed = vtk->path;
     vtk->is_hdf5 = strcmp(strrchr(path, '.'), ".vtkhdf") == 0;
@@ -272,7 +274,7 @@ static bool name_file(const se3di_vtk *vtk, int part, size_t number, bool whole,
     return length > 0 && length < PATH_SIZE;
 }
 
-static bool write_bodies(se3di_vtk *vtk, const char *path)
+static bool write_bodies(se3di_vtk *vtk, const se3di_vtk_target *to)
 {
     const size_t n = vtk->points_count;
     const size_t polys = vtk->triangles_count;
@@ -285,7 +287,7 @@ static bool write_bodies(se3di_vtk *vtk, const char *path)
     const se3di_vtk_file file = {n, 0, polys, arrays, sizeof arrays / sizeof *arrays, 0, NULL};
     se3di_drawing_get_poses(vtk->model, vtk->poses);
     move_points(vtk);
-    return se3di_vtk_file_write(&file, &vtk->model->pool.allocator, path);
+    return se3di_vtk_file_write(&file, to);
 }
 
 /* A part of each row of a table of points. */
@@ -298,8 +300,8 @@ typedef struct column {
 enum { COLUMNS_MOST = 6 }; /* a name NULL: there are fewer */
 
 /* The rows of a table as points with what their columns say; the place is at `place`. */
-static bool write_rows(const se3d_allocator *allocator, const char *path, const double *rows,
-                       size_t n, size_t width, size_t place, const column columns[COLUMNS_MOST])
+static bool write_rows(const se3di_vtk_target *to, const double *rows, size_t n, size_t width,
+                       size_t place, const column columns[COLUMNS_MOST])
 {
     se3di_vtk_array arrays[COLUMNS_MOST + 3];
     size_t count = 0;
@@ -315,11 +317,11 @@ static bool write_rows(const se3d_allocator *allocator, const char *path, const 
     points[1] = (se3di_vtk_array){SE3DI_VTK_VERTS, "connectivity", NULL, n, 1, 1, 0.0, 1.0, true};
     points[2] = (se3di_vtk_array){SE3DI_VTK_VERTS, "offsets", NULL, n, 1, 1, 1.0, 1.0, true};
     const se3di_vtk_file file = {n, n, 0, arrays, count + 3, 0, NULL};
-    return se3di_vtk_file_write(&file, allocator, path);
+    return se3di_vtk_file_write(&file, to);
 }
 
 static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
-                            const char *path)
+                            const se3di_vtk_target *to)
 {
     /* The columns of a row: time, id, radius, position, velocity, angular velocity, force,
      * clump. */
@@ -333,12 +335,11 @@ static bool write_particles(const se3d_model *model, se3di_sample *sample, se3di
     se3di_particle_rows list;
     (void)sample;
     return se3di_tagged_get_rows(model, pool, &list) >= 0 &&
-           write_rows(&pool->allocator, path, list.rows, list.count, SE3DI_PARTICLE_COLUMNS, 3,
-                      columns);
+           write_rows(to, list.rows, list.count, SE3DI_PARTICLE_COLUMNS, 3, columns);
 }
 
 static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
-                           const char *path)
+                           const se3di_vtk_target *to)
 {
     static const column columns[COLUMNS_MOST] = {{"normal", 4, 3, false},
                                                  {"overlap", 7, 1, false},
@@ -346,8 +347,7 @@ static bool write_contacts(const se3d_model *model, se3di_sample *sample, se3di_
                                                  {"tangential_force", 9, 3, false}};
     se3di_contact_rows list;
     return se3di_contacts_get_rows(model, sample, pool, &list) >= 0 &&
-           write_rows(&pool->allocator, path, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1,
-                      columns);
+           write_rows(to, list.rows, list.count, SE3DI_CONTACT_NUMBERS, 1, columns);
 }
 
 /* Of bond k: tension, shear, energy, group, ids of both, then the places of its ends. */
@@ -392,7 +392,7 @@ static bool list_bonds(const se3d_particles *set, se3di_iopool *pool, double **n
 }
 
 static bool write_bonds(const se3d_model *model, se3di_sample *sample, se3di_iopool *pool,
-                        const char *path)
+                        const se3di_vtk_target *to)
 {
     static const char *const names[BOND_NUMBERS] = {"tension", "shear", "energy",
                                                     "group",   "first", "second"};
@@ -414,18 +414,18 @@ static bool write_bonds(const se3d_model *model, se3di_sample *sample, se3di_iop
     arrays[BOND_NUMBERS + 2] =
         (se3di_vtk_array){SE3DI_VTK_LINES, "offsets", NULL, n, 1, 1, 2.0, 2.0, true};
     const se3di_vtk_file file = {2 * n, 0, 0, arrays, BOND_NUMBERS + 3, n, NULL};
-    return se3di_vtk_file_write(&file, &pool->allocator, path);
+    return se3di_vtk_file_write(&file, to);
 }
 
 /* Points with memory of their own. @return false: errno says why */
-static bool write_points(const se3di_vtk *vtk, se3di_sample *sample, const char *path,
+static bool write_points(const se3di_vtk *vtk, se3di_sample *sample, const se3di_vtk_target *to,
                          bool (*write)(const se3d_model *, se3di_sample *, se3di_iopool *,
-                                       const char *))
+                                       const se3di_vtk_target *))
 {
     se3di_iopool pool;
     se3di_iopool_init(&pool, &vtk->model->pool.allocator);
     errno = ENOMEM; /* unless something else fails */
-    const bool good = write(vtk->model, sample, &pool, path);
+    const bool good = write(vtk->model, sample, &pool, to);
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;
@@ -441,8 +441,8 @@ static const column field_columns[] = {{"density", SE3D_FIELD_DENSITY, 1, false}
                                        {"contact_stress", SE3D_FIELD_CONTACT_STRESS, 6, false}};
 enum { FIELD_COLUMNS = sizeof field_columns / sizeof *field_columns };
 
-bool se3di_vtk_write_fields(const se3d_allocator *allocator, const se3d_field_grid *grid,
-                            const double *values, size_t cells, const char *path)
+bool se3di_vtk_write_fields(const se3d_field_grid *grid, const double *values, size_t cells,
+                            const se3di_vtk_target *to)
 {
     se3di_vtk_array arrays[FIELD_COLUMNS];
     se3di_vtk_grid image = {.cells = {grid->cells[0], grid->cells[1], grid->cells[2]}};
@@ -463,10 +463,10 @@ bool se3di_vtk_write_fields(const se3d_allocator *allocator, const se3d_field_gr
                                       false};
     }
     const se3di_vtk_file file = {.arrays = arrays, .array_count = FIELD_COLUMNS, .grid = &image};
-    return se3di_vtk_file_write(&file, allocator, path);
+    return se3di_vtk_file_write(&file, to);
 }
 
-static bool write_fields(const se3di_vtk *vtk, const char *path)
+static bool write_fields(const se3di_vtk *vtk, const se3di_vtk_target *to)
 {
     const se3d_field_grid *grid = vtk->grid;
     const size_t cells = (size_t)grid->cells[0] * (size_t)grid->cells[1] * (size_t)grid->cells[2];
@@ -477,7 +477,7 @@ static bool write_fields(const se3di_vtk *vtk, const char *path)
     const bool good = values &&
                       se3d_particles_get_fields(vtk->model->particles->set, grid,
                                                 cells * SE3D_FIELD_VALUES, values) >= 0 &&
-                      se3di_vtk_write_fields(&pool.allocator, grid, values, cells, path);
+                      se3di_vtk_write_fields(grid, values, cells, to);
     const int why = errno;
     se3di_iopool_destroy(&pool);
     errno = why;
@@ -493,31 +493,32 @@ static bool has_part(const se3di_vtk *vtk, int part)
            (part == 2 && (model->particles || se3di_node_get(model->root, "contact")));
 }
 
-static bool write_part(se3di_vtk *vtk, se3di_sample *sample, int part, const char *path)
+static bool write_part(se3di_vtk *vtk, se3di_sample *sample, int part, const se3di_vtk_target *to)
 {
     switch (part) {
     case 0:
-        return write_bodies(vtk, path);
+        return write_bodies(vtk, to);
     case 1:
-        return write_points(vtk, sample, path, write_particles);
+        return write_points(vtk, sample, to, write_particles);
     case 2:
-        return write_points(vtk, sample, path, write_contacts);
+        return write_points(vtk, sample, to, write_contacts);
     case 4:
-        return write_points(vtk, sample, path, write_bonds);
+        return write_points(vtk, sample, to, write_bonds);
     default:
-        return write_fields(vtk, path);
+        return write_fields(vtk, to);
     }
 }
 
 static bool write_state(se3di_vtk *vtk, se3di_sample *sample, size_t number)
 {
     char path[PATH_SIZE];
+    const se3di_vtk_target to = {path, vtk->compression, &vtk->model->pool.allocator};
     bool good = true;
     for (int part = 0; part < PARTS && good; ++part) {
         if (has_part(vtk, part)) {
             errno = ENAMETOOLONG;
             good = name_file(vtk, part, number, true, path) && se3di_file_make_folders(path) &&
-                   write_part(vtk, sample, part, path);
+                   write_part(vtk, sample, part, &to);
         }
     }
     return good;

@@ -8,6 +8,7 @@
 #include "base/coder.h"
 #include "io/channel/sample.h"
 #include "io/model/model.h"
+#include "io/write/vtk_file.h"
 #include "se3d/field.h"
 
 typedef struct se3di_vtk se3di_vtk;
@@ -15,7 +16,7 @@ typedef struct se3di_vtk se3di_vtk;
 /* Begin a series in memory of `pool`; `path` ends with .pvd or .vtkhdf; `grid`: of fields of the
  * particles, NULL: none. @return NULL: out of memory. */
 se3di_vtk *se3di_vtk_open(se3d_model *model, se3di_iopool *pool, const char *path,
-                          const se3d_field_grid *grid);
+                          const se3d_field_grid *grid, int compression);
 /* Write the present state, that of the sample; at the time of the one before it takes its place.
  * After a failure nothing more is written. */
 void se3di_vtk_record(se3di_vtk *vtk, se3di_sample *sample, double time);
@@ -31,7 +32,7 @@ size_t se3di_vtk_count(const se3di_vtk *vtk);
 
 /* Write fields alone, SE3D_FIELD_VALUES of each cell, as .vti or .vtkhdf. @return false: errno says
  * why. */
-bool se3di_vtk_write_fields(const se3d_allocator *allocator, const se3d_field_grid *grid,
-                            const double *values, size_t cells, const char *path);
+bool se3di_vtk_write_fields(const se3d_field_grid *grid, const double *values, size_t cells,
+                            const se3di_vtk_target *to);
 
 #endif

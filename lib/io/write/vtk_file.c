@@ -1,15 +1,24 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* .vtp and .vti files: VTK's PolyData and ImageData in XML with appended raw data. Every array is
- * preceded by its size in bytes, 64 bits. */
+ * preceded by its size in bytes; or, compressed by blocks, by how many there are, the size of one
+ * and of a shorter last one before that (0: none), and their sizes. All of these are 64 bits. */
 #include "io/write/vtk_file.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <string.h>
 
+#include "io/base/deflate.h"
 #include "io/base/file.h"
 #include "io/base/number.h"
 
-enum { BLOCK = 4096 };
+enum { BLOCK = 4096, COMPRESSED = 1 << 15 };
+
+/* An array as the file has it, in memory. */
+typedef struct packed {
+    unsigned char *data;
+    size_t size, capacity;
+} packed;
 
 static double value_of(const se3di_vtk_array *a, size_t k, size_t i)
 {
@@ -23,27 +32,72 @@ static void put_little(unsigned char *at, uint64_t bits, size_t size)
     }
 }
 
+/* Values [first, end) of an array, one by one, as bytes. */
+static void get_bytes(const se3di_vtk_array *a, size_t first, size_t end, unsigned char *to)
+{
+    for (size_t n = first; n < end; ++n, to += 4) {
+        const double value = value_of(a, n / a->width, n % a->width);
+        const float single = (float)value;
+        uint32_t bits = 0;
+        memcpy(&bits, &single, sizeof bits);
+        put_little(to, a->whole ? (uint32_t)(int32_t)value : bits, 4);
+    }
+}
+
 static void put_data(FILE *file, const se3di_vtk_array *a)
 {
     unsigned char block[4 * BLOCK];
-    size_t used = 0;
-    put_little(block, 4 * (uint64_t)a->count * a->width, 8);
+    const size_t count = a->count * a->width;
+    put_little(block, 4 * (uint64_t)count, 8);
     fwrite(block, 1, 8, file);
-    for (size_t k = 0; k < a->count; ++k) {
-        for (size_t i = 0; i < a->width; ++i) {
-            const double value = value_of(a, k, i);
-            const float single = (float)value;
-            uint32_t bits = 0;
-            memcpy(&bits, &single, sizeof bits);
-            put_little(block + used, a->whole ? (uint32_t)(int32_t)value : bits, 4);
-            used += 4;
-            if (used == sizeof block) {
-                fwrite(block, 1, used, file);
-                used = 0;
-            }
-        }
+    for (size_t first = 0; first < count; first += BLOCK) {
+        const size_t end = count - first < BLOCK ? count : first + BLOCK;
+        get_bytes(a, first, end, block);
+        fwrite(block, 1, 4 * (end - first), file);
     }
-    fwrite(block, 1, used, file);
+}
+
+static bool append(se3di_iopool *pool, packed *p, const void *data, size_t size)
+{
+    if (p->size + size > p->capacity) {
+        const size_t capacity = 2 * (p->size + size);
+        unsigned char *grown = se3di_iopool_alloc(pool, capacity);
+        if (!grown) {
+            errno = ENOMEM;
+            return false;
+        }
+        if (p->size > 0) {
+            memcpy(grown, p->data, p->size);
+        }
+        p->data = grown;
+        p->capacity = capacity;
+    }
+    memcpy(p->data + p->size, data, size);
+    p->size += size;
+    return true;
+}
+
+/* @return false: errno says why */
+static bool pack(se3di_deflate *d, const se3di_vtk_array *a, packed *p)
+{
+    unsigned char block[COMPRESSED];
+    const size_t each = COMPRESSED / 4, count = a->count * a->width;
+    const size_t blocks = (count + each - 1) / each;
+    const uint64_t head[3] = {blocks, COMPRESSED, count % each * 4};
+    bool good = true;
+    for (size_t k = 0; k < 3 + blocks && good; ++k) { /* sizes follow */
+        put_little(block, k < 3 ? head[k] : 0, 8);
+        good = append(d->pool, p, block, 8);
+    }
+    for (size_t k = 0; k < blocks && good; ++k) {
+        const size_t first = k * each, end = k + 1 < blocks ? first + each : count;
+        size_t made = 0;
+        get_bytes(a, first, end, block);
+        const unsigned char *data = se3di_deflate_block(d, block, 4 * (end - first), &made);
+        good = data && append(d->pool, p, data, made);
+        put_little(p->data + 8 * (3 + k), made, 8);
+    }
+    return good;
 }
 
 /* "0 3 0 4 0 5" of a grid of 3 x 4 x 5 cells. */
@@ -85,7 +139,8 @@ static void put_piece(FILE *file, const se3di_vtk_file *f)
             f->points, f->verts, f->lines, f->polys);
 }
 
-static void put_head(FILE *file, const se3di_vtk_file *f)
+/* `data`: of the arrays, compressed; NULL: they are not. */
+static void put_head(FILE *file, const se3di_vtk_file *f, const packed *data)
 {
     static const char *const names[] = {"PointData", "CellData", "Points",
                                         "Verts",     "Lines",    "Polys"};
@@ -94,8 +149,8 @@ static void put_head(FILE *file, const se3di_vtk_file *f)
     size_t k = 0;
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
-            type_of(f));
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\"%s>\n",
+            type_of(f), data ? " compressor=\"vtkZLibDataCompressor\"" : "");
     put_piece(file, f);
     for (size_t s = 0; s < sections; ++s) {
         fprintf(file, "<%s>\n", names[s]);
@@ -105,28 +160,60 @@ static void put_head(FILE *file, const se3di_vtk_file *f)
                     "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%zu\" "
                     "format=\"appended\" offset=\"%zu\"/>\n",
                     a->whole ? "Int32" : "Float32", a->name, a->width, offset);
-            offset += 8 + 4 * a->count * a->width;
+            offset += data ? data[k].size : 8 + 4 * a->count * a->width;
         }
         fprintf(file, "</%s>\n", names[s]);
     }
     fprintf(file, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type_of(f));
 }
 
-bool se3di_vtk_file_write(const se3di_vtk_file *f, const se3d_allocator *allocator,
-                          const char *path)
+static bool write_file(const se3di_vtk_file *f, const char *path, const packed *data)
 {
-    const char *ending = strrchr(path, '.');
-    if (ending && strcmp(ending, ".vtkhdf") == 0) {
-        return se3di_vtk_file_write_hdf5(f, allocator, path);
-    }
     FILE *file = se3di_partial_open(path);
     if (!file) {
         return false;
     }
-    put_head(file, f);
+    put_head(file, f, data);
     for (size_t k = 0; k < f->array_count; ++k) {
-        put_data(file, &f->arrays[k]);
+        if (data) {
+            fwrite(data[k].data, 1, data[k].size, file);
+        } else {
+            put_data(file, &f->arrays[k]);
+        }
     }
     fputs("\n</AppendedData>\n</VTKFile>\n", file);
     return se3di_partial_close(file, path);
+}
+
+/* All arrays are compressed before the first byte is written: the head says where they begin. */
+static bool write_packed(const se3di_vtk_file *f, const se3di_vtk_target *to)
+{
+    se3di_iopool pool;
+    se3di_deflate d;
+    se3di_iopool_init(&pool, to->allocator);
+    packed *data = se3di_iopool_array(&pool, f->array_count, sizeof *data);
+    errno = ENOMEM; /* unless something else fails */
+    bool good = data && se3di_deflate_open(&d, &pool, to->compression);
+    if (good) {
+        for (size_t k = 0; k < f->array_count && good; ++k) {
+            good = pack(&d, &f->arrays[k], &data[k]);
+        }
+        const int why = errno;
+        se3di_deflate_close(&d);
+        errno = why;
+    }
+    good = good && write_file(f, to->path, data);
+    const int why = errno;
+    se3di_iopool_destroy(&pool);
+    errno = why;
+    return good;
+}
+
+bool se3di_vtk_file_write(const se3di_vtk_file *f, const se3di_vtk_target *to)
+{
+    const char *ending = strrchr(to->path, '.');
+    if (ending && strcmp(ending, ".vtkhdf") == 0) {
+        return se3di_vtk_file_write_hdf5(f, to);
+    }
+    return to->compression > 0 ? write_packed(f, to) : write_file(f, to->path, NULL);
 }

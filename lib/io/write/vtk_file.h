@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One .vtp file: points with numbers, and cells made of them; or one .vti file: numbers of the
- * cells of a grid. The numbers follow the XML as raw bytes, little-endian. Or either as one file of
- * VTKHDF. */
+ * cells of a grid. The numbers follow the XML as raw bytes, little-endian, or compressed. Or either
+ * as one file of VTKHDF. */
 #ifndef SE3D_IO_VTK_FILE_H
 #define SE3D_IO_VTK_FILE_H
 
@@ -44,12 +44,17 @@ typedef struct se3di_vtk_file {
     const se3di_vtk_grid *grid; /* of a .vti file, all of whose arrays are cell data; NULL: .vtp */
 } se3di_vtk_file;
 
-/* Write it under a temporary name, then rename: as XML, or, if the path ends with .vtkhdf, as HDF5,
- * which needs memory. @return false: errno says why. */
-bool se3di_vtk_file_write(const se3di_vtk_file *file, const se3d_allocator *allocator,
-                          const char *path);
+/* The place that a file goes to. */
+typedef struct se3di_vtk_target {
+    const char *path;
+    int compression; /* 1 ... 9; 0: none */
+    const se3d_allocator *allocator;
+} se3di_vtk_target;
+
+/* Write it under a temporary name, then rename: as XML, or, if the path ends with .vtkhdf, as HDF5;
+ * this and compression need memory. @return false: errno says why. */
+bool se3di_vtk_file_write(const se3di_vtk_file *file, const se3di_vtk_target *to);
 /* As HDF5, in vtk_hdf5.c. */
-bool se3di_vtk_file_write_hdf5(const se3di_vtk_file *file, const se3d_allocator *allocator,
-                               const char *path);
+bool se3di_vtk_file_write_hdf5(const se3di_vtk_file *file, const se3di_vtk_target *to);
 
 #endif

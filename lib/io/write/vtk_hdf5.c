@@ -41,7 +41,7 @@ static uint64_t write_values(se3di_hdf5 *h, size_t node, uint64_t at, const se3d
 static void put_array(se3di_hdf5 *h, size_t group, const char *name, const se3di_vtk_array *a,
                       const se3di_vtk_grid *grid)
 {
-    se3di_hdf5_shape shape = {a->whole ? SE3DI_HDF5_INT32 : SE3DI_HDF5_SINGLE, 0, 0, {0}};
+    se3di_hdf5_shape shape = {a->whole ? SE3DI_HDF5_INT32 : SE3DI_HDF5_SINGLE, 0, 0, {0}, 0};
     for (int k = 2; grid && k >= 0; --k) {
         shape.dims[shape.rank++] = (uint64_t)grid->cells[k];
     }
@@ -91,7 +91,7 @@ static size_t polygon_corners(const se3di_vtk_file *f)
 
 static void put_count(se3di_hdf5 *h, size_t group, const char *name, size_t count)
 {
-    const se3di_hdf5_shape shape = {SE3DI_HDF5_INT64, 0, 1, {1}};
+    const se3di_hdf5_shape shape = {SE3DI_HDF5_INT64, 0, 1, {1}, 0};
     unsigned char bytes[8];
     se3di_hdf5_put_value(bytes, shape.type, (double)count);
     se3di_hdf5_write(h, se3di_hdf5_add_array(h, group, name, &shape), 0, bytes, sizeof bytes);
@@ -107,9 +107,9 @@ static void put_cells(se3di_hdf5 *h, size_t group, const se3di_vtk_file *f)
     const size_t widths[3] = {1, 2, each};
     const size_t cells = f->verts + f->lines + f->polys;
     const size_t corners = f->verts + 2 * f->lines + each * f->polys;
-    const se3di_hdf5_shape connectivity = {SE3DI_HDF5_INT64, 0, 1, {corners}};
-    const se3di_hdf5_shape offsets = {SE3DI_HDF5_INT64, 0, 1, {cells + 1}};
-    const se3di_hdf5_shape kinds = {SE3DI_HDF5_UINT8, 0, 1, {cells}};
+    const se3di_hdf5_shape connectivity = {SE3DI_HDF5_INT64, 0, 1, {corners}, 0};
+    const se3di_hdf5_shape offsets = {SE3DI_HDF5_INT64, 0, 1, {cells + 1}, 0};
+    const se3di_hdf5_shape kinds = {SE3DI_HDF5_UINT8, 0, 1, {cells}, 0};
     const size_t to = se3di_hdf5_add_array(h, group, "Connectivity", &connectivity);
     const size_t ends = se3di_hdf5_add_array(h, group, "Offsets", &offsets);
     const size_t type = se3di_hdf5_add_array(h, group, "Types", &kinds);
@@ -133,8 +133,8 @@ static void put_cells(se3di_hdf5 *h, size_t group, const se3di_vtk_file *f)
 
 static void put_type(se3di_hdf5 *h, size_t group, const char *type)
 {
-    const se3di_hdf5_shape text = {SE3DI_HDF5_TEXT, strlen(type), 0, {0}};
-    const se3di_hdf5_shape two = {SE3DI_HDF5_INT64, 0, 1, {2}};
+    const se3di_hdf5_shape text = {SE3DI_HDF5_TEXT, strlen(type), 0, {0}, 0};
+    const se3di_hdf5_shape two = {SE3DI_HDF5_INT64, 0, 1, {2}, 0};
     static const double version[2] = {1.0, 0.0};
     se3di_hdf5_add_attribute(h, group, "Version", &two, version);
     se3di_hdf5_add_attribute(h, group, "Type", &text, type);
@@ -142,9 +142,9 @@ static void put_type(se3di_hdf5 *h, size_t group, const char *type)
 
 static void put_image(se3di_hdf5 *h, size_t group, const se3di_vtk_grid *grid)
 {
-    const se3di_hdf5_shape extent = {SE3DI_HDF5_INT64, 0, 1, {6}};
-    const se3di_hdf5_shape three = {SE3DI_HDF5_DOUBLE, 0, 1, {3}};
-    const se3di_hdf5_shape nine = {SE3DI_HDF5_DOUBLE, 0, 1, {9}};
+    const se3di_hdf5_shape extent = {SE3DI_HDF5_INT64, 0, 1, {6}, 0};
+    const se3di_hdf5_shape three = {SE3DI_HDF5_DOUBLE, 0, 1, {3}, 0};
+    const se3di_hdf5_shape nine = {SE3DI_HDF5_DOUBLE, 0, 1, {9}, 0};
     static const double unit[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     double whole[6], middle[3];
     for (int k = 0; k < 3; ++k) {
@@ -158,11 +158,10 @@ static void put_image(se3di_hdf5 *h, size_t group, const se3di_vtk_grid *grid)
     se3di_hdf5_add_attribute(h, group, "Direction", &nine, unit);
 }
 
-bool se3di_vtk_file_write_hdf5(const se3di_vtk_file *f, const se3d_allocator *allocator,
-                               const char *path)
+bool se3di_vtk_file_write_hdf5(const se3di_vtk_file *f, const se3di_vtk_target *to)
 {
     se3di_hdf5 h;
-    if (!se3di_hdf5_open(&h, allocator, path)) {
+    if (!se3di_hdf5_open(&h, to->allocator, to->path, to->compression)) {
         return false;
     }
     const size_t group = se3di_hdf5_add_group(&h, 0, "VTKHDF");
