@@ -19,7 +19,8 @@
 
 #define LIMIT      0.01  /* of the size: how deep contacts are looked for; */
 #define LIMIT_MOST 0.2   /* and if some are deeper than half of that */
-#define SAME       1e-9  /* of a length: places that are one */
+#define SAME       1e-9  /* of a length: places that are one, */
+#define ROUNDED    1e-7  /* and if they were found in two ways */
 #define FLAT       1e-12 /* of the square of its length: an edge in a plane does not touch */
 #define LEAN       0.3   /* cosine: its own surface leads no more than this into the other one */
 #define MORE       1.01  /* times farther: what takes the place of another, not by rounding */
@@ -38,6 +39,8 @@ typedef struct place {
     double point[3], normal[3]; /* on the other's surface; outward, the other's frame */
     double own[3];              /* the place that touches */
     double along[3];            /* edge; 0: a vertex */
+    double across[3];           /* edge of the other that it passes over; 0: none, */
+    double corner[3];           /* and a place on that */
     double depth;
     uint32_t feature, reserved;
 } place;
@@ -385,6 +388,8 @@ static int touch_crossing(const search *s, const edge *e, const part *within, pl
     se3di_copy(p->own, corner);
     se3di_add_scaled(depth / bulge, middle, corner);
     (void)se3di_mesh_nearest(s->other->shape, corner, at, &distance);
+    se3di_copy(along, p->across);
+    se3di_copy(corner, p->corner);
     p->depth = depth * se3di_dot(p->normal, middle) / bulge;
     se3di_copy(p->own, p->point);
     se3di_add_scaled(p->depth, p->normal, p->point);
@@ -404,6 +409,7 @@ static void touch_part(search *s, const edge *e, const part *within)
     }
     se3di_copy(e->way, p.along);
     if (!touch_crossing(s, e, within, &p)) {
+        memset(p.across, 0, sizeof p.across);
         point_at(e, 0.5 * (from + to), p.own);
         p.depth = find_way(s, &e->around, p.own, p.point, p.normal);
     }
@@ -543,6 +549,20 @@ static void meet_edges(search *s)
     }
 }
 
+/* The surface is bent about an edge, if there is one. */
+static void set_edge(const se3di_shape_pose *at, const double along[3], const double n[3],
+                     se3di_bend *bend)
+{
+    double u[3];
+    se3di_mul(at->R, along, u);
+    se3di_add_scaled(-se3di_dot(u, n), n, u);
+    const double length = se3di_norm(u);
+    if (length > SAME * se3di_norm(along)) {
+        se3di_scale(1.0 / length, u, u);
+        se3di_bend_set(bend, u, HUGE_VAL, 0.0);
+    }
+}
+
 static void add_point(const search *s, const place *p, se3di_manifold *manifold)
 {
     const se3di_shape_pose *at = s->other->at;
@@ -554,18 +574,10 @@ static void add_point(const search *s, const place *p, se3di_manifold *manifold)
     se3di_mul(at->R, p->normal, n);
     se3di_scale(s->is_second ? 1.0 : -1.0, n, n);
     se3di_contact_point *point = se3di_manifold_add(manifold, x, n, p->depth, p->feature);
-    se3di_bend *bend = s->is_second ? &point->bend_j : &point->bend_i;
-    bend->r[0] = bend->r[1] = 0.0;
-    if (se3di_norm(p->along) > 0.0) {
-        double u[3];
-        se3di_mul(at->R, p->along, u);
-        se3di_add_scaled(-se3di_dot(u, n), n, u);
-        const double length = se3di_norm(u);
-        if (length > SAME * se3di_norm(p->along)) {
-            se3di_scale(1.0 / length, u, u);
-            se3di_bend_set(bend, u, HUGE_VAL, 0.0);
-        }
-    }
+    se3di_bend *const own = s->is_second ? &point->bend_j : &point->bend_i;
+    own->r[0] = own->r[1] = 0.0;
+    set_edge(at, p->along, n, own);
+    set_edge(at, p->across, n, s->is_second ? &point->bend_i : &point->bend_j);
 }
 
 static size_t find_deepest(const search *s)
@@ -684,6 +696,52 @@ static void look(const se3di_solid *i, const se3di_solid *j, double limit, searc
     }
 }
 
+/* Whether x lies on the line through a place of it. */
+static int is_on_line(const double at[3], const double way[3], const double x[3], double slack)
+{
+    double d[3], off[3];
+    se3di_sub(x, at, d);
+    se3di_cross(way, d, off);
+    return se3di_norm(off) < slack * se3di_norm(way);
+}
+
+/* Whether two edges that pass over each other are found from both sides: each has the place of the
+ * other on it. */
+static int is_same_crossing(const search *s, const place *p, const search *t, const place *q)
+{
+    double x[3], own[3], way[3];
+    if (!(se3di_norm(p->across) > 0.0 && se3di_norm(q->across) > 0.0)) {
+        return 0;
+    }
+    /* the edge of p in the frame of its own mesh, which is that of t's other */
+    se3di_sub(p->own, s->x, x);
+    se3di_mul_transposed(s->R, x, own);
+    se3di_mul_transposed(s->R, p->along, way);
+    if (!is_on_line(own, way, q->corner, ROUNDED * s->size)) {
+        return 0;
+    }
+    se3di_sub(q->own, t->x, x);
+    se3di_mul_transposed(t->R, x, own);
+    se3di_mul_transposed(t->R, q->along, way);
+    return is_on_line(own, way, p->corner, ROUNDED * s->size);
+}
+
+/* What both have found is left to the first. */
+static void drop_doubles(const search *first, search *second)
+{
+    size_t to = 0;
+    for (size_t k = 0; k < second->count; ++k) {
+        int is_known = 0;
+        for (size_t n = 0; n < first->count && !is_known; ++n) {
+            is_known = is_same_crossing(first, &first->list[n], second, &second->list[k]);
+        }
+        if (!is_known) {
+            second->list[to++] = second->list[k];
+        }
+    }
+    second->count = to;
+}
+
 void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     search both[2];
@@ -694,6 +752,7 @@ void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_man
     if (fmax(both[0].deepest, both[1].deepest) > 0.5 * both[0].limit) {
         look(i, j, LIMIT_MOST, both);
     }
+    drop_doubles(&both[0], &both[1]);
     const size_t half = SE3DI_MANIFOLD_POINTS / 2, all = SE3DI_MANIFOLD_POINTS;
     const size_t second = both[0].count < half ? all - both[0].count : half;
     choose(&both[0], both[1].count < half ? all - both[1].count : half, manifold);
