@@ -108,6 +108,23 @@ static inline se3d_status se3d_modes_get_eigenvalue(const se3d_modes *modes, siz
     return se3d_modes_get_eigenvalue_sized(modes, k, eigenvalue, sizeof *eigenvalue);
 }
 
+/* Get the eigenvalues that the modes of one system have in another one, whose data differ a little:
+ * masses, points, stiffnesses. They are those of the other system to second order in what differs,
+ * so that their derivatives with respect to the data are exact, and which mode is which is never
+ * mistaken. The other system is linearised at its present state, as se3d_modes_create does.
+ * docs/theory/modes.md
+ * @param[in] system      another system with the same bodies and freedoms
+ * @param[in] count       se3d_modes_count
+ * @param[out] real       [count] real parts [1/s]; NaN: the mode is no smooth function of the data,
+ *                        as its eigenvalue is 0 or not a single one
+ * @param[out] imaginary  [count] imaginary parts [rad/s]
+ * @return OK, NULL, INVALID_ARGUMENT (count), STATE (other bodies or freedoms), UNSUPPORTED (the
+ *         lowest modes of a large model), INCONSISTENT, SINGULAR, NOT_FINITE, NO_CONVERGENCE,
+ *         CALLBACK, NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_modes_follow(const se3d_modes *modes, se3d_system *system, size_t count,
+                                       double *real, double *imaginary);
+
 /* Get what a mode does to a body: the displacement of its centre of mass and its rotation vector,
  * as complex numbers. The largest component of the mode is 1. NULL arrays are skipped.
  * @param[in] k           the mode, from 0

@@ -228,15 +228,21 @@ static se3d_status find_lowest(se3di_modes *m, se3di_equations *equations, doubl
     return SE3D_OK;
 }
 
+se3d_status se3di_modes_prepare(se3di_equations *equations)
+{
+    const double time = equations->assembly.model->time;
+    SE3DI_TRY(se3di_ranks_decide(equations, time));
+    SE3DI_TRY(check_poses(equations, time));
+    return se3di_acceleration_solve(equations, time);
+}
+
 /* Linearise and keep what the queries need. */
 static se3d_status make(se3di_modes *m, se3di_equations *equations, const se3di_modes_port *ports,
                         const int32_t *quantity)
 {
     const double time = equations->assembly.model->time;
     se3di_linear linear;
-    SE3DI_TRY(se3di_ranks_decide(equations, time));
-    SE3DI_TRY(check_poses(equations, time));
-    SE3DI_TRY(se3di_acceleration_solve(equations, time));
+    SE3DI_TRY(se3di_modes_prepare(equations));
     if (m->lowest > 0) {
         SE3DI_TRY(find_lowest(m, equations, time));
         if (m->is_sparse) {

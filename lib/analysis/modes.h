@@ -10,6 +10,7 @@
 
 #include "analysis/eigen_modes.h"
 #include "model/model.h"
+#include "nonlinear/equations.h"
 #include "se3d/modes.h"
 
 typedef struct se3di_modes {
@@ -46,6 +47,8 @@ se3d_status se3di_modes_init(se3di_modes *modes, se3di_model *model, se3di_error
                              size_t inputs, size_t outputs, const se3di_modes_port *ports,
                              const int32_t *quantity, size_t lowest);
 void se3di_modes_destroy(se3di_modes *modes);
+/* What comes before linearising at the present state: ranks, a look at the poses, accelerations. */
+se3d_status se3di_modes_prepare(se3di_equations *equations);
 
 /* Displacement and rotation of a body in mode k, ground frame, such that the largest component of
  * the mode is 1. */

@@ -2,7 +2,7 @@
 /* Public layer: linearisation and modes. */
 #include "se3d/modes.h"
 
-#include "analysis/modes.h"
+#include "analysis/modes_follow.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 #include "system/system_internal.h"
@@ -234,4 +234,24 @@ se3d_status se3d_modes_get_transfer(const se3d_modes *modes, size_t input, size_
     *real = h[0];
     *imaginary = h[1];
     return status;
+}
+
+se3d_status se3d_modes_follow(const se3d_modes *modes, se3d_system *system, size_t count,
+                              double *real, double *imaginary)
+{
+    SE3DI_EDIT(system);
+    SE3DI_TRY(se3di_check_pointer(system, "modes", modes));
+    SE3DI_TRY(se3di_check_pointer(system, "real", real));
+    SE3DI_TRY(se3di_check_pointer(system, "imaginary", imaginary));
+    if (count != (size_t)modes->of.eigen.count) {
+        return SE3DI_FAIL_OF(system, "count", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %zu, must be the number of the modes, %d", count,
+                             (int)modes->of.eigen.count);
+    }
+    for (size_t k = 0; k < count; ++k) {
+        real[k] = imaginary[k] = (double)NAN;
+    }
+    se3di_work_begin(system);
+    return se3di_work_end(
+        system, se3di_modes_follow(&modes->of, &system->model, &system->found, real, imaginary));
 }

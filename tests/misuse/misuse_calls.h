@@ -879,6 +879,7 @@ static const row rows[] = {
     {"se3d_coordinates_compute_null_space", coordinates_reject_misuse, "", NULL, NULL},
     {"se3d_modes_create", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_destroy", modes_reject_misuse, "", NULL, NULL},
+    {"se3d_modes_follow", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_count", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_count_freedoms", modes_reject_misuse, "", NULL, NULL},
     {"se3d_modes_get_eigenvalue", modes_reject_misuse, "", NULL, NULL},

@@ -115,6 +115,7 @@ static se3d_status modes_reject_misuse(arguments *a)
     CHECK(!modes);
     CHECK(se3d_modes_count(NULL) == 0 && se3d_modes_count_freedoms(NULL) == 0);
     CHECK(se3d_modes_get_eigenvalue(NULL, 0, &s) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_follow(NULL, a->system, 1, &x, &y) == SE3D_ERR_NULL);
     CHECK(se3d_modes_get_shape(NULL, 0, 0, NULL, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_modes_get_matrix(NULL, SE3D_MODES_A, &rows, &columns, NULL, 0) == SE3D_ERR_NULL);
     CHECK(se3d_modes_get_transfer(NULL, 0, 0, 1.0, &x, &y) == SE3D_ERR_NULL);
@@ -137,6 +138,10 @@ static se3d_status modes_reject_misuse(arguments *a)
     CHECK(!se3d_modes_get_eigenvalue(modes, 0, &s) && s.imaginary > 0.0);
     CHECK(se3d_modes_get_eigenvalue(modes, 0, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_modes_get_eigenvalue(modes, 1, &s) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_modes_follow(modes, NULL, 1, &x, &y) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_follow(modes, system, 1, NULL, &y) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_follow(modes, system, 1, &x, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_modes_follow(modes, system, 1, &x, &y) == SE3D_OK && y > 0.0);
     CHECK(se3d_modes_get_shape(modes, 1, 0, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_modes_get_shape(modes, 0, 9, NULL, NULL) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_modes_get_matrix(modes, 99, &rows, &columns, NULL, 0) == SE3D_ERR_INVALID_ARGUMENT);

@@ -430,6 +430,10 @@ static se3d_status run_analysis(se3di_runner *r, size_t index)
                                    : run_rows(r, index, entry, &place);
     }
     status = collect_events(r, index, status);
+    if (status >= 0 && r->watch && r->watch->settle && index == r->settled) {
+        const se3d_status told = r->watch->settle(r->watch->ctx, r->solver);
+        status = told < 0 ? told : status;
+    }
     se3di_run_record(r, entry, cpu_time(r), done);
     se3di_estimate_end(r, done);
     if (r->run->pool.is_short && status >= 0) { /* a text of the record is missing */
@@ -570,6 +574,10 @@ se3d_status se3di_model_watch(se3d_model *model, const se3di_watch *watch,
     se3di_sample_init(&r.sample, model->system, &model->pool.allocator);
     se3d_status status = open_watch(&r);
     se3d_system_get_time(model->system, &r.time);
+    r.settled = SIZE_MAX;
+    for (size_t k = 0; k < watch->analysis; ++k) {
+        r.settled = model->analyses[k].modes.file ? r.settled : k;
+    }
     for (size_t k = 0; k <= watch->analysis && status >= 0; ++k) {
         const bool passes = model->analyses[k].modes.file && k < watch->analysis;
         status = passes ? status : run_analysis(&r, k);

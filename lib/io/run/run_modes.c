@@ -196,7 +196,7 @@ static se3d_status write_transfer(se3di_modes_run *run, const se3d_modes *modes)
 /* Eigenvalues for who asked for them. */
 static se3d_status show_modes(const se3di_watch *watch, const se3d_modes *modes)
 {
-    se3d_status status = SE3D_OK;
+    se3d_status status = watch->linearise ? watch->linearise(watch->ctx, modes) : SE3D_OK;
     for (size_t k = 0; watch->mode && k < se3d_modes_count(modes) && status >= 0; ++k) {
         se3d_eigenvalue e;
         status = se3d_modes_get_eigenvalue(modes, k, &e);

@@ -51,6 +51,7 @@ typedef struct se3di_estimate se3di_estimate;
 typedef struct se3di_runner {
     se3d_model *model;
     const se3di_watch *watch; /* gets the rows in place of files; NULL: there are files */
+    size_t settled;           /* the analysis whose end it is told of; SIZE_MAX: none */
     size_t analysis;          /* that runs */
     const se3d_run_options *options;
     se3d_run *run;

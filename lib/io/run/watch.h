@@ -14,9 +14,14 @@ typedef struct se3di_watch {
     se3d_status (*take)(void *ctx, const double *row);
     /* Told of the solver that has come to the state of a row, before it is taken; NULL: nobody. */
     se3d_status (*reach)(void *ctx, se3d_solver *solver, double time);
+    /* Told of the solver of the last analysis before that one, modes left out, when it has ended;
+     * NULL: nobody. */
+    se3d_status (*settle)(void *ctx, se3d_solver *solver);
     se3d_event_callback event; /* of the events of that analysis; NULL: none */
     /* Take a mode of that analysis, the slowest first, from 0; NULL: none. */
     void (*mode)(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue);
+    /* Told of all modes of that analysis before they are taken; NULL: nobody. */
+    se3d_status (*linearise)(void *ctx, const se3d_modes *modes);
     void *ctx; /* of all */
 } se3di_watch;
 

@@ -18,10 +18,11 @@
 #include "io/study/trial.h"
 
 enum { LEVELS = 5, FOLLOWERS = 2 * LEVELS };
-#define SHARE 0.5  /* of the first step of differences of runs */
-#define ROUGH 1e-6 /* error of the derivative of what is not smooth, */
-#define FINE  1e-3 /* or of this part of what changes it by itself in a step */
-#define APART 2e-2 /* of a slope: what a wide pair of models may tell otherwise */
+#define SHARE  0.5  /* of the first step of differences of runs */
+#define ROUGH  1e-6 /* error of the derivative of what is not smooth, */
+#define FINE   1e-3 /* or of this part of what changes it by itself in a step */
+#define TWO_PI 6.283185307179586476925286766559
+#define APART  2e-2 /* of a slope: what a wide pair of models may tell otherwise */
 
 typedef struct follower {
     se3di_trial trial;
@@ -45,18 +46,40 @@ typedef struct followers {
     se3d_study *study;
     group *groups;
     size_t count;
+    size_t stage;           /* the analysis whose solver is followed; SIZE_MAX: none */
     se3d_model_error error; /* of any of them: told to nobody */
 } followers;
 
-/* Whether rows are all that the measures are made of, and what leads to them can be followed. */
+static bool is_of_modes(const se3d_study *study)
+{
+    return study->model->analyses[study->analysis].modes.file != NULL;
+}
+
+/* The analysis whose solver is followed: that which is measured, or the equilibrium before modes.
+ * Followers take the way to it, and assemblies, by themselves.
+ * @return false: what is measured cannot be followed */
+static bool find_stage(const se3d_study *study, size_t *stage)
+{
+    const se3d_model *model = study->model;
+    *stage = study->analysis;
+    if (!is_of_modes(study)) {
+        return model->analyses[*stage].solver.analysis != SE3D_ANALYSIS_ASSEMBLY;
+    }
+    while (*stage != SIZE_MAX && model->analyses[*stage].modes.file) {
+        --*stage;
+    }
+    if (*stage == SIZE_MAX || model->analyses[*stage].solver.analysis == SE3D_ANALYSIS_ASSEMBLY) {
+        *stage = SIZE_MAX;
+        return true;
+    }
+    return model->analyses[*stage].solver.analysis == SE3D_ANALYSIS_EQUILIBRIUM;
+}
+
+/* Whether rows and modes are all that the measures are made of. */
 static bool is_followable(const se3d_study *study)
 {
     const se3d_model *model = study->model;
-    bool good = !model->particles && model->guest_count == 0 &&
-                model->analyses[study->analysis].solver.analysis != SE3D_ANALYSIS_ASSEMBLY;
-    for (size_t k = 0; k <= study->analysis && good; ++k) {
-        good = !model->analyses[k].modes.file;
-    }
+    bool good = !model->particles && model->guest_count == 0;
     for (size_t k = 0; k < model->event_count && good; ++k) {
         good = model->events[k].action == SE3D_EVENT_RECORD;
     }
@@ -104,11 +127,11 @@ static bool has_same_times(const se3di_trial *t)
     return same;
 }
 
-/* Through the analyses before that which is measured, to where it begins. */
-static se3d_status begin(follower *one)
+/* Through the analyses before that which is followed, or measured. */
+static se3d_status begin(follower *one, size_t stage)
 {
     const se3di_trial *t = &one->trial;
-    const size_t index = t->study->analysis;
+    const size_t index = stage == SIZE_MAX ? t->study->analysis : stage;
     const double start = t->model->analyses[index].analysis.start;
     const se3d_run_options how = se3di_study_get_options(t->study);
     const se3di_output_entry nothing = {.set = -1};
@@ -122,11 +145,11 @@ static se3d_status begin(follower *one)
     return isnan(start) ? SE3D_OK : se3d_system_set_time(one->system, start);
 }
 
-/* The solver of what is measured, as a run of the model has it. */
-static se3d_status create_solver(follower *one)
+/* The solver of what is followed, as a run of the model has it. */
+static se3d_status create_solver(follower *one, size_t stage)
 {
     se3di_trial *t = &one->trial;
-    const se3di_analysis_entry *entry = &t->model->analyses[t->study->analysis];
+    const se3di_analysis_entry *entry = &t->model->analyses[stage];
     se3d_solver_def def = entry->solver;
     double start = 0.0;
     se3d_system_get_time(one->system, &start);
@@ -141,7 +164,7 @@ static se3d_status create_solver(follower *one)
 }
 
 /* Its channels, tallies and solver; the system is that of its model. */
-static se3d_status prepare(follower *one)
+static se3d_status prepare(follower *one, size_t stage)
 {
     se3di_trial *t = &one->trial;
     const se3d_study *study = t->study;
@@ -149,7 +172,7 @@ static se3d_status prepare(follower *one)
         return SE3D_ERR_UNSUPPORTED;
     }
     se3di_trial_sharpen(t);
-    se3d_status status = begin(one);
+    se3d_status status = begin(one, stage);
     status = status < 0 ? status : se3di_trial_find_channels(t, &one->output);
     size_t columns = 1;
     if (status < 0) {
@@ -164,7 +187,7 @@ static se3d_status prepare(follower *one)
         return SE3D_ERR_NO_MEMORY;
     }
     se3di_trial_begin(t);
-    return create_solver(one);
+    return stage == SIZE_MAX ? SE3D_OK : create_solver(one, stage);
 }
 
 /* A model with the parameter at p + shift. That of the prototype lends its texts and numbers to
@@ -186,7 +209,7 @@ static se3d_status add(followers *all, group *g, double shift)
         one->system = one->trial.model->system;
         se3di_sample_init(&one->sample, one->system, &one->trial.model->pool.allocator);
     }
-    status = status < 0 ? status : prepare(one);
+    status = status < 0 ? status : prepare(one, all->stage);
     if (one->trial.is_set) {
         (void)se3di_inplace_take(all->study);
     }
@@ -272,18 +295,15 @@ static se3d_status create(followers *all, const se3di_study_point *points, size_
 }
 
 /* As se3di_model_watch makes a row of a run. */
-static se3d_status take_row(follower *one, se3d_solver *solver, double time)
+static se3d_status take_row(follower *one, double time)
 {
     double *row = one->row;
-    se3d_status status = se3d_solver_follow(one->solver, solver);
-    if (status < 0) {
-        return status;
-    }
     se3di_sample_renew(&one->sample, NULL);
     *row++ = time;
     for (size_t k = 0; k < one->output.count; ++k) {
         double value[4];
-        status = se3di_channel_eval(&one->output.channels[k], &one->sample, value);
+        const se3d_status status =
+            se3di_channel_eval(&one->output.channels[k], &one->sample, value);
         if (status < 0) {
             return status;
         }
@@ -294,13 +314,53 @@ static se3d_status take_row(follower *one, se3d_solver *solver, double time)
     return se3di_trial_take_row(&one->trial, one->row);
 }
 
-static se3d_status take_rows(void *ctx, se3d_solver *solver, double time)
+/* What all do where the run has come to. */
+typedef struct occasion {
+    se3d_solver *solver; /* of the run; NULL: there is nothing to follow */
+    const se3d_modes *modes;
+    bool has_row;
+    double time; /* of the row */
+} occasion;
+
+/* The modes that the measures ask for. */
+static se3d_status take_modes(follower *one, const se3d_modes *modes)
 {
-    followers *all = ctx;
+    se3di_trial *t = &one->trial;
+    const size_t count = se3d_modes_count(modes);
+    double *re = se3di_iopool_array(&t->pool, count + 1, sizeof *re);
+    double *im = se3di_iopool_array(&t->pool, count + 1, sizeof *im);
+    if (!re || !im) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    const double start = t->model->analyses[t->study->analysis].analysis.start;
+    se3d_status status = isnan(start) ? SE3D_OK : se3d_system_set_time(one->system, start);
+    status = status < 0 ? status : se3d_modes_follow(modes, one->system, count, re, im);
+    for (size_t k = 0; k < count && status >= 0; ++k) {
+        const double modulus = sqrt(re[k] * re[k] + im[k] * im[k]);
+        const se3d_eigenvalue e = {re[k], im[k], modulus / TWO_PI, -re[k] / modulus};
+        se3di_trial_take_mode(t, k, &e);
+    }
+    return status;
+}
+
+static se3d_status meet(follower *one, const occasion *o)
+{
+    se3d_status status = SE3D_OK;
+    if (o->solver) {
+        status = se3d_solver_follow(one->solver, o->solver);
+    }
+    if (status >= 0 && o->modes) {
+        status = take_modes(one, o->modes);
+    }
+    return status >= 0 && o->has_row ? take_row(one, o->time) : status;
+}
+
+static se3d_status meet_all(followers *all, const occasion *o)
+{
     for (size_t n = 0; n < all->count; ++n) {
         group *g = &all->groups[n];
         for (size_t k = 0; k < g->count && !g->has_failed; ++k) {
-            const se3d_status status = take_row(&g->of[k], solver, time);
+            const se3d_status status = meet(&g->of[k], o);
             if (is_final(status)) {
                 return status;
             }
@@ -308,6 +368,28 @@ static se3d_status take_rows(void *ctx, se3d_solver *solver, double time)
         }
     }
     return SE3D_OK;
+}
+
+static se3d_status reach(void *ctx, se3d_solver *solver, double time)
+{
+    followers *all = ctx;
+    const bool is_there = is_of_modes(all->study);
+    const occasion o = {.solver = is_there ? NULL : solver, .has_row = true, .time = time};
+    return meet_all(all, &o);
+}
+
+static se3d_status settle(void *ctx, se3d_solver *solver)
+{
+    followers *all = ctx;
+    const bool is_followed = is_of_modes(all->study) && all->stage != SIZE_MAX;
+    const occasion o = {.solver = is_followed ? solver : NULL};
+    return meet_all(all, &o);
+}
+
+static se3d_status linearise(void *ctx, const se3d_modes *modes)
+{
+    const occasion o = {.modes = modes};
+    return meet_all(ctx, &o);
 }
 
 /* Whether there is a derivative of each measure, which is no corner: forces that jump within a step
@@ -391,7 +473,8 @@ static se3d_status conclude(const followers *all, group *g, const double *centre
 /* The run at the point, which the others follow. */
 static se3d_status run(followers *all, double *measures, bool *has_run, se3d_model_error *error)
 {
-    const se3di_row_listener listener = {.reach = take_rows, .ctx = all};
+    const se3di_row_listener listener = {
+        .reach = reach, .settle = settle, .linearise = linearise, .ctx = all};
     const se3di_study_point *point = all->groups[0].point;
     const se3d_status status =
         se3di_study_run_with(all->study, point->values, point->count, &listener, measures, error);
@@ -415,7 +498,7 @@ se3d_status se3di_study_follow(se3d_study *study, const se3di_study_point *point
     *has_run = false;
     memset(done, 0, count * sizeof *done);
     memset(error, 0, sizeof *error);
-    if (count == 0 || !is_followable(study)) {
+    if (count == 0 || !is_followable(study) || !find_stage(study, &all.stage)) {
         return SE3D_OK;
     }
     se3di_iopool_init(&pool, &study->pool.allocator);

@@ -113,6 +113,18 @@ static se3d_status reach(void *ctx, se3d_solver *solver, double time)
     return t->listener->reach(t->listener->ctx, solver, time);
 }
 
+static se3d_status settle(void *ctx, se3d_solver *solver)
+{
+    const trial *t = ctx;
+    return t->listener->settle(t->listener->ctx, solver);
+}
+
+static se3d_status linearise(void *ctx, const se3d_modes *modes)
+{
+    const trial *t = ctx;
+    return t->listener->linearise(t->listener->ctx, modes);
+}
+
 se3d_status se3di_trial_take_event(void *ctx, se3d_system *system, const se3d_event_record *record)
 {
     const trial *t = ctx;
@@ -140,7 +152,7 @@ se3d_status se3di_trial_take_event(void *ctx, se3d_system *system, const se3d_ev
     return status;
 }
 
-static void take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue)
+void se3di_trial_take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue)
 {
     const trial *t = ctx;
     for (size_t k = 0; k < t->study->entry->measure_count; ++k) {
@@ -275,8 +287,10 @@ static se3d_status run(trial *t, const se3di_named *values, size_t count, double
                                .analysis = study->analysis,
                                .take = take_row,
                                .reach = t->listener ? reach : NULL,
+                               .settle = t->listener ? settle : NULL,
                                .event = se3di_trial_take_event,
-                               .mode = take_mode,
+                               .mode = se3di_trial_take_mode,
+                               .linearise = t->listener ? linearise : NULL,
                                .ctx = t};
     status = se3di_model_watch(t->model, &watch, &how, t->error);
     return status < 0 ? status : se3di_trial_conclude(t, measures);

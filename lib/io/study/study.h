@@ -11,6 +11,7 @@
 #include "io/channel/study.h"
 #include "io/model/model.h"
 #include "io/study/tally.h"
+#include "se3d/modes.h"
 #include "se3d/study.h"
 
 /* Room for one number and its comma. */
@@ -40,7 +41,10 @@ struct se3d_study {
 /* What is told of the solver that has come to the state of a row, before it is taken. */
 typedef struct se3di_row_listener {
     se3d_status (*reach)(void *ctx, se3d_solver *solver, double time);
-    void *ctx;
+    /* As in se3di_watch. */
+    se3d_status (*settle)(void *ctx, se3d_solver *solver);
+    se3d_status (*linearise)(void *ctx, const se3d_modes *modes);
+    void *ctx; /* of all */
 } se3di_row_listener;
 
 enum { SE3DI_STUDY_LEVELS = 9 };

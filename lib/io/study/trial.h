@@ -29,6 +29,8 @@ void se3di_trial_begin(se3di_trial *t);
 se3d_status se3di_trial_take_row(se3di_trial *t, const double *row);
 /* Take what is measured at an event; ctx: the trial. */
 se3d_status se3di_trial_take_event(void *ctx, se3d_system *system, const se3d_event_record *record);
+/* Take a mode; ctx: the trial. */
+void se3di_trial_take_mode(void *ctx, size_t index, const se3d_eigenvalue *eigenvalue);
 /* All measures at the end of the run, NaN: none. @return OK, NOT_FINITE, NO_MEMORY */
 se3d_status se3di_trial_conclude(se3di_trial *t, double *measures);
 /* Let methods of high order hold their errors near rounding, if the study wants it. */
