@@ -217,7 +217,28 @@ typedef enum se3d_tyre_side { SE3D_TYRE_LEFT = 0, SE3D_TYRE_RIGHT = 1 } se3d_tyr
     X(PCFX3, 180, 0)                                                                               \
     X(PCFY1, 181, 0)                                                                               \
     X(PCFY2, 182, 0)                                                                               \
-    X(PCFY3, 183, 0)
+    X(PCFY3, 183, 0)                                                                               \
+    X(PDXP1, 184, 0)                                                                               \
+    X(PDXP2, 185, 0)                                                                               \
+    X(PDXP3, 186, 0)                                                                               \
+    X(PKYP1, 187, 0)                                                                               \
+    X(PDYP1, 188, 0)                                                                               \
+    X(PDYP2, 189, 0)                                                                               \
+    X(PDYP3, 190, 0)                                                                               \
+    X(PDYP4, 191, 0)                                                                               \
+    X(PHYP1, 192, 0)                                                                               \
+    X(PHYP2, 193, 0)                                                                               \
+    X(PHYP3, 194, 0)                                                                               \
+    X(PHYP4, 195, 0)                                                                               \
+    X(PECP1, 196, 0)                                                                               \
+    X(PECP2, 197, 0)                                                                               \
+    X(QDTP1, 198, 0)                                                                               \
+    X(QCRP1, 199, 0)                                                                               \
+    X(QCRP2, 200, 0)                                                                               \
+    X(QBRP1, 201, 0)                                                                               \
+    X(QDRP1, 202, 0)                                                                               \
+    X(QDRP2, 203, 0)                                                                               \
+    X(LMP, 204, 1)
 /* clang-format on */
 
 /* See SE3D_TYRE_COEFFICIENT_LIST. @since 0.1 */
@@ -225,7 +246,7 @@ typedef enum se3d_tyre_coefficient {
 #define SE3D_TYRE_COEFFICIENT(NAME, number, value) SE3D_TYRE_##NAME = number,
     SE3D_TYRE_COEFFICIENT_LIST(SE3D_TYRE_COEFFICIENT)
 #undef SE3D_TYRE_COEFFICIENT
-        SE3D_TYRE_COEFFICIENTS = 184
+        SE3D_TYRE_COEFFICIENTS = 205
 } se3d_tyre_coefficient;
 
 /* The definition of a tyre. @since 0.1 */
@@ -266,6 +287,9 @@ typedef struct se3d_tyre_def {
     double envelope_length; /* over which obstacles are rolled, >= 0 [m]; 0: the tyre touches a
                                point, on a mesh 0.4 radius */
     double envelope_width;  /* the same across, >= 0 [m]; 0: the length */
+    int32_t has_turn_slip;  /* 1: a Magic Formula knows of turning about the road's normal, by PDXP1
+                               ... QDRP2; default 0 */
+    int32_t reserved;       /* 0 */
 } se3d_tyre_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_tyre_def_default. @since 0.1 */
@@ -316,7 +340,9 @@ SE3D_API se3d_status se3d_force_set_tyre(se3d_system *system, se3d_force force,
  * INCLINATION [rad] as its top leans to the right. Off the road, forces and slips are 0 and
  * DEFLECTION is minus the gap [m]. SPEED is that of the contact point, forward [m/s]. CONTACT is in
  * the ground frame [m]. LAGGED_RATIO and LAGGED_ANGLE are the slips that the forces follow:
- * SLIP_RATIO and SLIP_ANGLE, or what lags behind them by the relaxation length. @since 0.1 */
+ * SLIP_RATIO and SLIP_ANGLE, or what lags behind them by the relaxation length. TURN_SLIP [1/m] is
+ * the rate at which the wheel turns about the road's normal, to the left, over its speed.
+ * @since 0.1 */
 #define SE3D_TYRE_VALUE_LIST(X)                                                                    \
     X(FX, 0, fx)                                                                                   \
     X(FY, 1, fy)                                                                                   \
@@ -335,14 +361,15 @@ SE3D_API se3d_status se3d_force_set_tyre(se3d_system *system, se3d_force force,
     X(CONTACT_Y, 14, contact_y)                                                                    \
     X(CONTACT_Z, 15, contact_z)                                                                    \
     X(LAGGED_RATIO, 16, lagged_ratio)                                                              \
-    X(LAGGED_ANGLE, 17, lagged_angle)
+    X(LAGGED_ANGLE, 17, lagged_angle)                                                              \
+    X(TURN_SLIP, 18, turn_slip)
 
 /* See SE3D_TYRE_VALUE_LIST. @since 0.1 */
 typedef enum se3d_tyre_value {
 #define SE3D_TYRE_VALUE(NAME, number, name) SE3D_TYRE_##NAME = number,
     SE3D_TYRE_VALUE_LIST(SE3D_TYRE_VALUE)
 #undef SE3D_TYRE_VALUE
-        SE3D_TYRE_VALUES = 18
+        SE3D_TYRE_VALUES = 19
 } se3d_tyre_value;
 
 /* Get what a tyre tells in the present state.

@@ -7,6 +7,7 @@
  *     l = n . (c - P) / cos g,  C = c + l d,  rho = R - l
  *     v = velocity of the wheel less that of the road (z_t u, too) at C,  W = relative spin about a
  *     rhodot = -n . v / cos g,  V_x = x . v + W l,  V_sx = V_x - W r_e,  V_sy = y . v
+ *     psidot = (n . w - sin g W) / cos^2 g        w: relative angular velocity
  *     Fz = (k rho + c rhodot) / cos g, never below 0
  *
  * F = Fx x + Fy y + Fz n acts at C, with Mx x + My a + Mz n. My holds Fx (l - r_e): the moment of
@@ -59,6 +60,8 @@ static void take_velocity(const se3di_frame *i, const se3di_frame *j, patch *c)
     c->input[SE3DI_PATCH_SPEED] = se3di_dot(c->x, c->v) + spin * c->length;
     c->input[SE3DI_PATCH_SIDE_SPEED] = se3di_dot(c->y, c->v);
     c->input[SE3DI_PATCH_SPIN] = spin;
+    c->input[SE3DI_PATCH_TURN] =
+        (se3di_dot(omega, c->n) - c->input[SE3DI_PATCH_SINE] * spin) / (c->cosine * c->cosine);
 }
 
 static void values_of(const se3di_dual x[3], double v[3])
@@ -217,6 +220,12 @@ static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip 
     slip->way = se3di_dual_div(slip->speed, speed);
     slip->shear[0] = se3di_dual_div(slip->slide[0], slip->roll);
     slip->shear[1] = se3di_dual_div(slip->slide[1], slip->roll);
+    if (tyre->has_turn_slip) {
+        const se3di_dual turn =
+            se3di_dual_seed(side * in[SE3DI_PATCH_TURN], SE3DI_PATCH_TURN, side);
+        slip->turn = se3di_dual_div(turn, speed);
+        slip->lean = se3di_dual_div(se3di_dual_mul(spin, slip->sine), speed);
+    }
 }
 
 /* A slip that lags is a number of its own. */
@@ -389,6 +398,11 @@ static void vary_velocity(const patch *c, const turn *t, patch *out)
                                     spin * c->length + c->input[SE3DI_PATCH_SPIN] * out->length;
     out->input[SE3DI_PATCH_SIDE_SPEED] = se3di_dot(out->y, c->v) + se3di_dot(c->y, out->v);
     out->input[SE3DI_PATCH_LAGGED] = out->input[SE3DI_PATCH_LAGGED + 1] = 0.0;
+    const double sine = c->input[SE3DI_PATCH_SINE], dsine = out->input[SE3DI_PATCH_SINE];
+    const double about = se3di_dot(part, c->n) + se3di_dot(omega, out->n);
+    const double less = dsine * c->input[SE3DI_PATCH_SPIN] + sine * spin;
+    const double wider = 2.0 * c->input[SE3DI_PATCH_TURN] * sine * dsine; /* of 1 / cos^2 */
+    out->input[SE3DI_PATCH_TURN] = (about - less + wider) / (c->cosine * c->cosine);
 }
 
 /* One column of K or D: what the wrench changes by. */
@@ -688,6 +702,10 @@ se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
     values[SE3D_TYRE_LOADED_RADIUS] = c.length;
     values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
     values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
+    values[SE3D_TYRE_TURN_SLIP] =
+        c.touches
+            ? c.input[SE3DI_PATCH_TURN] / se3di_tyre_regular(slip.speed, force->tyre->low_speed).v
+            : 0.0;
     se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
     tell_lag(force, &c, &slip, values);
     return SE3D_OK;

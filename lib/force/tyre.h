@@ -15,6 +15,7 @@ enum {
     SE3DI_PATCH_SINE = 4,       /* of the inclination */
     SE3DI_PATCH_SPIN = 5,       /* about the axis [rad/s] */
     SE3DI_PATCH_LAGGED = 6,     /* slip that lags, forward; to the side is the next one */
+    SE3DI_PATCH_TURN = 8, /* rate of the wheel's plane about the normal, to the left [rad/s] */
     SE3DI_PATCH_INPUTS = SE3DI_DUALS
 };
 
@@ -30,6 +31,8 @@ typedef struct se3di_tyre_slip {
     se3di_dual speed;          /* V_x */
     se3di_dual way;            /* V_x / V: 1 ahead, -1 back */
     se3di_dual sine;           /* of the inclination */
+    se3di_dual turn;           /* turning rate over V [1/m] */
+    se3di_dual lean;           /* spin times sine over V [1/m] */
 } se3di_tyre_slip;
 
 /* Forces Fx, Fy, Fz and moments Mx, My (about the axis), Mz by the inputs. */

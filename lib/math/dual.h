@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Numbers with their derivatives by eight others: a formula that is written with them has exact
+/* Numbers with their derivatives by nine others: a formula that is written with them has exact
  * derivatives. And the same without: where values are all that is wanted, such a formula that is
  * compiled once more gives them, to the bit. */
 #ifndef SE3DI_DUAL_H
@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#define SE3DI_DUALS 8
+#define SE3DI_DUALS 9
 
 typedef struct se3di_dual {
     double v;

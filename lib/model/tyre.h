@@ -26,6 +26,8 @@ typedef struct se3di_tyre {
     double
         envelope[2]; /* length and width over which obstacles are rolled; 0: it touches a point */
     double coefficients[SE3D_TYRE_COEFFICIENTS]; /* of the Magic Formula */
+    int32_t has_turn_slip;                       /* 1: it knows of turning */
+    int32_t reserved;
 } se3di_tyre;
 
 #endif

@@ -188,6 +188,7 @@ se3d_status se3d_force_get_tyre(const se3d_system *system, se3d_force force, se3
     full.envelope_width = tyre->envelope[1];
     full.coefficients = is_magic ? tyre->coefficients : NULL;
     full.coefficient_count = is_magic ? SE3D_TYRE_COEFFICIENTS : 0;
+    full.has_turn_slip = tyre->has_turn_slip;
     full.relaxation_x = tyre->relaxation[0];
     full.relaxation_y = tyre->relaxation[1];
     full.is_transient = (tyre->lags[0] && !(tyre->relaxation[0] > 0.0)) ||

@@ -10,10 +10,12 @@
 #include <math.h>
 #include <string.h>
 
-#define LARGE    1e40
-#define POSITIVE 1e-40
-#define ENVELOPE 0.4 /* of tyres on meshes, over the radius */
-#define SLIP     0.1 /* that errors of a slip that lags are measured by, at least: tyres slide */
+#define LARGE       1e40
+#define POSITIVE    1e-40
+#define ENVELOPE    0.4  /* of tyres on meshes, over the radius */
+#define SHAPE_LEAST 0.01 /* of QDRP1, whose sine sin(QDRP1 pi/2) is divided by */
+#define SHAPE_MOST  1.99
+#define SLIP        0.1 /* that errors of a slip that lags are measured by, at least: tyres slide */
 
 void se3d_tyre_def_init(se3d_tyre_def *def, size_t size)
 {
@@ -94,6 +96,29 @@ static se3d_status check_divisors(se3d_system *system, const double *c)
         }
     }
     return SE3D_OK;
+}
+
+/* What turn slip needs. */
+static se3d_status check_turn_slip(se3d_system *system, const se3d_tyre_def *def, const double *c)
+{
+    static const int positive[] = {SE3D_TYRE_PHYP1, SE3D_TYRE_QCRP1, SE3D_TYRE_LMP};
+    SE3DI_TRY(check_choice(system, "has_turn_slip", def->has_turn_slip, 1));
+    if (!def->has_turn_slip) {
+        return SE3D_OK;
+    }
+    if (def->law != SE3D_TYRE_MF52 && def->law != SE3D_TYRE_MF61) {
+        return SE3DI_FAIL_OF(system, "has_turn_slip", SE3D_ERR_INVALID_ARGUMENT,
+                             " = 1, must be 0: only a Magic Formula knows of it");
+    }
+    for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k) {
+        SE3DI_TRY(se3di_check_range(system, coefficient_names[positive[k]], c[positive[k]],
+                                    POSITIVE, LARGE));
+    }
+    if (!(fabs(c[SE3D_TYRE_PHYP2]) > 0.0)) {
+        return SE3DI_FAIL_OF(system, "PHYP2", SE3D_ERR_INVALID_ARGUMENT,
+                             " = 0, must not be 0 with has_turn_slip");
+    }
+    return se3di_check_range(system, "QDRP1", c[SE3D_TYRE_QDRP1], SHAPE_LEAST, SHAPE_MOST);
 }
 
 static se3d_status take_coefficients(se3d_system *system, const se3d_tyre_def *def,
@@ -205,6 +230,8 @@ static se3d_status take_numbers(se3d_system *system, const se3d_tyre_def *def, s
     const int is_magic = def->law == SE3D_TYRE_MF52 || def->law == SE3D_TYRE_MF61;
     SE3DI_TRY(is_magic ? take_coefficients(system, def, tyre) : check_stiffness(system, def));
     SE3DI_TRY(take_relaxation(system, def, tyre));
+    SE3DI_TRY(check_turn_slip(system, def, tyre->coefficients));
+    tyre->has_turn_slip = def->has_turn_slip;
     se3di_copy(def->point, data->s_i);
     se3di_copy(def->center, data->s_j);
     se3di_scale(def->side == SE3D_TYRE_RIGHT ? -1.0 : 1.0, tyre->axis, tyre->axis);

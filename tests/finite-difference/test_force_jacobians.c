@@ -380,6 +380,9 @@ static void lay_road(world *w, se3d_tyre_def *def)
 
 /* A wheel somewhere in the road, inclined; its slip is what the random motion gives, made smaller
  * or larger by the speed below which it is regularised. */
+/* 1: turn slip counts in the tyres that follow. */
+static int turn_kind;
+
 static void create_tyre(world *w, int32_t law, double low_speed, double mu)
 {
     se3d_force force;
@@ -421,6 +424,7 @@ static void create_tyre(world *w, int32_t law, double low_speed, double mu)
     def.low_speed = low_speed;
     def.coefficients = c;
     def.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    def.has_turn_slip = turn_kind;
     lag_tyre(w, &def, c);
     if (road_kind > 0) {
         lay_road(w, &def);
@@ -459,6 +463,20 @@ static void create_mf52(world *w)
 static void create_mf61(world *w)
 {
     create_tyre(w, SE3D_TYRE_MF61, 20.0, 1.1);
+}
+
+static void create_turning52(world *w)
+{
+    turn_kind = 1;
+    create_tyre(w, SE3D_TYRE_MF52, 20.0, 1.1);
+    turn_kind = 0;
+}
+
+static void create_turning61(world *w)
+{
+    turn_kind = 1;
+    create_tyre(w, SE3D_TYRE_MF61, 20.0, 1.1);
+    turn_kind = 0;
 }
 
 /* A drag that depends on everything. */
@@ -640,6 +658,16 @@ static void tyres_on_roads_agree_with_differences(void)
                                               create_mf61};
     for (road_kind = 1; road_kind < 6; ++road_kind) {
         jacobians_agree_with_differences(create[(road_kind + 1) % 3], road_kind < 5 ? 1e-8 : 1e-6);
+    }
+    road_kind = 0;
+}
+
+/* On a plane, and on hills that move. */
+static void turn_slip_agrees_with_differences(void)
+{
+    for (road_kind = 0; road_kind < 2; ++road_kind) {
+        jacobians_agree_with_differences(create_turning52, 1e-8);
+        jacobians_agree_with_differences(create_turning61, 1e-8);
     }
     road_kind = 0;
 }
@@ -875,5 +903,6 @@ int main(void)
     RUN(a_callback_without_jacobian_is_differenced);
     RUN(the_wrench_is_minus_the_gradient_of_the_potential);
     RUN(power_balances_for_every_element);
+    RUN(turn_slip_agrees_with_differences);
     return check_finish();
 }

@@ -9,9 +9,9 @@
 
 #define G 9.81
 
-/* A wheel in the state {h, g, u, v, W} over the road z = 0. */
-static void get_forces(const se3d_tyre_def *given, const double state[5], int on_right,
-                       double values[SE3D_TYRE_VALUES])
+/* A wheel in the state {h, g, u, v, W} over the road z = 0, turning about its normal. */
+static void get_forces(const se3d_tyre_def *given, const double state[5], double turning,
+                       int on_right, double values[SE3D_TYRE_VALUES])
 {
     se3d_system *system;
     se3d_force tyre;
@@ -27,6 +27,7 @@ static void get_forces(const se3d_tyre_def *given, const double state[5], int on
     body.velocity[0] = state[2];
     body.velocity[1] = side * state[3];
     body.angular_velocity[1] = state[4];
+    body.angular_velocity[2] = side * turning * cos(state[1]);
     CHECK(!se3d_body_create(system, &body, &def.wheel));
     CHECK(!se3d_system_get_ground(system, &def.road));
     def.side = on_right ? SE3D_TYRE_RIGHT : SE3D_TYRE_LEFT;
@@ -53,15 +54,16 @@ static se3d_tyre_def simple_tyre(int32_t law)
     return def;
 }
 
-static void compare(const se3d_tyre_def *def, const double expected[][6])
+static void compare(const se3d_tyre_def *def, const double *rates, const double expected[][6])
 {
     double values[SE3D_TYRE_VALUES], right[SE3D_TYRE_VALUES];
     for (int k = 0; k < TYRE_STATES; ++k) {
-        get_forces(def, tyre_states[k], 0, values);
+        const double rate = rates ? rates[k] : 0.0;
+        get_forces(def, tyre_states[k], rate, 0, values);
         for (int c = 0; c < 6; ++c) {
             CHECK_NEAR(values[c], expected[k][c], 1e-9 * (1.0 + fabs(expected[k][c])));
         }
-        get_forces(def, tyre_states[k], 1, right);
+        get_forces(def, tyre_states[k], rate, 1, right);
         for (int c = 0; c < 6; ++c) { /* the other side is its mirror image */
             const double mirrored = c == SE3D_TYRE_FY || c == SE3D_TYRE_MX || c == SE3D_TYRE_MZ
                                         ? -values[c]
@@ -84,11 +86,64 @@ static void forces_agree_with_an_independent_program(void)
     magic.coefficients = c;
     magic.coefficient_count = SE3D_TYRE_COEFFICIENTS;
     magic.law = SE3D_TYRE_MF52;
-    compare(&magic, tyre_mf52);
+    compare(&magic, NULL, tyre_mf52);
     magic.law = SE3D_TYRE_MF61;
-    compare(&magic, tyre_mf61);
-    compare(&brush, tyre_brush);
-    compare(&fiala, tyre_fiala);
+    compare(&magic, NULL, tyre_mf61);
+    compare(&magic, tyre_rates, tyre_mf61); /* without turn slip it does not count */
+    magic.has_turn_slip = 1;
+    compare(&magic, tyre_rates, tyre_turning61);
+    magic.law = SE3D_TYRE_MF52;
+    compare(&magic, tyre_rates, tyre_turning52);
+    compare(&brush, tyre_rates, tyre_brush);
+    compare(&fiala, NULL, tyre_fiala);
+}
+
+/* What camber does to a wheel that rolls freely is what its spin about the road's normal does: with
+ * turn slip the slopes of force and moment stay as they are without (there S_Vygamma is a part). A
+ * wheel that turns on the spot is held by a moment against its turning, in proportion to it. */
+static void turn_slip_holds_camber_and_parking(void)
+{
+    se3d_tyre_def magic = simple_tyre(SE3D_TYRE_MF61);
+    double c[SE3D_TYRE_COEFFICIENTS], values[SE3D_TYRE_VALUES], slope[2][2];
+    const double h = 1e-6;
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
+        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
+    }
+    c[SE3D_TYRE_LHY] = c[SE3D_TYRE_LVY] = c[SE3D_TYRE_LRES] = c[SE3D_TYRE_PPZ2] = 0.0;
+    c[SE3D_TYRE_QHZ1] = c[SE3D_TYRE_QHZ2] = c[SE3D_TYRE_QHZ3] = c[SE3D_TYRE_QHZ4] = 0.0;
+    c[SE3D_TYRE_SSZ1] = c[SE3D_TYRE_SSZ2] = c[SE3D_TYRE_SSZ3] = c[SE3D_TYRE_SSZ4] = 0.0;
+    c[SE3D_TYRE_QEZ4] = c[SE3D_TYRE_PEY3] = c[SE3D_TYRE_PEX4] = c[SE3D_TYRE_PDYP4] = 0.0;
+    c[SE3D_TYRE_QCRP2] = c[SE3D_TYRE_PPX3] = c[SE3D_TYRE_INFLPRES] = 0.0;
+    c[SE3D_TYRE_RHX1] = c[SE3D_TYRE_RHY1] = c[SE3D_TYRE_RHY2] = 0.0;
+    magic.coefficients = c;
+    magic.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    magic.mu = 1.0 / c[SE3D_TYRE_LMUY];
+    for (int turns = 0; turns < 2; ++turns) {
+        double side[2][2];
+        magic.has_turn_slip = turns;
+        for (int k = 0; k < 2; ++k) { /* where R0 W = V the spin is that of the formula */
+            const double state[5] = {0.3, k ? h : -h, 20.0, 0.0, 20.0 / magic.radius};
+            get_forces(&magic, state, 0.0, 0, values);
+            side[k][0] = values[SE3D_TYRE_FY];
+            side[k][1] = values[SE3D_TYRE_MZ];
+        }
+        slope[turns][0] = (side[1][0] - side[0][0]) / (2.0 * h);
+        slope[turns][1] = (side[1][1] - side[0][1]) / (2.0 * h);
+    }
+    CHECK(fabs(slope[0][0]) > 100.0 && fabs(slope[0][1]) > 10.0);
+    CHECK_NEAR(slope[1][0], slope[0][0], 1e-4 * fabs(slope[0][0]));
+    CHECK_NEAR(slope[1][1], slope[0][1], 1e-2 * fabs(slope[0][1]));
+    double before = 0.0;
+    for (int k = 1; k <= 8; ++k) { /* on the spot, to the left */
+        const double state[5] = {0.3, 0.0, 0.0, 0.0, 0.0};
+        get_forces(&magic, state, 0.25 * k, 0, values);
+        CHECK(values[SE3D_TYRE_MZ] < before);
+        CHECK_NEAR(values[SE3D_TYRE_TURN_SLIP], 0.5 * k, 1e-12);
+        CHECK(fabs(values[SE3D_TYRE_FX]) < 1e-9);
+        before = values[SE3D_TYRE_MZ];
+    }
+    CHECK(before > -c[SE3D_TYRE_QCRP1] * 2.0 * 1800.0 * 0.31 * 1.5); /* below M_zphi */
 }
 
 /* A box that stays level at the height h, and its wheel on a load of k 7.5 mm = 1500 N; %s: the
@@ -258,6 +313,7 @@ static void slip_that_lags_rises_with_the_distance(void)
 int main(void)
 {
     RUN(forces_agree_with_an_independent_program);
+    RUN(turn_slip_holds_camber_and_parking);
     RUN(a_locked_wheel_stops_in_the_distance_of_mu);
     RUN(a_wheel_without_resistance_rolls_on);
     RUN(a_wheel_slows_by_its_resistance_to_rolling);

@@ -6,7 +6,7 @@
 
 A state is what the wheel's centre does over the road z = 0: height h, inclination g (about x), speed
 u ahead and v to the left, spin W."""
-from math import atan, cos, pi, sin, sqrt, tan
+from math import acos, atan, cos, pi, sin, sqrt, tan
 
 BRUSH = dict(law=0, R=0.31, k=1.8e5, c=400.0, mu=1.1, mu_min=0.0, Cx=4.5e4, Cy=3.2e4, L=0.14, f=0.012)
 FIALA = dict(law=1, R=0.31, k=1.8e5, c=400.0, mu=1.1, mu_min=0.7, Cx=4.5e4, Cy=3.2e4, L=0.14, f=0.012)
@@ -24,6 +24,7 @@ STATES = [  # h, g, u, v, W
     (0.300, 0.00, -8.0, 0.3, -25.0),
     (0.320, 0.00, 20.0, 1.0, 60.0),
 ]
+RATES = [0.5, -0.8, 2.0, 1.0, -3.0, 4.0, 0.0, -1.5, 0.6, -0.7, 1.2, 1.0]  # about the road's normal [rad/s]
 
 
 def speed(x, low=1.0):
@@ -64,7 +65,7 @@ def fiala(t, fz, kappa, tangent):
     return fx, -mu * fz * sign(tangent), 0.0
 
 
-def forces(t, state):
+def forces(t, state, rate=None):
     h, g, u, v, W = state
     loaded = h / cos(g)
     rho = t['R'] - loaded
@@ -73,7 +74,7 @@ def forces(t, state):
     # the wheel neither rises nor leans, so that the contact point moves as the centre
     fz = t['k'] * rho / cos(g)
     if t['law'] >= 2:
-        return magic(t, MAGIC, fz, rho, g, u, v, W, loaded)
+        return magic(t, MAGIC, fz, rho, g, u, v, W, loaded, rate)
     re = t['R'] - rho / 3
     # the side speed of the wheel's own point at the road: the spin's part is along x
     vsx = u - W * re
@@ -107,7 +108,10 @@ MAGIC = dict(
     SSZ2=0.005, SSZ3=0.6, SSZ4=0.2,
     QSX1=-0.008, QSX2=1.2, QSX3=0.09, QSX4=0.05, QSX5=1.3, QSX6=0.7, QSX7=0.8, QSX8=0.3, QSX9=1.9, QSX10=0.4, QSX11=0.6,
     QSX12=0.3, QSX13=0.01, QSX14=0.2, PPMX1=0.1,
-    QSY1=0.011, QSY2=0.04, QSY3=0.001, QSY4=0.0002, QSY5=0.3, QSY6=0.5, QSY7=0.85, QSY8=-0.4)
+    QSY1=0.011, QSY2=0.04, QSY3=0.001, QSY4=0.0002, QSY5=0.3, QSY6=0.5, QSY7=0.85, QSY8=-0.4,
+    PDXP1=0.4, PDXP2=0.1, PDXP3=0.7, PKYP1=1.1, PDYP1=0.6, PDYP2=0.15, PDYP3=0.3, PDYP4=0.2, PHYP1=1.05, PHYP2=0.16,
+    PHYP3=0.02, PHYP4=-3.0, PECP1=0.45, PECP2=0.08, QDTP1=9.0, QCRP1=0.22, QCRP2=0.12, QBRP1=0.3, QDRP1=1.1, QDRP2=-1.4,
+    LMP=0.97)
 MF52 = dict(BRUSH, law=2)
 MF61 = dict(BRUSH, law=3)
 
@@ -116,8 +120,9 @@ def bow(B, C, E, x):
     return C * atan(B * x - E * (B * x - atan(B * x)))
 
 
-def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
-    """(Fx, Fy, Mx, My, Mz) of version 5.2 (law 2) or 6.1 (law 3)."""
+def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled, turn=None):
+    """(Fx, Fy, Mx, My, Mz) of version 5.2 (law 2) or 6.1 (law 3); turn: rate about the road's normal and spin times
+    the sine of the inclination, over the speed, with the factors zeta of Pacejka (2012), section 4.3.3."""
     new = t['law'] == 3
     p = c['INFLPRES'] / c['NOMPRES']
     dp = p - 1
@@ -127,6 +132,19 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
     vx, vy = (10 * lx / (1 + 9 * lx), 10 * ly / (1 + 9 * ly)) if new else (lx, ly)
     cosine = way * cos(alpha)
     fade = way * way  # shifts end where the wheel stands
+    z = [1.0] * 8
+    phi = phi_t = 0.0
+    if turn:
+        left_over = 1 - c['PECP1'] * (1 + c['PECP2'] * df)  # 1 - epsilon_gamma
+        phi_t, phi = turn[0], turn[0] + left_over * turn[1]
+        x = t['R'] * abs(phi)
+        z[0] = 0.0
+        z[1] = cos(atan(c['PDXP1'] * (1 + c['PDXP2'] * df) * cos(atan(c['PDXP3'] * kappa)) * t['R'] * phi))
+        z[2] = cos(atan(c['PDYP1'] * (1 + c['PDYP2'] * df) * cos(atan(c['PDYP3'] * tan(alpha))) * (
+            x + c['PDYP4'] * sqrt(x))))
+        z[3] = cos(atan(c['PKYP1'] * t['R'] ** 2 * phi ** 2))
+        z[5] = cos(atan(c['QDTP1'] * t['R'] * phi))
+        z[6] = cos(atan(c['QBRP1'] * t['R'] * phi))
 
     # longitudinal
     k = kappa + fade * (c['PHX1'] + c['PHX2'] * df) * c['LHX']
@@ -136,30 +154,44 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
     Kx *= 1 + c['PPX1'] * dp + c['PPX2'] * dp ** 2
     C = c['PCX1'] * c['LCX']
     E = min(1, (c['PEX1'] + c['PEX2'] * df + c['PEX3'] * df ** 2) * (1 - c['PEX4'] * sign(k)) * c['LEX'])
-    fx0 = mu * fz * sin(bow(Kx / (C * mu * fz), C, E, k)) + fade * fz * (c['PVX1'] + c['PVX2'] * df) * c['LVX'] * vx
+    Dx = mu * fz * z[1]
+    fx0 = Dx * sin(bow(Kx / (C * Dx), C, E, k)) + fade * fz * (c['PVX1'] + c['PVX2'] * df) * c['LVX'] * vx
 
     # lateral, at a camber
-    def side(g):
+    def side(g, z):
         Ky = c['PKY1'] * f0 * (1 + c['PPY1'] * dp) * (1 - c['PKY3'] * abs(g)) * c['LKY'] * sin(
             c['PKY4'] * atan(fz / f0 / ((c['PKY2'] + c['PKY5'] * g ** 2) * (1 + c['PPY2'] * dp))))
-        svg = fz * (c['PVY3'] + c['PVY4'] * df) * g * c['LKYC'] * vy
-        sv = fz * (c['PVY1'] + c['PVY2'] * df) * c['LVY'] * vy + svg
+        upright = c['PKY1'] * f0 * (1 + c['PPY1'] * dp) * c['LKY'] * sin(
+            c['PKY4'] * atan(fz / f0 / (c['PKY2'] * (1 + c['PPY2'] * dp))))
+        Ky *= z[3]
+        svg = fz * (c['PVY3'] + c['PVY4'] * df) * g * c['LKYC'] * vy * z[2]
+        sv = fz * (c['PVY1'] + c['PVY2'] * df) * c['LVY'] * vy * z[2] + svg
         sh = (c['PHY1'] + c['PHY2'] * df) * c['LHY']
-        if new:
+        shift = 0.0
+        if z[0] == 0:
+            if new:
+                Kg = fz * (c['PKY6'] + c['PKY7'] * df) * (1 + c['PPY5'] * dp) * c['LKYC']
+            else:
+                Kg = c['PHY3'] * c['LKYC'] * upright + fz * (c['PVY3'] + c['PVY4'] * df) * c['LKYC'] * vy
+            C, D = c['PHYP1'], c['PHYP2'] + c['PHYP3'] * df
+            shift = way * D * sin(bow(Kg / left_over / (C * D * upright), C, c['PHYP4'], t['R'] * phi))
+            sh -= svg / Ky
+        elif new:
             sh += (fz * (c['PKY6'] + c['PKY7'] * df) * (1 + c['PPY5'] * dp) * c['LKYC'] * g - svg) / Ky
         else:
             sh += c['PHY3'] * g * c['LKYC']
-        sh, sv = fade * sh, fade * sv
+        sh, sv = fade * sh + shift, fade * sv
         mu = (c['PDY1'] + c['PDY2'] * df) * (1 - c['PDY3'] * g ** 2) * ly
         mu *= 1 + c['PPY3'] * dp + c['PPY4'] * dp ** 2
         C = c['PCY1'] * c['LCY']
         a = alpha + sh
         E = min(1, (c['PEY1'] + c['PEY2'] * df) * (
             1 + c['PEY5'] * g ** 2 - (c['PEY3'] + c['PEY4'] * g) * sign(a)) * c['LEY'])
-        B = Ky / (C * mu * fz)
-        return mu * fz * sin(bow(B, C, E, a)) + sv, Ky, B * C, mu, sh, sv
+        D = mu * fz * z[2]
+        B = Ky / (C * D)
+        return D * sin(bow(B, C, E, a)) + sv, Ky, B * C, mu, sh, sv
 
-    fy0, Ky, BC, muy, sh, sv = side(gamma)
+    fy0, Ky, BC, muy, sh, sv = side(gamma, z)
 
     # combined
     def weigh(B, C, E, x, shift):
@@ -169,7 +201,7 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
                min(1, c['REX1'] + c['REX2'] * df), alpha, c['RHX1'])
     gy = weigh((c['RBY1'] + c['RBY4'] * gamma ** 2) * cos(atan(c['RBY2'] * (alpha - c['RBY3']))) * c['LYKA'],
                c['RCY1'], min(1, c['REY1'] + c['REY2'] * df), kappa, c['RHY1'] + c['RHY2'] * df)
-    ply = muy * fz * (c['RVY1'] + c['RVY2'] * df + c['RVY3'] * gamma) * cos(atan(c['RVY4'] * alpha))
+    ply = muy * z[2] * fz * (c['RVY1'] + c['RVY2'] * df + c['RVY3'] * gamma) * cos(atan(c['RVY4'] * alpha))
     ply *= sin(c['RVY5'] * atan(c['RVY6'] * kappa)) * c['LVYKA']
     ply *= fade
     fx, fy = gx * fx0, gy * fy0 + ply
@@ -182,17 +214,28 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
     Bt = (c['QBZ1'] + c['QBZ2'] * df + c['QBZ3'] * df ** 2) * (1 + c['QBZ4'] * gamma + c['QBZ5'] * abs(gamma))
     Bt *= c['LKY'] / ly
     Dt = (c['QDZ1'] + c['QDZ2'] * df) * (1 - c['PPZ1'] * dp) * (1 + c['QDZ3'] * gamma + c['QDZ4'] * gamma ** 2)
-    Dt *= fz * t['R'] / c['FNOMIN'] * c['LTR']
+    Dt *= fz * t['R'] / c['FNOMIN'] * c['LTR'] * z[5]
     Et = (c['QEZ1'] + c['QEZ2'] * df + c['QEZ3'] * df ** 2) * (
         1 + (c['QEZ4'] + c['QEZ5'] * gamma) * 2 / pi * atan(Bt * c['QCZ1'] * at))
     trail = Dt * cos(bow(Bt, c['QCZ1'], min(1, Et), whole(at))) * cosine
-    Dr = (c['QDZ6'] + c['QDZ7'] * df) * c['LRES'] + (
+    Dr = (c['QDZ6'] + c['QDZ7'] * df) * c['LRES'] * z[2] + (
         (c['QDZ8'] + c['QDZ9'] * df) * (1 + c['PPZ2'] * dp) * gamma +
-        (c['QDZ10'] + c['QDZ11'] * df) * gamma * abs(gamma)) * c['LKZC']
+        (c['QDZ10'] + c['QDZ11'] * df) * gamma * abs(gamma)) * c['LKZC'] * z[0]
     Br = c['QBZ9'] * c['LKY'] / ly + c['QBZ10'] * BC
-    rest = Dr * fz * t['R'] * ly * cosine * cos(atan(Br * whole(alpha + sh + sv / Ky)))
+    Dr *= fz * t['R'] * ly * cosine
+    if turn:
+        most = c['QCRP1'] * muy * t['R'] * fz * sqrt(fz / f0) * c['LMP']
+        C = c['QDRP1']
+        D = most / sin(pi / 2 * C)
+        Kz = fz * t['R'] * (c['QDZ8'] + c['QDZ9'] * df + (c['QDZ10'] + c['QDZ11'] * df) * abs(gamma)) * c['LKZC']
+        Drp = D * sin(bow(Kz / left_over / (C * D), C, c['QDRP2'], t['R'] * phi))
+        across = most * 2 / pi * atan(c['QCRP2'] * t['R'] * abs(phi_t)) * gy
+        z[7] = 2 / pi * acos(min(1.0, across / (abs(Drp) + 1e-3)))
+        Dr += Drp
+        Br *= z[6]
+    rest = Dr * cos(z[7] * atan(Br * whole(alpha + sh + sv / Ky)))
     arm = t['R'] * (c['SSZ1'] + c['SSZ2'] * fy / c['FNOMIN'] + (c['SSZ3'] + c['SSZ4'] * df) * gamma) * c['LS']
-    mz = -trail * (gy * side(0.0)[0] if new else fy - ply) + rest + arm * fx
+    mz = -trail * (gy * side(0.0, [1.0] * 8)[0] if new else fy - ply) + rest + arm * fx
 
     # overturning and rolling
     n = fz / c['FNOMIN']
@@ -212,12 +255,13 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled):
     return fx, fy, mx, -t['R'] * c['LMY'] * my * rolled, mz
 
 
-def magic(t, c, fz, rho, g, u, v, W, loaded):
+def magic(t, c, fz, rho, g, u, v, W, loaded, rate):
     part = c['FNOMIN'] / t['k']
     re = t['R'] * (c['QRE0'] + c['QV1'] * (W * t['R'] / c['LONGVL']) ** 2)
     re -= part * (c['DREFF'] * atan(c['BREFF'] * rho / part) + c['FREFF'] * rho / part)
     kappa, tangent = -(u - W * re) / speed(u), v / speed(u)
-    fx, fy, mx, my, mz = pacejka(t, c, fz, kappa, atan(tangent), g, u / speed(u), u, W * re / speed(W * re))
+    turn = None if rate is None else (rate / speed(u), W * sin(g) / speed(u))
+    fx, fy, mx, my, mz = pacejka(t, c, fz, kappa, atan(tangent), g, u / speed(u), u, W * re / speed(W * re), turn)
     return [fx, fy, fz, mx, my + fx * (loaded - re), mz]
 
 
@@ -225,10 +269,10 @@ def row(numbers):
     return '{' + ',\n     '.join('%.17g' % x for x in numbers) + '}'
 
 
-def table(name, t):
+def table(name, t, rates=None):
     print('static const double %s[TYRE_STATES][6] = {' % name)
-    for state in STATES:
-        print('    ' + row(forces(t, state)) + ',')
+    for state, rate in zip(STATES, rates or [None] * len(STATES)):
+        print('    ' + row(forces(t, state, rate)) + ',')
     print('};')
 
 
@@ -244,6 +288,9 @@ table('tyre_brush', BRUSH)
 table('tyre_fiala', FIALA)
 table('tyre_mf52', MF52)
 table('tyre_mf61', MF61)
+print('static const double tyre_rates[TYRE_STATES] =\n    %s;' % row(RATES))
+table('tyre_turning52', MF52, RATES)
+table('tyre_turning61', MF61, RATES)
 print('static const struct {')
 print('    int at;')
 print('    double value;')

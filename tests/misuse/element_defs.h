@@ -287,9 +287,11 @@ FILL(se3d_tyre_def, tyre_magic)
     static const struct {
         int32_t at, reserved;
         double value;
-    } given[] = {{SE3D_TYRE_FNOMIN, 0, 100.0}, {SE3D_TYRE_PCX1, 0, 1.6}, {SE3D_TYRE_PDX1, 0, 1.1},
-                 {SE3D_TYRE_PKX1, 0, 20.0},    {SE3D_TYRE_PCY1, 0, 1.3}, {SE3D_TYRE_PDY1, 0, 1.0},
-                 {SE3D_TYRE_PKY1, 0, -15.0},   {SE3D_TYRE_PKY2, 0, 2.0}};
+    } given[] = {
+        {SE3D_TYRE_FNOMIN, 0, 100.0}, {SE3D_TYRE_PCX1, 0, 1.6},  {SE3D_TYRE_PDX1, 0, 1.1},
+        {SE3D_TYRE_PKX1, 0, 20.0},    {SE3D_TYRE_PCY1, 0, 1.3},  {SE3D_TYRE_PDY1, 0, 1.0},
+        {SE3D_TYRE_PKY1, 0, -15.0},   {SE3D_TYRE_PKY2, 0, 2.0},  {SE3D_TYRE_PHYP1, 0, 1.0},
+        {SE3D_TYRE_PHYP2, 0, 0.15},   {SE3D_TYRE_QCRP1, 0, 0.2}, {SE3D_TYRE_QDRP1, 0, 1.0}};
     static double c[SE3D_TYRE_COEFFICIENTS];
     se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
     for (size_t k = 0; k < sizeof given / sizeof *given; ++k) {
@@ -297,12 +299,13 @@ FILL(se3d_tyre_def, tyre_magic)
     }
     set_tyre(at, def);
     def->law = SE3D_TYRE_MF61;
+    def->has_turn_slip = 1;
     def->coefficients = c;
     def->coefficient_count = SE3D_TYRE_COEFFICIENTS;
 }
-FIELDS(tyre_magic) = {INTEGER(se3d_tyre_def, law), SIZE(se3d_tyre_def, coefficient_count),
+FIELDS(tyre_magic) = {INTEGER(se3d_tyre_def, law),           SIZE(se3d_tyre_def, coefficient_count),
                       INTEGER(se3d_tyre_def, measured_side), NUMBERS(se3d_tyre_def, mu),
-                      FIELDS_END};
+                      INTEGER(se3d_tyre_def, has_turn_slip), FIELDS_END};
 
 FILL(se3d_tyre_def, tyre_lagging)
 {

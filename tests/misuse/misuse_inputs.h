@@ -177,7 +177,7 @@ static void check_tyre(arguments *a, const settable *m)
     CHECK(!se3d_force_create_tyre(a->system, &def, &tyre));
     CHECK(!se3d_tyre_get_values(a->system, tyre, 0, SE3D_TYRE_VALUES, values));
     CHECK(!se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_CONTACT_Z, 1, values));
-    INVALID(se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_LAGGED_ANGLE, 2, values));
+    INVALID(se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_TURN_SLIP, 2, values));
     INVALID(se3d_tyre_get_values(a->system, tyre, SE3D_TYRE_VALUES, 1, values));
     INVALID(se3d_tyre_get_values(a->system, tyre, 0, 0, values));
     INVALID(se3d_tyre_get_values(a->system, tyre, 1, SIZE_MAX, values));

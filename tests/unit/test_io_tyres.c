@@ -131,6 +131,20 @@ static size_t count_lags(const char *tir, const char *text)
     return count;
 }
 
+static int has_turn_slip(const char *tir, const char *text)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    se3d_model *model = open(tir, text, &h, &error);
+    se3d_tyre_def def = se3d_tyre_def_default();
+    se3d_force tyre;
+    CHECK(model != NULL);
+    CHECK(model && !se3d_force_find(se3d_model_get_system(model), "t", &tyre));
+    CHECK(model && !se3d_force_get_tyre(se3d_model_get_system(model), tyre, &def));
+    se3d_model_destroy(model);
+    return def.has_turn_slip;
+}
+
 static void slip_lags_where_file_or_model_say_so(void)
 {
 #define LENGTHS "PTX1 = 1.8\nPTY1=2\nPTY2 = 2\n"
@@ -143,6 +157,18 @@ static void slip_lags_where_file_or_model_say_so(void)
     CHECK(count_lags(SI, MODEL(", relaxation_y: 0.4")) == 1);
     CHECK(count_lags(SI "LONGITUDINAL_STIFFNESS=3e5\nLATERAL_STIFFNESS = 1e5\n",
                      MODEL(", transient: true")) == 2);
+#define TURNING "PHYP1 = 1\nPHYP2 = 0.15\nQCRP1 = 0.2\nQDRP1 = 1\n"
+    CHECK(has_turn_slip(SI "USE_MODE = 5\n" TURNING, MODEL("")));
+    CHECK(has_turn_slip(SI "USE_MODE = -25\n" TURNING, MODEL("")));
+    CHECK(has_turn_slip(SI TURNING, MODEL(", turn_slip: true")));
+    CHECK(!has_turn_slip(SI "USE_MODE = 15\n", MODEL("")));
+    CHECK(!has_turn_slip(SI "USE_MODE = 14\n" TURNING, MODEL("")));
+    CHECK(!has_turn_slip(SI "USE_MODE = 5\n" TURNING, MODEL(", turn_slip: false")));
+    refuse(SI, MODEL(", turn_slip: true"), "PHYP1 = 0");
+    refuse(SI "PHYP1 = 1\nQCRP1 = 1\n", MODEL(", turn_slip: true"), "PHYP2 = 0");
+    refuse(SI "PHYP1 = 1\nQCRP1 = 1\nPHYP2 = 1\nQDRP1 = 2\n", MODEL(", turn_slip: true"),
+           "QDRP1 = 2");
+#undef TURNING
     refuse(SI, MODEL(", transient: true"), "neither PTX1 nor LONGITUDINAL_STIFFNESS");
     refuse(SI "PTX1=1\nPTY1 = 1\n", MODEL(", transient: true"), "PTY2");
 #undef LENGTHS

@@ -80,6 +80,7 @@ static const quantity_name tyre_names[] = {{"fx", SE3DI_TYRE_FX},
                                            {"contact", SE3DI_TYRE_CONTACT},
                                            {"lagged_ratio", SE3DI_TYRE_LAGGED_RATIO},
                                            {"lagged_angle", SE3DI_TYRE_LAGGED_ANGLE},
+                                           {"turn_slip", SE3DI_TYRE_TURN_SLIP},
                                            {NULL, SE3DI_STEPS}};
 static const quantity_name wheel_names[] = {
     {"camber", SE3DI_WHEEL_CAMBER},

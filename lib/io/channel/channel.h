@@ -92,6 +92,7 @@
     X(TYRE_CONTACT, 3, TYRE, 13, MOTION, 1, 0, 0, 0)                                               \
     X(TYRE_LAGGED_RATIO, 1, TYRE, 16, MOTION, 0, 0, 0, 0)                                          \
     X(TYRE_LAGGED_ANGLE, 1, TYRE, 17, MOTION, 0, 0, 0, 0)                                          \
+    X(TYRE_TURN_SLIP, 1, TYRE, 18, MOTION, -1, 0, 0, 0)                                            \
     X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
     X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
     X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \

@@ -190,6 +190,10 @@ static const se3di_key force_keys[] = {
     {"transient", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_tyre_def, is_transient), .types = " tyre ",
      .standard = "false, or `USE_MODE` of the file",
      .text = "slip lags, by the lengths below or those of the file"},
+    {"turn_slip", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_tyre_def, has_turn_slip), .types = " tyre ",
+     .standard = "false, or `USE_MODE` of the file",
+     .text = "mf52 and mf61: the wheel's turning about the road's normal counts, as in parking and "
+         "narrow curves"},
     {"relaxation_x", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_tyre_def, relaxation_x),
      .types = " tyre ", .standard = "that of the file, or none",
      .text = "relaxation length of the slip ratio, which then lags [m]"},

@@ -23,7 +23,7 @@ typedef struct tir {
     se3d_tyre_def *def;
     double length, force, angle, time, pressure; /* units [SI]; 0: not given */
     bool has[SE3D_TYRE_COEFFICIENTS];
-    bool has_law, in_table, is_transient;
+    bool has_law, in_table, is_transient, has_turn_slip;
     char unknown[LIST_SIZE]; /* keys */
     size_t unknown_count;
 } tir;
@@ -218,7 +218,8 @@ static bool is_idle(const char *key)
     return se3di_keys_contain(idle, key);
 }
 
-/* USE_MODE: from 11 to 25 in size slip lags, where the file has lengths. */
+/* USE_MODE: from 11 to 25 in size slip lags, where the file has lengths; with the last digit 5 turn
+ * slip counts, where the file has its coefficients. */
 static bool take_mode(tir *t, const char *text)
 {
     double mode = 0.0;
@@ -226,6 +227,7 @@ static bool take_mode(tir *t, const char *text)
         return false;
     }
     t->is_transient = fabs(mode) > 10.0;
+    t->has_turn_slip = fabs(fmod(fabs(mode), 10.0) - 5.0) < 0.5;
     return true;
 }
 
@@ -426,6 +428,7 @@ bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *fi
     }
     convert(&t);
     def->is_transient = t.is_transient && has_lengths(&t);
+    def->has_turn_slip = t.has_turn_slip && t.has[SE3D_TYRE_PHYP2] && t.has[SE3D_TYRE_QCRP1];
     list_missing(&t, missing);
     warn(&t, "has no effect here", t.unknown);
     warn(&t, "is missing and counts as without it", missing);

@@ -428,6 +428,9 @@ static void save_tyre(se3di_save *s, se3d_force force)
     se3di_save_number_but(s, "rolling_radius", def.rolling_radius, 0.0);
     se3di_save_number(s, "low_speed", def.low_speed);
     se3di_save_word(s, "transient", def.is_transient ? "true" : "false");
+    if (def.coefficients) {
+        se3di_save_word(s, "turn_slip", def.has_turn_slip ? "true" : "false");
+    }
     se3di_save_number_but(s, "relaxation_x", def.relaxation_x, 0.0);
     se3di_save_number_but(s, "relaxation_y", def.relaxation_y, 0.0);
 }
