@@ -52,6 +52,11 @@ void se3di_iopool_destroy(se3di_iopool *pool)
     }
 }
 
+const se3d_allocator *se3di_iopool_lend(const se3di_iopool *pool)
+{
+    return pool->allocator.alloc == malloc_alloc ? NULL : &pool->allocator;
+}
+
 static size_t round_up(size_t size)
 {
     const size_t unit = _Alignof(max_align_t);

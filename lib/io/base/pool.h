@@ -23,6 +23,8 @@ typedef struct se3di_iopool {
 /* `allocator` NULL: malloc. */
 void se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *allocator);
 void se3di_iopool_destroy(se3di_iopool *pool);
+/* The allocator for what libse3d makes: NULL, its own, where both would call malloc. */
+const se3d_allocator *se3di_iopool_lend(const se3di_iopool *pool);
 /* Zeroed memory, aligned as malloc's; NULL when there is none. */
 void *se3di_iopool_alloc(se3di_iopool *pool, size_t size);
 /* Zeroed array; NULL when there is none or count * size overflows. */

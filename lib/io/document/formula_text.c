@@ -101,7 +101,7 @@ bool se3di_formula_compile(se3di_formula *f, const char *place, const char *text
     def.text = text;
     def.symbols = symbols;
     def.symbol_count = count;
-    def.allocator = &f->reader->pool->allocator;
+    def.allocator = se3di_iopool_lend(f->reader->pool);
     const se3d_status status = se3d_expression_create(&def, &expression, &why);
     if (status == SE3D_ERR_NO_MEMORY) {
         return se3di_reader_fail_memory(f->reader);

@@ -48,13 +48,12 @@ void se3di_object_list(const se3di_object *object, const char *type, const char 
 void se3di_key_list_words(const se3di_key *key, const char *words[SE3DI_WORDS_MAX + 1])
 {
     size_t count = 0;
-    while (count < SE3DI_WORDS_MAX && key->words && key->words[count]) {
-        words[count] = key->words[count];
-        ++count;
-    }
     while (count < SE3DI_WORDS_MAX && key->name_of && *key->name_of((int32_t)count)) {
         words[count] = key->name_of((int32_t)count);
         ++count;
+    }
+    for (size_t k = 0; count < SE3DI_WORDS_MAX && key->words && key->words[k]; ++k) {
+        words[count++] = key->words[k];
     }
     words[count] = NULL;
 }

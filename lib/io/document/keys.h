@@ -75,12 +75,12 @@ typedef struct se3di_key {
     const char *key;
     se3di_kind kind;
     se3di_range range;
-    const char *structure;    /* where it goes: name of the structure, NULL: a function reads it */
-    size_t offset, size;      /* of the member in it */
-    double most;              /* of a COUNT: the largest */
-    const char *types;        /* that have it, a space at each end; NULL: all */
-    const char *const *words; /* NULL at the end */
-    const char *(*name_of)(int32_t); /* in their place: words of the core, "" behind the last */
+    const char *structure; /* where it goes: name of the structure, NULL: a function reads it */
+    size_t offset, size;   /* of the member in it */
+    double most;           /* of a COUNT: the largest */
+    const char *types;     /* that have it, a space at each end; NULL: all */
+    const char *(*name_of)(int32_t); /* words of the core, "" behind the last; NULL: none */
+    const char *const *words;        /* then these, NULL at the end; NULL: none */
     const char *object;              /* its name */
     bool required;
     const char *standard; /* what holds without it; NULL: nothing worth a word */

@@ -251,7 +251,7 @@ bool se3di_reader_try_symbol(se3di_reader *reader, const char *name, bool *is_go
     def.text = "1";
     def.symbols = &symbol;
     def.symbol_count = 1;
-    def.allocator = &reader->pool->allocator;
+    def.allocator = se3di_iopool_lend(reader->pool);
     const se3d_status status = se3d_expression_create(&def, &expression, NULL);
     se3d_expression_destroy(expression);
     *is_good = status >= 0;

@@ -116,7 +116,7 @@ bool se3di_read_compile(se3di_reader *reader, const se3di_node *node, se3d_expre
         return false;
     }
     def->text = def->text ? def->text : node->text; /* the node's has names of channels */
-    def->allocator = def->allocator ? def->allocator : &reader->pool->allocator;
+    def->allocator = def->allocator ? def->allocator : se3di_iopool_lend(reader->pool);
     if (!def->symbols) {
         def->symbols = reader->scope->symbols;
         def->symbol_count = reader->scope->symbol_count;

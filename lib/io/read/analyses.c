@@ -24,16 +24,13 @@
 
 static const char modes[] = "modes";
 
-/* The analyses of the library, and behind the last one those about an equilibrium. */
-static const char *name_of_type(int32_t type)
-{
-    const char *name = se3d_analysis_get_name(type);
-    return !*name && *se3d_analysis_get_name(type - 1) ? modes : name;
-}
+/* What is behind the last analysis of the library: those about an equilibrium. */
+static const char *const others[] = {modes, NULL};
 
 /* clang-format off */
 static const se3di_key analysis_keys[] = {
-    {"type", SE3DI_KIND_WORD, .name_of = name_of_type, .required = true, .text = ""},
+    {"type", SE3DI_KIND_WORD, .name_of = se3d_analysis_get_name, .words = others,
+     .required = true, .text = ""},
     {"formulation", SE3DI_KIND_WORD, .name_of = se3d_formulation_get_name, .standard = "auto",
      .text = "what describes the motion: angular velocities, Euler parameters, or coordinates of "
          "joints (dop853, gauss, rk45, rk4; elsewhere as romega); auto: joint where a method above "
@@ -136,21 +133,28 @@ static bool fail_value(se3di_reader *reader, const se3di_node *node, const char 
                : se3di_reader_fail_key(reader, node ? node : reader->model->root, key, "%s", text);
 }
 
+static void list_words(const char *key, const char *words[SE3DI_WORDS_MAX + 1])
+{
+    se3di_key_list_words(se3di_object_find(&se3di_object_analysis, NULL, key), words);
+}
+
 /* A word of a row, wherever it stands. */
 static bool read_word(se3di_reader *reader, const se3di_node *node, const char *key, size_t *word)
 {
     const char *words[SE3DI_WORDS_MAX + 1];
-    se3di_key_list_words(se3di_object_find(&se3di_object_analysis, NULL, key), words);
+    list_words(key, words);
     return se3di_read_word(reader, node, words, word);
 }
 
 static bool fail_missing_type(se3di_reader *reader, const se3di_node *node)
 {
+    const char *words[SE3DI_WORDS_MAX + 1];
     char list[256] = "";
     size_t used = 0;
-    for (int32_t type = 0; *name_of_type(type) && used < sizeof list; ++type) {
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", type > 0 ? ", " : "",
-                                 name_of_type(type));
+    list_words("type", words);
+    for (size_t k = 0; words[k] && used < sizeof list; ++k) {
+        used +=
+            (size_t)snprintf(list + used, sizeof list - used, "%s%s", k > 0 ? ", " : "", words[k]);
     }
     return se3di_reader_fail_key(reader, node, "type", "is missing, must be one of: %s", list);
 }
@@ -172,7 +176,8 @@ static bool read_words(se3di_reader *reader, const se3di_node *node, se3di_analy
     if (type && !read_word(reader, type, "type", &word)) {
         return false;
     }
-    entry->analysis.type = name_of_type((int32_t)word);
+    const char *const name = se3d_analysis_get_name((int32_t)word);
+    entry->analysis.type = *name ? name : modes;
     solver->analysis = entry->analysis.type == modes ? SE3D_ANALYSIS_EQUILIBRIUM : (int32_t)word;
     word = SE3D_FORMULATION_AUTO;
     if (formulation && !read_word(reader, formulation, "formulation", &word)) {

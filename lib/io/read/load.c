@@ -172,7 +172,7 @@ static bool create_system(se3di_reader *reader, const se3di_node *root)
     reader->model->log_ctx = reader->options->log_ctx;
     def.log = reader->options->log;
     def.log_ctx = reader->options->log_ctx;
-    def.allocator = &reader->pool->allocator;
+    def.allocator = se3di_iopool_lend(reader->pool);
     if (SE3D_FAILED(se3d_system_create(&def, &reader->model->system))) {
         return se3di_reader_fail_memory(reader);
     }

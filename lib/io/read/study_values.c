@@ -466,7 +466,7 @@ static bool read_cell(table *t, const char *cell, const char *name, double *valu
     se3d_expression_def def = se3d_expression_def_default();
     se3d_expression *expression = NULL;
     def.text = cell;
-    def.allocator = &t->reader->pool->allocator;
+    def.allocator = se3di_iopool_lend(t->reader->pool);
     const bool plain = cell[0] && cell[strspn(cell, "0123456789.eE+-")] == '\0';
     se3d_status status =
         plain ? se3d_expression_create(&def, &expression, NULL) : SE3D_ERR_EXPRESSION;

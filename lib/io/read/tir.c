@@ -82,7 +82,7 @@ static bool take_number(const tir *t, const char *key, const char *text, double 
         return fail(t, key, "must be a number such as 1.25 or -3e-2");
     }
     def.text = text + (*text == '+');
-    def.allocator = &t->reader->pool->allocator;
+    def.allocator = se3di_iopool_lend(t->reader->pool);
     se3d_status status = se3d_expression_create(&def, &expression, NULL);
     if (status == SE3D_ERR_NO_MEMORY) {
         return se3di_reader_fail_memory(t->reader);

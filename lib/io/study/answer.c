@@ -148,7 +148,7 @@ static se3d_status take_number(request *q, const char *name, const se3di_node *n
     se3d_expression *expression = NULL;
     const bool plain = node->kind == SE3DI_NODE_SCALAR && node->plain && is_number(node->text);
     def.text = plain ? node->text : "";
-    def.allocator = &q->pool->allocator;
+    def.allocator = se3di_iopool_lend(q->pool);
     se3d_status status =
         plain ? se3d_expression_create(&def, &expression, NULL) : SE3D_ERR_EXPRESSION;
     if (status >= 0) {

@@ -190,7 +190,7 @@ static se3d_status eval_expression(trial *t, size_t index, const double *measure
     def.text = entry->measures[index].node->text;
     def.symbols = symbols;
     def.symbol_count = used;
-    def.allocator = &t->model->pool.allocator;
+    def.allocator = se3di_iopool_lend(&t->model->pool);
     const se3d_status status = se3d_expression_create(&def, &expression, NULL);
     if (status >= 0) {
         (void)se3d_expression_eval(expression, NULL, value); /* not finite is told below */
