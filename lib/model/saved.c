@@ -48,10 +48,6 @@ static void save_ranks(se3di_saved *saved, const se3di_model *model)
     for (size_t k = 0; k < saved->left_out.count; ++k) {
         left_out[k] = (uint8_t)model->rows[k].left_out;
     }
-    saved->ranks_known = model->ranks_known;
-    saved->left_out_count = model->left_out_count;
-    saved->left_out_row = model->left_out_row;
-    saved->left_out_gap = model->left_out_gap;
 }
 
 static void restore_ranks(const se3di_saved *saved, se3di_model *model)
@@ -69,11 +65,24 @@ static void restore_ranks(const se3di_saved *saved, se3di_model *model)
     if (other) {
         se3di_model_follow_breaks(model);
     }
-    model->ranks_known = saved->ranks_known;
-    model->left_out_count = saved->left_out_count;
-    model->left_out_row = saved->left_out_row;
-    model->left_out_gap = saved->left_out_gap;
 }
+
+/* What is copied as it is. */
+#define NUMBERS(X)                                                                                 \
+    X(ranks_known)                                                                                 \
+    X(left_out_count)                                                                              \
+    X(left_out_row)                                                                                \
+    X(left_out_gap)                                                                                \
+    X(work_valid)                                                                                  \
+    X(settled)                                                                                     \
+    X(shows_before)                                                                                \
+    X(history_tag)                                                                                 \
+    X(history_redundant)                                                                           \
+    X(history_inputs)                                                                              \
+    X(history_values)                                                                              \
+    X(time)                                                                                        \
+    X(time_rest)                                                                                   \
+    X(rest_time)
 
 /* All but the history. */
 static void save_state(se3di_saved *saved, const se3di_model *model)
@@ -98,16 +107,9 @@ static void save_state(se3di_saved *saved, const se3di_model *model)
     memcpy(saved->power, model->power, sizeof saved->power);
     saved->contact_step = model->contacts.step;
     saved->contact_time = model->contacts.time;
-    saved->work_valid = model->work_valid;
-    saved->settled = model->settled;
-    saved->shows_before = model->shows_before;
-    saved->history_tag = model->history_tag;
-    saved->history_redundant = model->history_redundant;
-    saved->history_inputs = model->history_inputs;
-    saved->history_values = model->history_values;
-    saved->time = model->time;
-    saved->time_rest = model->time_rest;
-    saved->rest_time = model->rest_time;
+#define SAVE(member) saved->member = model->member;
+    NUMBERS(SAVE)
+#undef SAVE
 }
 
 se3d_status se3di_saved_fill(se3di_saved *saved, const se3di_model *model,
@@ -186,18 +188,11 @@ void se3di_saved_restore(const se3di_saved *saved, se3di_model *model)
     restore_ranks(saved, model);
     memcpy(model->work, saved->work, sizeof saved->work);
     memcpy(model->power, saved->power, sizeof saved->power);
-    model->work_valid = saved->work_valid;
-    model->settled = saved->settled;
-    model->shows_before = saved->shows_before;
     model->remembers = 1;
     model->history_count = saved->history.count;
-    model->history_tag = saved->history_tag;
-    model->history_redundant = saved->history_redundant;
-    model->history_inputs = saved->history_inputs;
-    model->history_values = saved->history_values;
-    model->time = saved->time;
-    model->time_rest = saved->time_rest;
-    model->rest_time = saved->rest_time;
+#define RESTORE(member) model->member = saved->member;
+    NUMBERS(RESTORE)
+#undef RESTORE
 }
 
 static void release(se3di_saved_array *array, const se3d_allocator *allocator, size_t size)
