@@ -79,14 +79,26 @@ static se3d_shape add_plane(bench *b, se3d_body body, se3d_material material, co
     return handle;
 }
 
+static void add_mesh(bench *b, se3d_body body, se3d_material material, const double *vertices,
+                     size_t vertex_count, const uint32_t *triangles, size_t triangle_count)
+{
+    se3d_shape_def wall = se3d_shape_def_default();
+    se3d_shape handle;
+    wall.body = body;
+    wall.material = material;
+    wall.vertices = vertices;
+    wall.vertex_count = vertex_count;
+    wall.triangles = triangles;
+    wall.triangle_count = triangle_count;
+    must(b, se3d_shape_create_mesh(b->system, &wall, &handle));
+}
+
 /* The rings of the funnel, two triangles a side, and a gate below it. */
 static void add_funnel(bench *b, se3d_material material)
 {
     const double width = width_of(b);
     double vertices[FUNNEL_RINGS * FUNNEL_SIDES][3];
     uint32_t triangles[2 * (FUNNEL_RINGS - 1) * FUNNEL_SIDES][3];
-    se3d_shape_def wall = se3d_shape_def_default();
-    se3d_shape handle;
     for (uint32_t ring = 0, t = 0; ring < FUNNEL_RINGS; ++ring) {
         for (uint32_t k = 0; k < FUNNEL_SIDES; ++k) {
             const double angle = 2.0 * PI * k / FUNNEL_SIDES;
@@ -103,12 +115,8 @@ static void add_funnel(bench *b, se3d_material material)
             }
         }
     }
-    wall.material = material;
-    wall.vertices = vertices[0];
-    wall.vertex_count = sizeof vertices / sizeof *vertices;
-    wall.triangles = triangles[0];
-    wall.triangle_count = sizeof triangles / sizeof *triangles;
-    must(b, se3d_shape_create_mesh(b->system, &wall, &handle));
+    add_mesh(b, (se3d_body){0, 0}, material, vertices[0], sizeof vertices / sizeof *vertices,
+             triangles[0], sizeof triangles / sizeof *triangles);
     b->gate = add_plane(b, (se3d_body){0, 0}, material,
                         (double[3]){0.0, 0.0, width * funnel[FUNNEL_RINGS - 1][1]},
                         (double[3]){0.0, 0.0, 1.0});
@@ -121,8 +129,6 @@ static void add_shell(bench *b, se3d_material material)
     const double ends[2] = {-0.009, 1.2 * width_of(b)};
     double vertices[2 * DRUM_PLANES][3];
     uint32_t triangles[2 * DRUM_PLANES][3];
-    se3d_shape_def wall = se3d_shape_def_default();
-    se3d_shape handle;
     for (uint32_t k = 0; k < DRUM_PLANES; ++k) {
         const double angle = 2.0 * PI * (k + 0.5) / DRUM_PLANES;
         const uint32_t at = 2 * k, next = 2 * ((k + 1) % DRUM_PLANES);
@@ -134,13 +140,8 @@ static void add_shell(bench *b, se3d_material material)
         memcpy(triangles[at], (uint32_t[3]){at, next, next + 1}, sizeof *triangles);
         memcpy(triangles[at + 1], (uint32_t[3]){at, next + 1, at + 1}, sizeof *triangles);
     }
-    wall.body = b->drum;
-    wall.material = material;
-    wall.vertices = vertices[0];
-    wall.vertex_count = sizeof vertices / sizeof *vertices;
-    wall.triangles = triangles[0];
-    wall.triangle_count = sizeof triangles / sizeof *triangles;
-    must(b, se3d_shape_create_mesh(b->system, &wall, &handle));
+    add_mesh(b, b->drum, material, vertices[0], sizeof vertices / sizeof *vertices, triangles[0],
+             sizeof triangles / sizeof *triangles);
 }
 
 /* A floor and four sides; or planes around the y axis through the middle, on a body that turns,

@@ -158,18 +158,10 @@ static void a_disk_rolls_on_its_rim_about_a_centre_at_rest(void)
     for (size_t n = 0; n < CHOICES; ++n) {
         scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, k);
         /* turned about y: e1 = x of the body looks down, e3 leans to +x */
-        const double J[3] = {Jt, Jt, Ja}, about_y[3] = {0.0, 1.0, 0.0};
         const double r[3] = {0.0, 0.0, R * q + 0.5 * h * c - sink};
         const double w[3] = {-rate * q, 0.0, 0.5 * h * rate * q / R};
         double at[3], p[4];
-        se3d_body disk = scene_body(&s, m, J, r, scene_zero);
-        scene_turn(&s, disk, about_y, tilt);
-        CHECK(se3d_body_set_angular_velocity(s.system, disk, w) == SE3D_OK);
-        se3d_shape_def solid = scene_shape(&s, disk);
-        se3d_shape shape;
-        solid.radius = R;
-        solid.length = h;
-        CHECK(se3d_shape_create_cylinder(s.system, &solid, &shape) == SE3D_OK);
+        const se3d_body disk = scene_disk(&s, m, R, h, r, tilt, w);
         scene_floor(&s, 0.0);
         scene_solve(&s, choices[n].method, choices[n].formulation, 0.0, 1e-7);
         for (int step = 1; step <= 4; ++step) {

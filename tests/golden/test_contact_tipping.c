@@ -221,8 +221,6 @@ static void a_coin_spins_down_and_lies_flat(void)
     const double R = 0.05, h = 0.02, m = 0.2, k = 1e5, tilt = 0.3;
     for (size_t n = 0; n < 3; ++n) {
         se3d_material_def stuff = scene_stuff(0.5, 0.3, k);
-        const double J[3] = {m * (3.0 * R * R + h * h) / 12.0, m * (3.0 * R * R + h * h) / 12.0,
-                             0.5 * m * R * R};
         const double r[3] = {0.0, 0.0, R * sin(tilt) + 0.5 * h * cos(tilt)};
         const double w[3] = {-8.0, 0.0, 1.0};
         double at[3], p[4], last;
@@ -230,14 +228,7 @@ static void a_coin_spins_down_and_lies_flat(void)
         stuff.torsional_friction = 0.1;
         scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
         se3d_energy energy;
-        se3d_body coin = scene_body(&s, m, J, r, scene_zero);
-        scene_turn(&s, coin, about_y, tilt);
-        CHECK(se3d_body_set_angular_velocity(s.system, coin, w) == SE3D_OK);
-        se3d_shape_def solid = scene_shape(&s, coin);
-        se3d_shape shape;
-        solid.radius = R;
-        solid.length = h;
-        CHECK(se3d_shape_create_cylinder(s.system, &solid, &shape) == SE3D_OK);
+        const se3d_body coin = scene_disk(&s, m, R, h, r, tilt, w);
         scene_floor(&s, 0.0);
         scene_solve(&s, choices[n].method, choices[n].formulation, 0.0, 1e-6);
         scene_run(&s, 0.0);

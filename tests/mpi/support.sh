@@ -11,6 +11,15 @@ fi
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1 OMPI_ALLOW_RUN_AS_ROOT=1 \
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
 
+# In place of the program: tests/test_mpi_NAME.
+share_test() {
+    SE3D_MPI_PROGRAM=${SE3D_BUILD_DIR:?}/tests/test_mpi_$1
+    if [ ! -x "$SE3D_MPI_PROGRAM" ]; then
+        echo "SKIPPED: test_mpi_$1 is not built here" >&2
+        exit 0
+    fi
+}
+
 # share RANKS WORDS...: the program on so many processes; $status, $dir/out, $dir/err.
 share() {
     ranks=$1

@@ -3,11 +3,7 @@
 # Run with SE3D_MPI_PROGRAM and SE3D_BUILD_DIR set.
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/mpi/support.sh"
-SE3D_MPI_PROGRAM=${SE3D_BUILD_DIR:?}/tests/test_mpi_memory
-if [ ! -x "$SE3D_MPI_PROGRAM" ]; then
-    echo 'SKIPPED: test_mpi_memory is not built here' >&2
-    exit 0
-fi
+share_test memory
 
 share 2 1000000
 holds "enough memory" test "$status" -eq 0

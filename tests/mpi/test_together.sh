@@ -3,11 +3,7 @@
 # Run with SE3D_MPI_PROGRAM and SE3D_BUILD_DIR set.
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/mpi/support.sh"
-SE3D_MPI_PROGRAM=${SE3D_BUILD_DIR:?}/tests/test_mpi_alone
-if [ ! -x "$SE3D_MPI_PROGRAM" ]; then
-    echo 'SKIPPED: test_mpi_alone is not built here' >&2
-    exit 0
-fi
+share_test alone
 
 share 2
 holds "one of two fails alone: $(tail -n 3 "$dir/err")" test "$status" -eq 0

@@ -81,33 +81,49 @@ static se3d_status use_study(se3d_study *study, char *rows, se3d_model_error *er
     return status;
 }
 
+/* A study of a text, of which allocation k fails. */
+typedef struct opened {
+    support_counting counting;
+    se3d_allocator allocator;
+    se3d_model *model;
+    se3d_study *study;
+    se3d_model_error error;
+} opened;
+
+static se3d_status open_study(opened *o, const char *words, size_t k, int for_ever)
+{
+    se3d_model_options options = se3d_model_options_default();
+    *o = (opened){.counting = {.fail_at = k, .for_ever = for_ever}};
+    o->allocator = support_counting_allocator(&o->counting);
+    options.allocator = &o->allocator;
+    const se3d_status status =
+        se3d_model_read_text(words, strlen(words), "m.yaml", &options, &o->model, &o->error);
+    return status < 0 ? status : se3d_study_create(o->model, &o->study, &o->error);
+}
+
+static void close_study(opened *o)
+{
+    se3d_study_destroy(o->study);
+    se3d_model_destroy(o->model);
+    CHECK(o->counting.live == 0 && o->counting.bytes == 0 && o->counting.wrong == 0);
+}
+
 static attempt try_once(size_t k, int for_ever)
 {
-    support_counting counting = {.fail_at = k, .for_ever = for_ever};
-    const se3d_allocator allocator = support_counting_allocator(&counting);
-    se3d_model_options options = se3d_model_options_default();
-    se3d_model *model = NULL;
-    se3d_study *study = NULL;
-    se3d_model_error error = {0, 0, ""};
+    opened o;
     attempt a = {SE3D_OK, 0, ""};
-    options.allocator = &allocator;
-    a.status = se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+    a.status = open_study(&o, text, k, for_ever);
     if (a.status >= 0) {
-        a.status = se3d_study_create(model, &study, &error);
-    }
-    if (a.status >= 0) {
-        a.status = use_study(study, a.rows, &error);
+        a.status = use_study(o.study, a.rows, &o.error);
         CHECK(a.status < 0 || a.rows[0]);
     }
-    a.failed = counting.failed;
-    CHECK(a.status >= 0 || error.message[0] != '\0');
-    counting.fail_at = 0;
-    if (a.status < 0 && study) { /* there is memory again */
-        CHECK(use_study(study, a.rows, &error) == SE3D_OK);
+    a.failed = o.counting.failed;
+    CHECK(a.status >= 0 || o.error.message[0] != '\0');
+    o.counting.fail_at = 0;
+    if (a.status < 0 && o.study) { /* there is memory again */
+        CHECK(use_study(o.study, a.rows, &o.error) == SE3D_OK);
     }
-    se3d_study_destroy(study);
-    se3d_model_destroy(model);
-    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    close_study(&o);
     return a;
 }
 
@@ -135,30 +151,21 @@ static const char still[] =
 
 static attempt differentiate_once(size_t k, int for_ever)
 {
-    support_counting counting = {.fail_at = k, .for_ever = for_ever};
-    const se3d_allocator allocator = support_counting_allocator(&counting);
-    se3d_model_options options = se3d_model_options_default();
-    se3d_model *model = NULL;
-    se3d_study *study = NULL;
-    se3d_model_error error = {0, 0, ""};
+    opened o;
     attempt a = {SE3D_OK, 0, ""};
     double value = 0.0, slope = 0.0;
     const double h = 1.0;
-    options.allocator = &allocator;
-    a.status = se3d_model_read_text(still, strlen(still), "m.yaml", &options, &model, &error);
-    a.status = a.status < 0 ? a.status : se3d_study_create(model, &study, &error);
+    a.status = open_study(&o, still, k, for_ever);
     if (a.status >= 0) {
-        a.status = se3d_study_eval_sensitivity(study, 0, &value, &slope, NULL, &error);
+        a.status = se3d_study_eval_sensitivity(o.study, 0, &value, &slope, NULL, &o.error);
     }
     if (a.status >= 0) {
         CHECK(fabs(slope - 1.0) < 1e-12);
-        a.status = se3d_study_eval_unknowns(study, &h, &value, &slope, &error);
+        a.status = se3d_study_eval_unknowns(o.study, &h, &value, &slope, &o.error);
     }
-    a.failed = counting.failed;
-    CHECK(a.status >= 0 ? fabs(slope - 1.0) < 1e-9 : error.message[0] != '\0');
-    se3d_study_destroy(study);
-    se3d_model_destroy(model);
-    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    a.failed = o.counting.failed;
+    CHECK(a.status >= 0 ? fabs(slope - 1.0) < 1e-9 : o.error.message[0] != '\0');
+    close_study(&o);
     return a;
 }
 

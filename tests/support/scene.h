@@ -117,6 +117,23 @@ static inline se3d_shape_def scene_shape(const scene *s, se3d_body body)
     return def;
 }
 
+/* A cylinder about z, solid and of mass m, that is turned about y and spins with w. */
+static inline se3d_body scene_disk(scene *s, double m, double radius, double height,
+                                   const double r[3], double tilt, const double w[3])
+{
+    const double across = m * (3.0 * radius * radius + height * height) / 12.0;
+    const double J[3] = {across, across, 0.5 * m * radius * radius}, y[3] = {0.0, 1.0, 0.0};
+    const se3d_body disk = scene_body(s, m, J, r, scene_zero);
+    scene_turn(s, disk, y, tilt);
+    CHECK(se3d_body_set_angular_velocity(s->system, disk, w) == SE3D_OK);
+    se3d_shape_def solid = scene_shape(s, disk);
+    se3d_shape shape;
+    solid.radius = radius;
+    solid.length = height;
+    CHECK(se3d_shape_create_cylinder(s->system, &solid, &shape) == SE3D_OK);
+    return disk;
+}
+
 /* A solid ball. */
 static inline se3d_body scene_ball(scene *s, double radius, double mass, const double r[3],
                                    const double v[3])
