@@ -147,10 +147,11 @@ void se3di_convex_store(const se3di_convex *convex, se3di_model *model, double t
     for (size_t k = 0; k < convex->contact_count; ++k) {
         most += convex->contacts[k].held;
     }
+    most = fmax(0.0, most);
     for (size_t k = 0; k < model->contacts.next_count && sum > most; ++k) {
         se3di_body_contact *r = &model->contacts.next[k];
         if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
-            r->energy *= fmax(0.0, most) / sum;
+            r->energy *= most / sum;
         }
     }
 }

@@ -227,6 +227,37 @@ static void a_stack_of_ten_stands_without_creep(void)
 }
 
 /* In a row; the first is pushed over. */
+/* Edges of equal boxes lie on each other: what touches must not change by turns of 1e-6. */
+static void a_pyramid_stands_without_creep(void)
+{
+    enum { ROWS = 6, COUNT = ROWS * (ROWS + 1) / 2 };
+    const double size[3] = {0.1, 0.1, 0.1};
+    se3d_body box[COUNT];
+    double before[COUNT][3], r[3];
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.1, 1e5);
+    int count = 0;
+    for (int row = 0; row < ROWS; ++row) {
+        for (int k = 0; k < ROWS - row; ++k) {
+            const double at[3] = {0.105 * (k + 0.5 * row), 0.0, 0.05 + 0.1 * row};
+            box[count++] = scene_box(&s, size, 1.0, at, scene_zero);
+        }
+    }
+    scene_floor(&s, 0.0);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    for (int second = 0; second < 2; ++second) {
+        CHECK(scene_run(&s, 0.7 + second));
+        CHECK(se3d_system_count_contacts(s.system) == 4 * ROWS + 8 * (COUNT - ROWS));
+        for (int k = 0; k < COUNT; ++k) {
+            CHECK(se3d_body_get_position(s.system, box[k], r) == SE3D_OK);
+            for (int c = 0; c < 3 && second; ++c) {
+                CHECK(fabs(r[c] - before[k][c]) < 1e-6);
+            }
+            memcpy(before[k], r, sizeof r);
+        }
+    }
+    scene_end(&s);
+}
+
 static void set_up_dominoes(const scene *begun, int count, se3d_body *stones)
 {
     scene s = *begun;
@@ -548,6 +579,31 @@ static void what_is_pressed_across_gravity_rests_on_its_spring(void)
     scene_end(&s);
 }
 
+/* A disk that rolls around on its rim may give more in a step than its contacts held. */
+static void the_energy_of_a_rolling_disk_stays_a_number(void)
+{
+    const double J[3] = {1.2506666666666669e-3, 1.2506666666666669e-3, 2.5e-3},
+                 r[3] = {0.0, 0.0, 0.031457788644385171};
+    const double axis[3] = {0.0, 1.0, 0.0}, w[3] = {-10.799331626024189, 0.0, 0.21598663252048378};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, 1e6);
+    const se3d_body disk = scene_body(&s, 0.5, J, r, scene_zero);
+    se3d_shape_def def = scene_shape(&s, disk);
+    se3d_shape made;
+    se3d_energy energy;
+    def.radius = 0.1;
+    def.length = 0.004;
+    scene_turn(&s, disk, axis, 0.3);
+    CHECK(se3d_body_set_angular_velocity(s.system, disk, w) == SE3D_OK);
+    CHECK(se3d_shape_create_cylinder(s.system, &def, &made) == SE3D_OK);
+    scene_floor(&s, 0.0);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+    for (int k = 1; k <= 20; ++k) {
+        scene_run(&s, 0.02 * k);
+        CHECK(se3d_system_get_energy(s.system, &energy) == SE3D_OK && isfinite(energy.total));
+    }
+    scene_end(&s);
+}
+
 static void thin_cards_that_fall_fast_land(void)
 {
     const double size[3] = {0.09, 0.06, 0.001}, low[3] = {0.0, 0.0, 0.0005};
@@ -598,6 +654,7 @@ int main(void)
     RUN(impacts_have_the_restitution_typed);
     RUN(sliding_impacts_take_mu_times_the_normal_impulse);
     RUN(a_stack_of_ten_stands_without_creep);
+    RUN(a_pyramid_stands_without_creep);
     RUN(twenty_dominoes_fall);
     RUN(many_bodies_are_stepped_by_convex);
     RUN(bodies_far_apart_are_no_crowd);
@@ -609,6 +666,7 @@ int main(void)
     RUN(what_joints_hold_touches_as_with_verlet);
     RUN(the_audit_balances);
     RUN(what_is_pressed_across_gravity_rests_on_its_spring);
+    RUN(the_energy_of_a_rolling_disk_stays_a_number);
     RUN(thin_cards_that_fall_fast_land);
     RUN(what_it_does_not_know_is_refused);
     return check_finish();

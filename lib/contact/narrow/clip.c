@@ -8,7 +8,7 @@
 #include <math.h>
 
 #define CUT_CORNERS (2 * SE3DI_FACE_CORNERS)
-#define SLACK       1e-6 /* of the face's size: corners beyond a side by less are not cut off */
+#define SLACK       1e-4 /* of the face's size: corners beyond a side by less stay, at the side */
 
 typedef struct cut {
     int count;
@@ -24,7 +24,10 @@ static void cut_add(cut *to, const double x[3], uint32_t id)
     }
 }
 
-/* What of `from` is on the inner side (n . x <= level + slack) of one side of the face. */
+/* What of `from` is on the inner side (n . x <= level) of one side of the face. A corner that is
+ * beyond it by less than the slack is moved to it: if edges lie on each other but for little, as
+ * those of equal boxes in a wall, the least turn would cut off another corner, and every corner has
+ * the whole stiffness of the materials. */
 static void cut_side(const cut *from, const double n[3], double level, double slack, uint32_t side,
                      cut *to)
 {
@@ -35,13 +38,15 @@ static void cut_side(const cut *from, const double n[3], double level, double sl
         const double *b = from->corner[next];
         double high_a = se3di_dot(n, a) - level;
         double high_b = se3di_dot(n, b) - level;
+        double x[3];
         if (high_a <= slack) {
-            cut_add(to, a, from->id[k]);
+            se3di_copy(a, x);
+            se3di_add_scaled(-fmax(0.0, high_a), n, x);
+            cut_add(to, x, from->id[k]);
         }
-        int crosses = (high_a <= slack) != (high_b <= slack);
+        int crosses = high_a > slack ? high_b <= 0.0 : high_a <= 0.0 && high_b > slack;
         if (crosses && (from->count > 2 || k == 0)) {
-            double x[3];
-            double t = fmin(1.0, fmax(0.0, high_a / (high_a - high_b)));
+            double t = high_a / (high_a - high_b);
             se3di_sub(b, a, x);
             se3di_scale(t, x, x);
             se3di_add(a, x, x);
