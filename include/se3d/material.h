@@ -25,7 +25,8 @@ typedef struct se3d_material_def {
     double young;              /* [Pa] > 0, required for hertz_mindlin */
     double poisson;            /* 0 .. 0.5, default 0.3 */
     double cohesion;           /* >= 0 [J/m^3]: attraction per area of contact, 2 pi R* overlap */
-    double adhesion; /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
+    double adhesion;  /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
+    const char *name; /* copied; NULL or unique among materials */
 } se3d_material_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */
@@ -44,15 +45,32 @@ static inline se3d_material_def se3d_material_def_default(void)
 SE3D_API se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
                                           se3d_material *material);
 
-/* Change a material, for all shapes and particles made of it. The next step begins with it.
+/* Change a material, for all shapes and particles made of it. The next step begins with it;
+ * def->name is not looked at.
  * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT. @since 0.1 */
 SE3D_API se3d_status se3d_material_set(se3d_system *system, se3d_material material,
                                        const se3d_material_def *def);
 
-/* Get a material. Set def->struct_size before the call. @return OK, NULL, STALE_HANDLE,
- * INVALID_ARGUMENT (struct_size). @since 0.1 */
+/* Get a material. Set def->struct_size before the call.
+ * @param[out] def  its name (NULL: none) is valid as long as the material lives
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (struct_size).
+ * @since 0.1 */
 SE3D_API se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                        se3d_material_def *def);
+
+/* Find a material by its name.
+ * @param[in] name  UTF-8
+ * @return OK, NULL, INVALID_ARGUMENT (no such name).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_material_find(const se3d_system *system, const char *name,
+                                        se3d_material *material);
+
+/* Get the name of a material.
+ * @param[out] name  "" if it has none; valid as long as the material lives
+ * @return OK, NULL, STALE_HANDLE.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_material_get_name(const se3d_system *system, se3d_material material,
+                                            const char **name);
 
 /* Count the materials of a system. @return the number; 0 for NULL. @since 0.1 */
 SE3D_API size_t se3d_system_count_materials(const se3d_system *system);

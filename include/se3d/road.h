@@ -73,6 +73,13 @@ SE3D_API se3d_status se3d_road_find(const se3d_system *system, const char *name,
 SE3D_API se3d_status se3d_road_get_def(const se3d_system *system, se3d_road road,
                                        se3d_road_def *def);
 
+/* Define a road again: see se3d_body_set_def. Tyres stay on it; while there are any, so does its
+ * body (IN_USE).
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT, IN_USE, NO_MEMORY.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_road_set_def(se3d_system *system, se3d_road road,
+                                       const se3d_road_def *def);
+
 /* Get the name of a road.
  * @param[out] name  "" if it has none; valid as long as the road lives
  * @return OK, NULL, STALE_HANDLE.

@@ -50,12 +50,12 @@ SE3D_API void se3d_system_destroy(se3d_system *system);
 SE3D_API se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept);
 
 /* Let elements be defined again: as long as this is on, bodies, markers, constraints, force
- * elements (not states) and wheels that are created with the name of one of their kind take its
- * place, with its handle, and all else stays. A body also takes the state of its definition; what
- * was made of its pose (joints, drivers, forces, markers and wheels on it) does not follow, and is
- * defined again after it. Then the system is to the bit one that was built so from the start, if it
- * has not moved yet. What has another structure (a joint of another type, other rows) fails with
- * INVALID_ARGUMENT, and what was there stays as it was. A clone does not replace.
+ * elements (not states), wheels and roads that are created with the name of one of their kind take
+ * its place, with its handle, and all else stays. A body also takes the state of its definition;
+ * what was made of its pose (joints, drivers, forces, markers, wheels and roads on it) does not
+ * follow, and is defined again after it. Then the system is to the bit one that was built so from
+ * the start, if it has not moved yet. What has another structure (a joint of another type, other
+ * rows) fails with INVALID_ARGUMENT, and what was there stays as it was. A clone does not replace.
  * @param[in] on  not 0: from now on; 0: no longer
  * @return OK, NULL, STATE (within a callback). @since 0.1 */
 SE3D_API se3d_status se3d_system_set_replacing(se3d_system *system, int32_t on);

@@ -147,18 +147,21 @@ se3d_status se3di_model_add_material(se3di_model *model, const se3di_material *m
     static const se3di_override none = SE3DI_OVERRIDE_NONE;
     size_t n = model->material_slots.count;
     size_t m = n + 1;
+    char *name;
     SE3DI_RESERVE(model, materials, material_capacity, m, sizeof *model->materials);
     SE3DI_RESERVE(model, overrides, override_capacity, m * m, sizeof *model->overrides);
     SE3DI_RESERVE(model, pairs, pair_capacity, m * m, sizeof *model->pairs);
     SE3DI_TRY(se3di_slots_reserve(&model->material_slots, &model->allocator));
+    SE3DI_TRY(se3di_model_copy_name(model, &model->material_slots, material->name, &name));
     for (size_t k = m * m; k-- > 0;) { /* rows become longer, from the last one on */
         size_t row = k / m;
         size_t column = k % m;
         model->overrides[k] = row < n && column < n ? model->overrides[row * n + column] : none;
     }
     model->materials[n] = *material;
+    model->materials[n].name = name;
     model->materials[n].users = 0;
-    *handle = se3di_slots_add(&model->material_slots);
+    *handle = se3di_model_add_named(&model->material_slots, 0, name);
     return SE3D_OK;
 }
 
@@ -166,13 +169,14 @@ void se3di_model_remove_material(se3di_model *model, uint32_t material)
 {
     size_t n = model->material_slots.count;
     size_t to = 0;
+    char *name = model->materials[material].name;
     for (size_t k = 0; k < n * n; ++k) {
         if (k / n != material && k % n != material) {
             model->overrides[to++] = model->overrides[k];
         }
     }
     se3di_array_close_gap(model->materials, n, material, 1, sizeof *model->materials);
-    se3di_slots_remove(&model->material_slots, material);
+    se3di_model_remove_named(model, &model->material_slots, material, 0, name);
     for (size_t k = 0; k < model->shape_slots.count; ++k) {
         se3di_index_lower_signed(&model->shapes[k].material, material);
     }

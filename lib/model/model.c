@@ -35,7 +35,7 @@ static const kind kinds[] = {
     NAMED(wheel_slots, wheels, se3di_wheel),
     NAMED(road_slots, roads, se3di_road),
     BARE(function_slots, functions, se3di_function),
-    BARE(material_slots, materials, se3di_material),
+    NAMED(material_slots, materials, se3di_material),
     NAMED(shape_slots, shapes, se3di_shape),
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, SHAPES = KINDS - 1 };

@@ -12,6 +12,7 @@ typedef enum se3di_contact_law {
 } se3di_contact_law;
 
 typedef struct se3di_material {
+    char *name; /* NULL: none */
     double density;
     double young, poisson; /* hertz_mindlin */
     double friction;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Checks of arguments at the public boundary. */
 #include "base/text.h"
+#include "joint/joint.h"
 #include "math/direction.h"
 #include "math/vec3.h"
 #include "system/system_internal.h"
@@ -47,6 +48,21 @@ se3d_status se3di_check_direction(se3d_system *system, const char *what, const d
 {
     const se3d_status status = se3di_direction_read(what, values, unit, &system->error);
     return status < 0 ? se3di_log_error(&system->error, status) : SE3D_OK;
+}
+
+se3d_status se3di_check_axes(se3d_system *system, const double forward[3], const char *what,
+                             const double up[3], double axes[9])
+{
+    double x[3];
+    SE3DI_TRY(se3di_check_direction(system, "forward", forward, x));
+    SE3DI_TRY(se3di_check_direction(system, what, up, axes + 6));
+    if (!se3di_joint_triad_take(axes + 6, x, axes, axes + 3)) {
+        return SE3DI_FAIL_OF(system, "forward", SE3D_ERR_INVALID_ARGUMENT,
+                             " = (%g, %g, %g) and %s = (%g, %g, %g) are parallel, must be two "
+                             "directions",
+                             forward[0], forward[1], forward[2], what, up[0], up[1], up[2]);
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3di_check_orientation(se3d_system *system, const char *what, const double p[4],
@@ -179,7 +195,7 @@ static int may_be_replaced(const se3di_model *model, const se3di_slots *slots)
 {
     return model->replaces && (slots == &model->body_slots || slots == &model->marker_slots ||
                                slots == &model->constraint_slots || slots == &model->force_slots ||
-                               slots == &model->wheel_slots);
+                               slots == &model->wheel_slots || slots == &model->road_slots);
 }
 
 se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char *what)

@@ -145,9 +145,12 @@ se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *d
     SE3DI_CREATE(system, material);
     se3d_material_def full = se3d_material_def_default();
     SE3DI_TRY(se3di_check_def(system, "material def", def, &full, sizeof full));
+    SE3DI_TRY(
+        se3di_check_new_name(system, &system->model.material_slots, 0, "material", full.name));
     SE3DI_TRY(check_material(system, &full));
-    const se3di_material data = read_material(&full);
+    se3di_material data = read_material(&full);
     se3di_handle handle;
+    memcpy(&data.name, &full.name, sizeof data.name); /* copied by the model */
     if (se3di_model_add_material(&system->model, &data, &handle) < 0) {
         return SE3DI_FAIL(system, SE3D_ERR_NO_MEMORY, "no memory for a material");
     }
@@ -167,6 +170,7 @@ se3d_status se3d_material_set(se3d_system *system, se3d_material material,
     SE3DI_TRY(check_material(system, &full));
     se3di_model *model = &system->model;
     se3di_material data = read_material(&full);
+    data.name = model->materials[index].name;
     data.users = model->materials[index].users;
     const double before = se3di_audit_contacts(model);
     model->materials[index] = data;
@@ -203,8 +207,23 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                     .young = data->young,
                                     .poisson = data->poisson,
                                     .cohesion = data->cohesion,
-                                    .adhesion = data->adhesion};
+                                    .adhesion = data->adhesion,
+                                    .name = data->name};
     return se3di_sized_give(def, size, &full, sizeof full);
+}
+
+se3d_status se3d_material_get_name(const se3d_system *system, se3d_material material,
+                                   const char **name)
+{
+    uint32_t index;
+    const se3d_status status =
+        se3di_read_index(SE3DI_SLOTS(system, material), SE3DI_HANDLE(material), name, &index);
+    return se3di_give_name(status, status < 0 ? NULL : system->model.materials[index].name, name);
+}
+
+se3d_status se3d_material_find(const se3d_system *system, const char *name, se3d_material *material)
+{
+    return se3di_read_named(SE3DI_SLOTS(system, material), name, material);
 }
 
 se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)

@@ -68,6 +68,7 @@ static se3d_status create_joint(se3d_system *system, const se3d_joint_def *def,
 
 REDEFINE(body, body_set_def, se3d_body_def, create_body)
 REDEFINE(marker, marker_set_def, se3d_marker_def, se3d_marker_create)
+REDEFINE(road, road_set_def, se3d_road_def, se3d_road_create)
 REDEFINE(wheel, wheel_set_def, se3d_wheel_def, se3d_wheel_create)
 REDEFINE(constraint, joint_set_def, se3d_joint_def, create_joint)
 REDEFINE(constraint, coupler_set_def, se3d_coupler_def, se3d_joint_create_coupler)

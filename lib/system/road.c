@@ -21,27 +21,6 @@ void se3d_road_def_init(se3d_road_def *def, size_t size)
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
-/* Rows: forward, left, up. */
-static se3d_status take_axes(se3d_system *system, const se3d_road_def *def, se3di_road *road)
-{
-    double forward[3];
-    double *x = road->axes, *z = road->axes + 6;
-    SE3DI_TRY(se3di_check_direction(system, "forward", def->forward, forward));
-    SE3DI_TRY(se3di_check_direction(system, "normal", def->normal, z));
-    se3di_copy(forward, x);
-    se3di_add_scaled(-se3di_dot(forward, z), z, x);
-    if (!(se3di_norm(x) > 1e-6)) {
-        return SE3DI_FAIL_OF(system, "forward", SE3D_ERR_INVALID_ARGUMENT,
-                             " = (%g, %g, %g) and normal = (%g, %g, %g) are parallel, must be two "
-                             "directions",
-                             def->forward[0], def->forward[1], def->forward[2], def->normal[0],
-                             def->normal[1], def->normal[2]);
-    }
-    se3di_scale(1.0 / se3di_norm(x), x, x);
-    se3di_cross(z, x, road->axes + 3);
-    return SE3D_OK;
-}
-
 static se3d_status check_count(se3d_system *system, const char *what, size_t count, size_t least,
                                size_t most)
 {
@@ -134,7 +113,7 @@ se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *def, se3d
     SE3DI_TRY(se3di_check_new_name(system, &system->model.road_slots, 0, "road", full.name));
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
-    SE3DI_TRY(take_axes(system, &full, &data));
+    SE3DI_TRY(se3di_check_axes(system, full.forward, "normal", full.normal, data.axes));
     SE3DI_TRY(take_surface(system, &full, &data));
     se3di_copy(full.point, data.point);
     memcpy(&data.name, &full.name, sizeof data.name); /* copied by the model */

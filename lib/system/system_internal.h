@@ -107,6 +107,10 @@ se3d_status se3di_check_finites(se3d_system *system, const char *what, const dou
 /* `value` is finite and in [low, high]. */
 se3d_status se3di_check_range(se3d_system *system, const char *what, double value, double low,
                               double high);
+/* Rows of a frame: x along `forward` as far as that is not along `up`, y to the left, z along `up`,
+ * which `what` names. Axes that have been written are taken as they are. */
+se3d_status se3di_check_axes(se3d_system *system, const double forward[3], const char *what,
+                             const double up[3], double axes[9]);
 /* `values` is finite and not zero; writes the unit vector. */
 se3d_status se3di_check_direction(se3d_system *system, const char *what, const double values[3],
                                   double unit[3]);

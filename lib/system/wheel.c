@@ -69,21 +69,8 @@ static se3d_status take_relations(se3d_system *system, const se3d_wheel_def *def
 /* Vehicle axes in the frame of the chassis. */
 static se3d_status take_vehicle(se3d_system *system, const se3d_wheel_def *def, se3di_wheel *wheel)
 {
-    double forward[3];
-    double *x = wheel->vehicle;
-    double *z = wheel->vehicle + 6;
-    SE3DI_TRY(se3di_check_direction(system, "forward", def->forward, forward));
-    SE3DI_TRY(se3di_check_direction(system, "up", def->up, z));
-    se3di_copy(forward, x);
-    se3di_add_scaled(-se3di_dot(forward, z), z, x);
-    if (!(se3di_norm(x) > 1e-6)) {
-        return SE3DI_FAIL_OF(system, "forward", SE3D_ERR_INVALID_ARGUMENT,
-                             " = (%g, %g, %g) and up are parallel, must be two directions",
-                             def->forward[0], def->forward[1], def->forward[2]);
-    }
-    se3di_scale(1.0 / se3di_norm(x), x, x);
-    se3di_cross(z, x, wheel->vehicle + 3);
-    se3di_mul(system->model.frames[wheel->chassis].A, z, wheel->road);
+    SE3DI_TRY(se3di_check_axes(system, def->forward, "up", def->up, wheel->vehicle));
+    se3di_mul(system->model.frames[wheel->chassis].A, wheel->vehicle + 6, wheel->road);
     return SE3D_OK;
 }
 

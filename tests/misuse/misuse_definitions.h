@@ -428,6 +428,7 @@ static void check_definitions_of_the_rest(arguments *a)
     CHECK(se3d_wheel_set_def(a->system, u->wheel, &wheel) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(a->system), "is the wheel itself");
     DEFINITION(road_get_def, se3d_road, se3d_road_def, u->road, ((se3d_road){9, 9}));
+    DEFINED_AGAIN(road_get_def, road_set_def, se3d_road, se3d_road_def, u->road, point[2], 0.5);
     CHECK(se3d_system_count_functions(NULL) == 0 && se3d_system_count_functions(a->system) > 0);
     CHECK(!se3d_system_get_function(a->system, 0, &gravity[0]) && gravity[0].index1 > 0);
     CHECK(se3d_system_get_function(a->system, 99, &gravity[0]) == SE3D_ERR_INVALID_ARGUMENT);

@@ -269,8 +269,10 @@ static se3d_status particle_readers_reject_misuse(arguments *a)
 
 static se3d_status materials_reject_misuse(arguments *a)
 {
-    se3d_material material, made = {7, 7};
+    se3d_material material, other, made = {7, 7};
     se3d_particles *p = particles_open(a, &material);
+    se3d_system *copy = NULL;
+    const char *name = NULL;
     se3d_material_def stuff = se3d_material_def_default();
     se3d_material_pair_def pair = se3d_material_pair_def_default();
     se3d_contact_settings contact = se3d_contact_settings_default();
@@ -296,6 +298,26 @@ static se3d_status materials_reject_misuse(arguments *a)
     CHECK(!se3d_material_set(a->system, material, &stuff));
     stuff.friction = 0.0;
     CHECK(!se3d_material_get(a->system, material, &stuff) && stuff.friction > 0.1);
+    stuff.name = "sand";
+    CHECK(!se3d_material_create(a->system, &stuff, &made));
+    REJECTED(se3d_material_create(a->system, &stuff, &other), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(a->system), "is taken by another material");
+    stuff.name = "gravel"; /* not looked at */
+    CHECK(!se3d_material_set(a->system, made, &stuff));
+    CHECK(!se3d_material_find(a->system, "sand", &other) && other.index1 == made.index1);
+    CHECK(se3d_material_find(a->system, "gravel", &other) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(other.index1 == 0 && se3d_material_find(NULL, "sand", &other) == SE3D_ERR_NULL);
+    CHECK(se3d_material_find(a->system, NULL, &other) == SE3D_ERR_NULL);
+    CHECK(se3d_material_find(a->system, "sand", NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_material_get_name(a->system, made, &name) && strcmp(name, "sand") == 0);
+    CHECK(!se3d_material_get(a->system, made, &stuff) && stuff.name == name);
+    CHECK(!se3d_system_clone(a->system, &copy) && !se3d_material_find(copy, "sand", &other));
+    se3d_system_destroy(copy);
+    CHECK(!se3d_material_destroy(a->system, made));
+    CHECK(se3d_material_get_name(a->system, made, &name) == SE3D_ERR_STALE_HANDLE && !name);
+    CHECK(!se3d_material_get_name(a->system, material, &name) && name[0] == '\0');
+    CHECK(se3d_material_get_name(a->system, material, NULL) == SE3D_ERR_NULL);
+    CHECK(se3d_material_get_name(NULL, material, &name) == SE3D_ERR_NULL);
     stuff.struct_size = 4096;
     CHECK(se3d_material_get(a->system, material, &stuff) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_material_set_pair(NULL, material, material, &pair) == SE3D_ERR_NULL);

@@ -5,6 +5,27 @@
 
 #include "misuse/misuse_fields.h"
 
+/* A road of triangles that a tyre is on becomes a grid, and what it was. */
+static void check_redefinition(arguments *a, se3d_road road, se3d_road_def grid,
+                               const se3d_road_def *mesh, const se3d_road_def *lying)
+{
+    se3d_road_def own = se3d_road_def_default();
+    double at[4];
+    grid.body = ground_of(a);
+    CHECK(se3d_road_set_def(a->system, road, &grid) == SE3D_ERR_IN_USE);
+    grid.body = mesh->body;
+    for (int k = 0; k < 2; ++k) { /* the second time of its own arrays */
+        CHECK(!se3d_road_set_def(a->system, road, k == 0 ? &grid : &own));
+        CHECK(!se3d_road_get_height(a->system, road, 0.0, 0.25, at));
+        CHECK_NEAR(at[0], 4.0, 0.0);
+        CHECK(!se3d_road_get_def(a->system, road, &own) && own.heights != grid.heights);
+    }
+    INVALID(se3d_road_set_def(a->system, road, lying));
+    CHECK(!se3d_road_set_def(a->system, road, mesh));
+    CHECK(!se3d_road_get_height(a->system, road, 0.25, 0.25, at));
+    CHECK_NEAR(at[0], 1.0, 0.0);
+}
+
 /* Grids, meshes, and what a road may not be. */
 static se3d_status roads_reject_misuse(arguments *a)
 {
@@ -76,6 +97,7 @@ static se3d_status roads_reject_misuse(arguments *a)
     CHECK(!se3d_force_create_tyre(a->system, &tyre, &force));
     CHECK(se3d_road_destroy(a->system, road) == SE3D_ERR_IN_USE);
     CHECK_CONTAINS(se3d_system_get_error(a->system), "used by 1 tyres");
+    check_redefinition(a, road, grid, &mesh, &lying);
     CHECK(!se3d_force_destroy(a->system, force));
     CHECK(!se3d_road_destroy(a->system, road));
     tyre.surface = road;

@@ -346,7 +346,8 @@ static se3d_status make_road(workshop *w)
     if (status >= 0) {
         status = se3d_force_create_tyre(w->system, &tyre, &force);
         if (status >= 0) {
-            status = make_clone(w);
+            status = se3d_road_set_def(w->system, grid, &def);
+            status = status < 0 ? status : make_clone(w);
             if (status < 0) {
                 CHECK(!se3d_force_destroy(w->system, force));
             }

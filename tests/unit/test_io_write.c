@@ -111,11 +111,6 @@ static void check_model(const char *path, const se3d_model_options *options, int
     if (status == SE3D_ERR_UNSUPPORTED && strstr(error.message, "cannot be written: ")) {
         CHECK(strstr(error.message, "with units") || strstr(error.message, "study"));
         how.elements_only = 1;
-    } else if (status == SE3D_ERR_UNSUPPORTED) {
-        CHECK(se3d_system_count_roads(se3d_model_get_system(model)) > 0);
-        CHECK_CONTAINS(error.message, "the road of tyre fl_tyre (");
-        se3d_model_destroy(model);
-        return; /* a road of a file with units */
     }
     char *first = text_of(model, &how);
     se3d_model *again = first ? read_again(first, path) : NULL;
@@ -214,9 +209,6 @@ static void sections_that_cannot_be_written_are_named_or_left_out(void)
          "study: {parameters: {L: 'uniform(1, 2)'}, samples: 3, "
          "measures: {x: {max: a.position.x}}}\n",
          ": study", 1},
-        {"units: {length: mm}\nroads: [{name: r, type: heightfield, spacing: 1, "
-         "heights: [[0, 0], [0, 0]]}]\n",
-         ": roads", 0},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
         char text[1000];
@@ -320,6 +312,8 @@ static void make_named_files(const char *folder)
              "se3d: 1\nbodies:\n"
              "  - {name: hub, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0.3],\n"
              "     shapes: [{type: heightfield, file: road.csv, spacing: 1}]}\n"
+             "roads: [{name: path, type: heightfield, body: hub, at: [1, 0, 0.4], file: road.csv,"
+             " spacing: 2}]\n"
              "forces: [{name: tyre, type: tyre, body: hub, axis: [0, 1, 0], file: a.tir}]\n");
     put_file(folder, "m.yaml",
              "se3d: 1\ninclude: [{file: part.yaml, prefix: p_}]\n"
@@ -360,6 +354,88 @@ static void files_that_a_model_names_are_found_from_another_place(void)
         CHECK(remove(path) == 0);
     }
     CHECK(rmdir(folder) == 0 && rmdir(beside) == 0);
+}
+
+/* ---- roads ----------------------------------------------------------------------------------*/
+
+#define DECK                                                                                       \
+    "se3d: 1\n"                                                                                    \
+    "bodies: [{name: deck, mass: 1, inertia: [1, 1, 1], position: [1, 2, 3],"                      \
+    " orientation: {rpy: [0.3, -0.2, 0.7]},"                                                       \
+    " markers: [{name: bow, position: [0.5, 0.25, 0]}]},"                                          \
+    " {name: rim, mass: 1, inertia: [1, 1, 1], position: [1, 2, 3.3]}]\n"
+
+static void roads_on_bodies_are_written_as_they_are_defined(void)
+{
+    static const double at[3][2] = {{0.25, 0.5}, {-0.75, 0.125}, {1.5, -1.0}};
+    static const char text[] =
+        DECK "parameters: {h: 0.1}\n"
+             "roads:\n"
+             "- {name: flat, type: plane, body: deck, at: [1, 2, 3], normal: [0.1, 0.2, 1]}\n"
+             "- {name: wave, type: height, body: deck, point: bow, frame: body,"
+             " forward: [1, 1, 0], height: h*sin(2*x + t) + h*y}\n"
+             "- {name: dam, type: heightfield, body: deck, spacing: 1, row_spacing: 2,"
+             " heights: [[0, h, 0], [h, 0.2, 0.3]]}\n"
+             "- {name: still, type: height, at: [0, 0, 1], height: 0.5}\n"
+             "forces: [{name: tyre, type: tyre, body: rim, road: wave, radius: 0.3, k: 1e5, mu: 1,"
+             " slip_stiffness: 1e4, cornering_stiffness: 1e4, envelope: 0.1}]\n";
+    se3d_write_options how = se3d_write_options_default();
+    se3d_model *model = read_again(text, "deck.yaml");
+    char *first = model ? text_of(model, &how) : NULL;
+    se3d_model *again = first ? read_again(first, "deck.yaml") : NULL;
+    char *second = again ? text_of(again, &how) : NULL;
+    CHECK(second && strcmp(first, second) == 0);
+    CHECK(model && se3d_system_count_roads(se3d_model_get_system(model)) == 4);
+    for (size_t k = 0; again && k < 4; ++k) {
+        const se3d_system *systems[2] = {se3d_model_get_system(model),
+                                         se3d_model_get_system(again)};
+        se3d_road_def def[2];
+        se3d_road road[2];
+        for (int i = 0; i < 2; ++i) {
+            def[i] = se3d_road_def_default();
+            CHECK(!se3d_system_get_road(systems[i], k, &road[i]));
+            CHECK(!se3d_road_get_def(systems[i], road[i], &def[i]));
+        }
+        CHECK(strcmp(def[0].name, def[1].name) == 0);
+        for (int c = 0; c < 3; ++c) {
+            CHECK_NEAR(def[0].point[c], def[1].point[c], 0.0);
+            CHECK_NEAR(def[0].normal[c], def[1].normal[c], 1e-15);
+            CHECK_NEAR(def[0].forward[c], def[1].forward[c], 1e-15);
+        }
+        for (size_t n = 0; n < sizeof at / sizeof *at; ++n) {
+            double h[2][4];
+            CHECK(!se3d_road_get_height(systems[0], road[0], at[n][0], at[n][1], h[0]));
+            CHECK(!se3d_road_get_height(systems[1], road[1], at[n][0], at[n][1], h[1]));
+            CHECK(memcmp(h[0], h[1], sizeof h[0]) == 0);
+        }
+    }
+    se3d_model_destroy(model);
+    se3d_model_destroy(again);
+    free(first);
+    free(second);
+}
+
+static void a_road_of_triangles_without_a_file_is_refused(void)
+{
+    static const double corners[9] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    static const uint32_t triangle[3] = {0, 1, 2};
+    se3d_system *system = NULL;
+    se3d_road_def def = se3d_road_def_default();
+    se3d_road road;
+    se3d_model_error error;
+    char path[800];
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_system_get_ground(system, &def.body));
+    def.name = "ramp";
+    def.vertices = corners;
+    def.vertex_count = 3;
+    def.triangles = triangle;
+    def.triangle_count = 1;
+    CHECK(!se3d_road_create(system, &def, &road));
+    CHECK(se3d_system_write(system, file_of("ramp.yaml", path, sizeof path), NULL, &error) ==
+          SE3D_ERR_UNSUPPORTED);
+    CHECK_CONTAINS(error.message, "road ramp is a mesh that no file has");
+    se3d_system_destroy(system);
 }
 
 /* ---- systems that were made by calls --------------------------------------------------------*/
@@ -530,6 +606,8 @@ int main(void)
     RUN(sections_that_cannot_be_written_are_named_or_left_out);
     RUN(texts_are_read_again_as_they_were);
     RUN(files_that_a_model_names_are_found_from_another_place);
+    RUN(roads_on_bodies_are_written_as_they_are_defined);
+    RUN(a_road_of_triangles_without_a_file_is_refused);
     RUN(what_calls_have_made_and_set_is_in_the_file);
     RUN(turns_are_in_the_file);
     RUN(a_joint_is_the_same_after_a_run);

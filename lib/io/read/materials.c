@@ -48,6 +48,7 @@ static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_
                            &def)) {
         return false;
     }
+    def.name = se3di_node_get(entry, "name")->text;
     return se3di_reader_check(reader, entry, se3d_material_create(reader->system, &def, material));
 }
 

@@ -17,6 +17,7 @@
 #include "io/read/objects.h"
 #include "io/read/sections.h"
 
+static const char *const frames[] = {"ground", "body", NULL};
 static const char *const road_types[] = {"plane", "height", "heightfield", "mesh", NULL};
 
 typedef struct road_values {
@@ -33,10 +34,13 @@ static const se3di_key road_keys[] = {
     {"body", SE3DI_KIND_BODY, .standard = "ground", .text = "that the road is fixed to"},
     {"at", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
      .text = "origin of the road's x, y, z at the given pose, ground frame [m]"},
+    {"point", SE3DI_KIND_POINT, .text = "in place of at: in the frame of the body [m]"},
+    {"frame", SE3DI_KIND_WORD, .words = frames, .standard = "ground",
+     .text = "of normal and forward"},
     {"normal", SE3DI_KIND_DIRECTION, .standard = "[0, 0, 1]",
-     .text = "its z, at the given pose, ground frame"},
+     .text = "its z, at the given pose"},
     {"forward", SE3DI_KIND_DIRECTION, .standard = "[1, 0, 0]",
-     .text = "its x, as far as it is not along the normal, ground frame"},
+     .text = "its x, at the given pose, as far as it is not along the normal"},
     {"height", SE3DI_KIND_FUNCTION, .types = " height ", .required = true,
      .text = "z over t, x and y: an expression, or a table over the time t [m]"},
     {"heights", SE3DI_KIND_ROWS, .types = " heightfield ",
@@ -171,27 +175,45 @@ static bool read_mesh(se3di_reader *reader, const se3di_node *node, const road_v
     return true;
 }
 
-static bool read_frame(se3di_reader *reader, const se3di_node *node, se3d_road_def *def)
+static bool read_origin(se3di_reader *reader, const se3di_node *node, const se3di_body_entry *body,
+                        se3d_road_def *def)
 {
-    double at[3] = {0.0, 0.0, 0.0}, normal[3] = {0.0, 0.0, 1.0}, forward[3] = {1.0, 0.0, 0.0};
-    const se3di_body_entry *body = NULL;
-    if (se3di_node_get(node, "body")) {
-        if (!se3di_read_key_body(reader, node, "body", &body)) {
-            return false;
-        }
-        def->body = body->body;
-    } else if (SE3D_FAILED(se3d_system_get_ground(reader->system, &def->body))) {
-        return se3di_reader_fail_memory(reader);
+    double at[3] = {0.0, 0.0, 0.0};
+    if (se3di_node_get(node, "point")) {
+        return se3di_read_key_place(reader, node, "point", "at", body, def->point);
     }
     se3di_place_point(&reader->part->place, at);
-    se3di_place_vector(&reader->part->place, normal);
-    se3di_place_vector(&reader->part->place, forward);
     return se3di_read_key_ground_point(reader, node, "at", at) &&
-           se3di_read_key_ground_direction(reader, node, "normal", false, normal) &&
-           se3di_read_key_ground_direction(reader, node, "forward", false, forward) &&
-           se3di_ground_to_body(reader, def->body, at, def->point) &&
-           se3di_ground_to_body_direction(reader, def->body, normal, def->normal) &&
-           se3di_ground_to_body_direction(reader, def->body, forward, def->forward);
+           se3di_ground_to_body(reader, def->body, at, def->point);
+}
+
+/* A direction, in the frame that is said or the ground's; the definition has its default. */
+static bool read_axis(se3di_reader *reader, const se3di_node *node, const char *key,
+                      const se3di_body_entry *body, double axis[3])
+{
+    int32_t frame = 0;
+    if (!se3di_read_key(reader, node, &se3di_object_road, NULL, "frame", &frame)) {
+        return false;
+    }
+    if (frame != 0) {
+        return se3di_read_key_body_direction(reader, node, key, body, false, axis);
+    }
+    double v[3] = {axis[0], axis[1], axis[2]};
+    se3di_place_vector(&reader->part->place, v);
+    return se3di_read_key_ground_direction(reader, node, key, false, v) &&
+           se3di_ground_to_body_direction(reader, body->body, v, axis);
+}
+
+static bool read_frame(se3di_reader *reader, const se3di_node *node, se3d_road_def *def)
+{
+    const se3di_body_entry *body = &reader->model->bodies[0]; /* the ground */
+    if (se3di_node_get(node, "body") && !se3di_read_key_body(reader, node, "body", &body)) {
+        return false;
+    }
+    def->body = body->body;
+    return read_origin(reader, node, body, def) &&
+           read_axis(reader, node, "normal", body, def->normal) &&
+           read_axis(reader, node, "forward", body, def->forward);
 }
 
 static bool read_road(se3di_reader *reader, const se3di_node *node)

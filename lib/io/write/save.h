@@ -32,7 +32,7 @@ typedef struct se3di_save {
     const char *section; /* whose title is due before the next entry; NULL: none */
     se3d_status status;  /* < 0: the writing ends */
     char problem[500];   /* why the entry at hand cannot be written; "": it can */
-    se3di_save_names bodies, constraints, forces, materials, wheels; /* states are forces */
+    se3di_save_names bodies, constraints, forces, materials, roads, wheels; /* states are forces */
 } se3di_save;
 
 /* ---- text: nothing happens after a failure ---- */
@@ -87,6 +87,13 @@ void se3di_save_put_function(se3di_save *s, se3d_function function, double value
 /* The name of a channel for a number of the state; refused if there is none. */
 const char *se3di_save_channel(se3di_save *s, const se3d_signal *signal);
 
+/* Heights, each `stride` numbers behind the one before it, in rows; and how far these are apart. */
+void se3di_save_heights(se3di_save *s, const double *heights, size_t stride, size_t rows,
+                        size_t columns);
+void se3di_save_spacing(se3di_save *s, const double spacing[2]);
+/* Let what is wrong with the entry at hand say whose it is. */
+void se3di_save_name_problem(se3di_save *s, const char *what, const char *name);
+
 /* A file that a part of the model names (NULL: the model itself), as the file to be has to say it:
  * from its own folder. */
 const char *se3di_save_get_file(se3di_save *s, const se3di_component *part, const char *file);
@@ -108,12 +115,10 @@ void se3di_save_contact(se3di_save *s);
 void se3di_save_put_node(se3di_save *s, const se3di_node *node);
 /* Whether that is in units of its own. */
 bool se3di_save_has_units(const se3di_save *s);
-/* Whether all roads are of the model's own file and fixed to the ground: they are written. */
-bool se3di_save_has_roads(const se3di_save *s);
 void se3di_save_roads(se3di_save *s);
 /* What only the model knows: analyses, results, events, particles. */
 void se3di_save_document(se3di_save *s);
-/* What of that, and of the roads, is not written: a refusal, or a comment at the end. */
+/* What of that is not written: a refusal, or a comment at the end. */
 void se3di_save_losses(se3di_save *s);
 /* Of `contact`, as the file says them; NULL at the end. */
 extern const char *const se3di_save_domain_keys[];

@@ -118,8 +118,7 @@ static void save_file(se3di_save *s, const se3di_shape_entry *entry)
     }
 }
 
-/* Heights, each so far from the one before it, in rows. */
-static void put_heights(se3di_save *s, const double *heights, size_t stride, size_t rows,
+void se3di_save_heights(se3di_save *s, const double *heights, size_t stride, size_t rows,
                         size_t columns)
 {
     se3di_save_word(s, "heights", "[");
@@ -135,7 +134,7 @@ static void put_heights(se3di_save *s, const double *heights, size_t stride, siz
     se3di_save_put(s, "]");
 }
 
-static void save_spacing(se3di_save *s, const double spacing[2])
+void se3di_save_spacing(se3di_save *s, const double spacing[2])
 {
     se3di_save_number(s, "spacing", spacing[0]);
     se3di_save_number_but(s, "row_spacing", spacing[1], spacing[0]);
@@ -146,13 +145,13 @@ static void save_heights(se3di_save *s, const se3di_shape_entry *entry)
 {
     const se3di_mesh *mesh = entry->mesh;
     const se3di_node *file = se3di_node_get(entry->node, "file");
-    save_spacing(s, mesh->spacing);
+    se3di_save_spacing(s, mesh->spacing);
     if (!mesh->heights) {
         se3di_save_refuse(s, "a heightfield that is mirrored has no heights");
     } else if (file && file->text) {
         se3di_save_text(s, "file", se3di_save_get_file(s, entry->part, file->text));
     } else {
-        put_heights(s, mesh->heights, 1, mesh->row_count, mesh->column_count);
+        se3di_save_heights(s, mesh->heights, 1, mesh->row_count, mesh->column_count);
     }
 }
 
@@ -272,8 +271,8 @@ static void save_made_shape(se3di_save *s, se3d_shape made)
     se3di_save_number_but(s, "length", def.length, 0.0);
     save_ends(s, type, def.bottom_radius, def.top_radius);
     if (type == SE3D_SHAPE_HEIGHTFIELD) {
-        save_spacing(s, def.spacing);
-        put_heights(s, def.vertices + 2, 3, def.row_count, def.column_count);
+        se3di_save_spacing(s, def.spacing);
+        se3di_save_heights(s, def.vertices + 2, 3, def.row_count, def.column_count);
     }
     se3di_save_vector_but_zero(s, "normal", def.normal, 3);
     se3di_save_vector_but_zero(s, "position", def.position, 3);

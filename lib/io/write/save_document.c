@@ -59,8 +59,7 @@ void se3di_save_put_node(se3di_save *s, const se3di_node *node)
 
 static void put_section(se3di_save *s, const se3di_node *node)
 {
-    s->in_files = strcmp(node->key, "particles") == 0 || strcmp(node->key, "roads") == 0 ||
-                  strcmp(node->key, "fmus") == 0;
+    s->in_files = strcmp(node->key, "particles") == 0 || strcmp(node->key, "fmus") == 0;
     se3di_save_put(s, "\n");
     se3di_save_put(s, node->key);
     if (node->kind != SE3DI_NODE_LIST || !node->first) {
@@ -86,27 +85,6 @@ static const se3di_node *get_section(const se3di_save *s, const char *key)
 bool se3di_save_has_units(const se3di_save *s)
 {
     return get_section(s, "units") != NULL;
-}
-
-bool se3di_save_has_roads(const se3di_save *s)
-{
-    const se3di_node *roads = get_section(s, "roads");
-    size_t count = 0;
-    bool still = true;
-    for (const se3di_node *node = roads ? roads->first : NULL; node; node = node->next) {
-        const se3di_node *body = se3di_node_get(node, "body");
-        still = still && (!body || (body->text && strcmp(body->text, "ground") == 0));
-        ++count;
-    }
-    return count > 0 && still && count == se3d_system_count_roads(s->system) &&
-           !se3di_save_has_units(s);
-}
-
-void se3di_save_roads(se3di_save *s)
-{
-    if (se3di_save_has_roads(s)) {
-        put_section(s, get_section(s, "roads"));
-    }
 }
 
 /* Whether the texts of a section say in SI units what they say in those of the file: names, and
@@ -202,9 +180,6 @@ void se3di_save_losses(se3di_save *s)
     if (s->wants_document && get_section(s, "study")) {
         list(lost, "study");
     }
-    if (se3d_system_count_roads(s->system) > 0 && !se3di_save_has_roads(s)) {
-        list(lost, "roads");
-    }
     if (lost[0] && s->partial) {
         snprintf(text, sizeof text, "Left out: %s", lost);
         se3di_save_comment(s, "", text);
@@ -245,8 +220,7 @@ static bool is_named(const se3di_save *s, const char *name)
 {
     const bool has_units = se3di_save_has_units(s);
     const se3di_node *contact = has_units ? NULL : get_section(s, "contact");
-    const se3di_node *roads = has_units ? NULL : get_section(s, "roads");
-    bool found = (contact && node_names(contact, name)) || (roads && node_names(roads, name));
+    bool found = contact && node_names(contact, name);
     for (size_t k = 0; k < sizeof sections / sizeof *sections && !found; ++k) {
         const se3di_node *node = get_kept(s, sections[k]);
         found = node && node_names(node, name);

@@ -155,7 +155,7 @@ static void save_constraint(se3di_save *s, se3d_constraint constraint, const cha
     }
 }
 
-static void name_problem(se3di_save *s, const char *what, const char *name)
+void se3di_save_name_problem(se3di_save *s, const char *what, const char *name)
 {
     char text[sizeof s->problem];
     if (s->status >= 0 && s->problem[0] && !strstr(s->problem, name)) {
@@ -183,7 +183,7 @@ void se3di_save_constraints(se3di_save *s)
             const char *name = s->constraints.names[constraint.index1];
             const se3di_save_entry entry = se3di_save_open(s);
             save_constraint(s, constraint, type);
-            name_problem(s, type, name);
+            se3di_save_name_problem(s, type, name);
             if (!se3di_save_close(s, &entry)) {
                 s->constraints.names[constraint.index1] = NULL;
             }
@@ -377,21 +377,18 @@ static void save_coefficients(se3di_save *s, se3d_force force)
     se3di_save_text(s, "file", se3di_save_get_file(s, part, file->text));
 }
 
-/* The plane that a tyre rolls on, or its road, which stands in `roads` as in the model's file. */
-static void save_road(se3di_save *s, se3d_force force, const se3d_tyre_def *def)
+/* The plane that a tyre rolls on, or its road. */
+static void save_surface(se3di_save *s, const se3d_tyre_def *def)
 {
-    const char *name = "";
     if (def->surface.index1 == 0) {
         se3di_save_body(s, "road", def->road);
         se3di_save_vector(s, "road_point", def->point, 3);
         se3di_save_vector(s, "normal", def->normal, 3);
         return;
     }
-    (void)se3d_road_get_name(s->system, def->surface, &name);
-    if (!se3di_save_has_roads(s)) {
-        se3di_save_refuse(
-            s, "the road of tyre %.100s (%.100s) moves, or is of a part or a file with units",
-            s->forces.names[force.index1], name ? name : "");
+    const char *name = s->roads.names[def->surface.index1];
+    if (!name) {
+        se3di_save_refuse(s, "its road is not in the file");
         return;
     }
     se3di_save_text(s, "road", name);
@@ -410,7 +407,7 @@ static void save_tyre(se3di_save *s, se3d_force force)
     if (def.side != SE3D_TYRE_LEFT) {
         se3di_save_word(s, "side", se3di_tyre_sides[def.side]);
     }
-    save_road(s, force, &def);
+    save_surface(s, &def);
     se3di_save_word(s, "model", se3di_tyre_laws[def.law]);
     se3di_save_number(s, "radius", def.radius);
     se3di_save_number(s, "k", def.k);
@@ -469,7 +466,7 @@ void se3di_save_forces(se3di_save *s)
         (void)se3d_force_get_type(s->system, force, &type);
         const se3di_save_entry entry = se3di_save_open(s);
         save_force(s, force, type);
-        name_problem(s, type, s->forces.names[force.index1]);
+        se3di_save_name_problem(s, type, s->forces.names[force.index1]);
         if (!se3di_save_close(s, &entry)) {
             s->forces.names[force.index1] = NULL;
         }
@@ -498,7 +495,7 @@ void se3di_save_states(se3di_save *s)
         se3di_save_function(s, "input", def.input, NULL);
         se3di_save_number_but(s, "initial", def.initial, 0.0);
         se3di_save_number_but(s, "size", def.size, size);
-        name_problem(s, "state", s->forces.names[state.index1]);
+        se3di_save_name_problem(s, "state", s->forces.names[state.index1]);
         if (!se3di_save_close(s, &entry)) {
             s->forces.names[state.index1] = NULL;
         }
@@ -555,7 +552,7 @@ void se3di_save_wheels(se3di_save *s)
         (void)se3d_system_get_wheel(s->system, k, &wheel);
         const se3di_save_entry entry = se3di_save_open(s);
         save_wheel(s, wheel, k);
-        name_problem(s, "wheel", s->wheels.names[wheel.index1]);
+        se3di_save_name_problem(s, "wheel", s->wheels.names[wheel.index1]);
         if (!se3di_save_close(s, &entry)) {
             s->wheels.names[wheel.index1] = NULL;
         }

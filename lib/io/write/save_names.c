@@ -119,6 +119,7 @@ static bool name_forces(se3di_save *s, se3di_ionames *taken, bool unnamed)
 {
     const namer n = {s, taken, "force", &s->forces};
     const namer of_states = {s, taken, "state", &s->forces};
+    const namer of_roads = {s, taken, "road", &s->roads};
     const namer of_wheels = {s, taken, "wheel", &s->wheels};
     const char *own = "";
     for (size_t k = 0; k < se3d_system_count_forces(s->system); ++k) {
@@ -141,6 +142,14 @@ static bool name_forces(se3di_save *s, se3di_ionames *taken, bool unnamed)
             return false;
         }
     }
+    for (size_t k = 0; k < se3d_system_count_roads(s->system); ++k) {
+        se3d_road road;
+        (void)se3d_system_get_road(s->system, k, &road);
+        (void)se3d_road_get_name(s->system, road, &own);
+        if ((own[0] == '\0') == unnamed && !give_name(&of_roads, road.index1, own, k)) {
+            return false;
+        }
+    }
     for (size_t k = 0; k < se3d_system_count_wheels(s->system); ++k) {
         se3d_wheel wheel;
         (void)se3d_system_get_wheel(s->system, k, &wheel);
@@ -152,20 +161,6 @@ static bool name_forces(se3di_save *s, se3di_ionames *taken, bool unnamed)
     return true;
 }
 
-/* Materials of a model have the names of its file. */
-static const char *material_name(const se3d_model *model, se3d_material material)
-{
-    const se3di_node *list = model ? se3di_node_get(model->root, "materials") : NULL;
-    size_t k = 0;
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next, ++k) {
-        if (model->materials && model->materials[k].index1 == material.index1 &&
-            model->materials[k].generation == material.generation) {
-            return se3di_node_get(node, "name")->text;
-        }
-    }
-    return "";
-}
-
 static bool name_materials(se3di_save *s)
 {
     se3di_ionames taken = {.capacity = 0};
@@ -173,8 +168,9 @@ static bool name_materials(se3di_save *s)
     for (int unnamed = 0; unnamed < 2; ++unnamed) {
         for (size_t k = 0; k < se3d_system_count_materials(s->system); ++k) {
             se3d_material material;
+            const char *own = "";
             (void)se3d_system_get_material(s->system, k, &material);
-            const char *own = material_name(s->model, material);
+            (void)se3d_material_get_name(s->system, material, &own);
             if ((own[0] == '\0') == (unnamed == 1) && !give_name(&n, material.index1, own, k)) {
                 return false;
             }
