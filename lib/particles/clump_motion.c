@@ -40,35 +40,69 @@ void se3di_clump_loads(const se3di_particles *set, const se3di_clump *clump, dou
     }
 }
 
-/* Turn about principal axis k by `angle`: q <- q (1, t e_k), not of unit length; L <- R^T L. */
-static void turn(int k, double angle, double q[4], double L[3])
+/* Clumps that turn side by side: each operation waits for the one before, and those of one clump
+ * leave the processor idle. */
+#define LANES 8
+
+typedef struct top {
+    double q[4][LANES], L[3][LANES];
+    double by[LANES], inertia[3][LANES]; /* angle = by L / inertia */
+} top;
+
+/* Turn about principal axis k: q <- q (1, t e_k), not of unit length; L <- R^T L. */
+static inline void turn(top *of, int k, double part)
 {
-    const double u = 0.5 * angle, u2 = u * u;
-    const double t = u * (1.0 + u2 * (1.0 / 3.0 + u2 * (2.0 / 15.0))); /* tan(angle/2) */
-    const double scale = 1.0 / (1.0 + t * t);
-    const double cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
     const int b = second[k], c = third[k];
-    const double L_b = L[b], q_0 = q[0], q_b = q[1 + b];
-    L[b] = cosine * L_b + sine * L[c];
-    L[c] = cosine * L[c] - sine * L_b;
-    q[0] -= t * q[1 + k];
-    q[1 + k] += t * q_0;
-    q[1 + b] += t * q[1 + c];
-    q[1 + c] -= t * q_b;
+    double *const q_0 = of->q[0], *const q_k = of->q[1 + k];
+    double *const q_b = of->q[1 + b], *const q_c = of->q[1 + c];
+    double *const L_k = of->L[k], *const L_b = of->L[b], *const L_c = of->L[c];
+    for (int n = 0; n < LANES; ++n) {
+        const double angle = part * of->by[n] * L_k[n] / of->inertia[k][n];
+        const double u = 0.5 * angle, u2 = u * u;
+        const double t = u * (1.0 + u2 * (1.0 / 3.0 + u2 * (2.0 / 15.0))); /* tan(angle/2) */
+        const double scale = 1.0 / (1.0 + t * t);
+        const double cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
+        const double old_b = L_b[n], old_0 = q_0[n], turned_b = q_b[n];
+        L_b[n] = cosine * old_b + sine * L_c[n];
+        L_c[n] = cosine * L_c[n] - sine * old_b;
+        q_0[n] -= t * q_k[n];
+        q_k[n] += t * old_0;
+        q_b[n] += t * q_c[n];
+        q_c[n] -= t * turned_b;
+    }
 }
 
-static void drift(const se3di_clump_template *of, se3di_clump *clump, double h)
+/* Clumps [0, count), at most LANES: those that are missing are at rest. */
+static void drift(const se3di_particles *set, se3di_clump *clumps, size_t count, double h)
 {
-    const double by = h / (clump->factor * clump->scale * clump->scale);
-    double *q = clump->q, *L = clump->spin;
-    se3di_add_scaled(h, clump->v, clump->x);
-    turn(0, 0.5 * by * L[0] / of->inertia[0], q, L);
-    turn(1, 0.5 * by * L[1] / of->inertia[1], q, L);
-    turn(2, by * L[2] / of->inertia[2], q, L);
-    turn(1, 0.5 * by * L[1] / of->inertia[1], q, L);
-    turn(0, 0.5 * by * L[0] / of->inertia[0], q, L);
-    (void)se3di_quat_normalize(q, q);
-    se3di_quat_to_matrix(q, clump->A);
+    top of;
+    for (size_t n = 0; n < LANES; ++n) {
+        const se3di_clump *clump = &clumps[n < count ? n : 0];
+        const se3di_clump_template *like = &set->templates[clump->template_index];
+        of.by[n] = h / (clump->factor * clump->scale * clump->scale);
+        for (int a = 0; a < 3; ++a) {
+            of.L[a][n] = clump->spin[a];
+            of.inertia[a][n] = like->inertia[a];
+        }
+        for (int a = 0; a < 4; ++a) {
+            of.q[a][n] = clump->q[a];
+        }
+    }
+    turn(&of, 0, 0.5);
+    turn(&of, 1, 0.5);
+    turn(&of, 2, 1.0);
+    turn(&of, 1, 0.5);
+    turn(&of, 0, 0.5);
+    for (size_t n = 0; n < count; ++n) {
+        se3di_clump *clump = &clumps[n];
+        const double q[4] = {of.q[0][n], of.q[1][n], of.q[2][n], of.q[3][n]};
+        se3di_add_scaled(h, clump->v, clump->x);
+        for (int a = 0; a < 3; ++a) {
+            clump->spin[a] = of.L[a][n];
+        }
+        (void)se3di_quat_normalize(q, clump->q);
+        se3di_quat_to_matrix(clump->q, clump->A);
+    }
 }
 
 static void kick(const se3di_particles *set, se3di_clump *clump,
@@ -169,15 +203,18 @@ static void carry(se3di_particles *set, const se3di_clump *clump, double drift, 
 void se3di_clumps_move(se3di_particles *set, size_t begin, size_t end,
                        const se3di_particle_motion *motion, double *fastest, double *hasty)
 {
-    for (size_t k = begin; k < end; ++k) {
-        se3di_clump *clump = &set->clumps[k];
-        if (motion->kicks > 0) {
-            kick(set, clump, motion);
+    for (size_t first = begin; first < end; first += LANES) {
+        const size_t count = end - first < LANES ? end - first : LANES;
+        se3di_clump *clumps = set->clumps + first;
+        for (size_t k = 0; k < count && motion->kicks > 0; ++k) {
+            kick(set, &clumps[k], motion);
         }
         if (motion->drift != 0.0) {
-            drift(&set->templates[clump->template_index], clump, motion->drift);
+            drift(set, clumps, count, motion->drift);
         }
-        carry(set, clump, motion->drift, fastest, hasty);
+        for (size_t k = 0; k < count; ++k) {
+            carry(set, &clumps[k], motion->drift, fastest, hasty);
+        }
     }
 }
 
