@@ -29,8 +29,10 @@ SE3D_API const char *se3d_analysis_get_name(int32_t analysis);
 
 /* How a solver of dynamics steps in time. AUTO takes verlet with particles; convex, of order 1,
  * from where ten free bodies or more are at others, if nothing acts on them but constant gravity,
- * no tolerance is given and no step above 5 ms; radau with strong dampers; else dop853, which it
- * leaves for radau if stability limits its steps. @since 0.1 */
+ * no tolerance is given and no step above 5 ms; radau with strong dampers; gauss where nothing but
+ * constant gravity acts on an open tree of joints, or on loops of plane pins and balls (single
+ * steps of given length: dop853); else dop853. It leaves both for radau if stability limits their
+ * steps. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,
     SE3D_METHOD_GENERALIZED_ALPHA = 1,

@@ -40,7 +40,7 @@ static void release(se3di_run *run)
         se3di_equations_destroy(&run->equations);
         run->equations.counters = counters;
     }
-    run->prepared = 0;
+    run->prepared = run->leaps = 0;
 }
 
 void se3di_run_destroy(se3di_run *run)
@@ -107,7 +107,17 @@ static int is_history_of(const se3di_model *model, int32_t method)
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
 {
     run->integration.method = method;
-    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
+    run->integration.settings.leaves_stiff =
+        method->tag == SE3D_METHOD_DOP853 || (run->automatic && method->tag == SE3D_METHOD_GAUSS);
+}
+
+/* A step of given length has no tolerance, to which iterations would end. */
+void se3di_run_suit_call(se3di_run *run, int is_step)
+{
+    const se3di_integrator *method = is_step ? &se3di_integrator_dop853 : &se3di_integrator_gauss;
+    if (run->leaps && run->integration.method != method) {
+        se3di_run_use_method(run, method);
+    }
 }
 
 #define STEP_CROWD 5e-3 /* s: a longest step for other methods would be too long for convex */
@@ -127,6 +137,15 @@ int se3di_run_is_crowded(const se3di_run *run)
            (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_bodies_crowd(model));
 }
 
+/* auto: stages in lanes are faster where nothing acts that does not go into them. Loops at the
+ * tightest tolerances are left to the equations of the bodies. */
+static int may_leap(const se3di_run *run)
+{
+    const int is_joint = run->picks_formulation || run->formulation == &se3di_formulation_joint;
+    return run->analysis == SE3D_ANALYSIS_DYNAMICS && is_joint &&
+           run->model->constraint_slots.count > 0 && se3di_gauss_lanes_suit_model(run->model);
+}
+
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
  * small steps, or have done so before. A motion under way goes on by its method: the state would
  * now decide otherwise. */
@@ -140,7 +159,9 @@ static void choose_method(se3di_run *run)
         run->analysis == SE3D_ANALYSIS_DYNAMICS &&
         (is_history_of(model, SE3D_METHOD_RADAU) ||
          (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
-    int32_t method = stiff ? SE3D_METHOD_RADAU : SE3D_METHOD_DOP853;
+    int32_t method = stiff           ? SE3D_METHOD_RADAU
+                     : may_leap(run) ? SE3D_METHOD_GAUSS
+                                     : SE3D_METHOD_DOP853;
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
     } else if (se3di_run_is_crowded(run)) {
@@ -294,12 +315,34 @@ static se3d_status enter_crowd(se3di_run *run)
     return se3di_run_build(run);
 }
 
+/* With these equations; dop853, for single steps, needs no more memory. */
+static int leaps(const se3di_run *run)
+{
+    return run->formulation == &se3di_formulation_joint &&
+           se3di_gauss_lanes_suit_equations(&run->equations) &&
+           !(run->equations.has_loops && run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
+}
+
+static se3d_status build_anew(se3di_run *run)
+{
+    choose_method(run);
+    SE3DI_TRY(se3di_run_build(run));
+    if (!run->automatic || run->integration.method != &se3di_integrator_gauss) {
+        return SE3D_OK;
+    }
+    run->leaps = leaps(run);
+    if (!run->leaps) {
+        se3di_run_use_method(run, &se3di_integrator_dop853);
+        return se3di_run_build(run);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_run_prepare(se3di_run *run)
 {
     SE3DI_TRY(se3di_breaks_check(run));
     if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly)) {
-        choose_method(run);
-        SE3DI_TRY(se3di_run_build(run));
+        SE3DI_TRY(build_anew(run));
     } else if (run->integration.settings.leaves_crowd && se3di_run_is_crowded(run)) {
         SE3DI_TRY(enter_crowd(run));
     }
@@ -323,6 +366,8 @@ se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method
     if (!run->automatic || method == run->integration.method) {
         return SE3D_OK;
     }
+    const int is_light =
+        run->leaps && (method == &se3di_integrator_dop853 || method == &se3di_integrator_gauss);
     se3di_run_use_method(run, method);
-    return se3di_run_build(run);
+    return is_light ? SE3D_OK : se3di_run_build(run);
 }

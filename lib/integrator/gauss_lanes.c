@@ -74,6 +74,17 @@ int se3di_gauss_lanes_suit(const se3di_explicit *m)
     return is_bare_tree(m) || se3di_gauss_lanes_take_loops(m);
 }
 
+int se3di_gauss_lanes_suit_model(const se3di_model *model)
+{
+    return is_bare(model) && is_gravity_constant(model) && model->wheel_slots.count == 0;
+}
+
+int se3di_gauss_lanes_suit_equations(const se3di_equations *equations)
+{
+    return se3di_motion_find(equations) == &se3di_motion_joints &&
+           (equations->is_open_tree || se3di_gauss_lanes_suit_loops(equations));
+}
+
 /* The widest core that stages fill. */
 static const se3di_lane_core *find_core(int stages)
 {

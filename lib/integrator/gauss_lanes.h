@@ -39,6 +39,10 @@ typedef struct se3di_gauss_lanes {
 /* Doubles of work of the method, what is here included. */
 size_t se3di_gauss_work_count(const se3di_assembly *assembly);
 
+/* Whether auto takes gauss: nothing but constant gravity acts, and then, with these equations, the
+ * stages are computed here as long as it does. */
+int se3di_gauss_lanes_suit_model(const se3di_model *model);
+int se3di_gauss_lanes_suit_equations(const se3di_equations *equations);
 /* Whether loops can be computed here, by what changes only with a rebuild. */
 int se3di_gauss_lanes_suit_loops(const se3di_equations *equations);
 /* Whether they are in the next step: not where functions change gravity. */

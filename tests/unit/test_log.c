@@ -141,7 +141,7 @@ static void a_tolerance_that_is_not_reached_is_logged_once(void)
         int32_t method;
         double asked, step, used;
         const char *name; /* in the log, NULL: nothing */
-    } rows[] = {{SE3D_METHOD_AUTO, 1e-13, 0.0, 2e-13 / 0.03, "dop853"},
+    } rows[] = {{SE3D_METHOD_AUTO, 1e-13, 0.0, 2e-13 / 0.03, "gauss"},
                 {SE3D_METHOD_DOP853, 1e-14, 0.0, 2e-13 / 0.03, "dop853"},
                 {SE3D_METHOD_DOP853, 1e-14, 1e-3, 2e-13 / 0.03, "dop853"},
                 {SE3D_METHOD_RK45, 1e-12, 0.0, 2e-13 / 0.03, "rk45"},

@@ -41,8 +41,9 @@ static const se3di_key analysis_keys[] = {
          "gauss: smooth motions, to tight tolerances; "
          "auto: verlet with particles, convex from where ten free bodies or more are at others, if "
          "nothing else acts on them but constant gravity, no tolerance is given and no step above "
-         "0.005, radau if a damper's decay is 20000 times faster than the motion, else dop853, "
-         "which it leaves for radau if stability limits its steps"},
+         "0.005, radau if a damper's decay is 20000 times faster than the motion, gauss where "
+         "nothing but constant gravity acts on an open tree of joints or on loops of plane pins "
+         "and balls, else dop853; both are left for radau if stability limits their steps"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
