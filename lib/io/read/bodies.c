@@ -527,22 +527,9 @@ static bool read_body(se3di_reader *reader, const se3di_node *node)
 
 bool se3di_read_bodies(se3di_reader *reader, const se3di_node *root)
 {
-    const se3di_node *list = NULL;
     se3d_body ground;
     const se3d_status status = se3d_system_get_ground(reader->system, &ground);
-    if (status < 0 ||
-        (reader->model->body_count == 0 && !add_body(reader, "ground", NULL, ground)) ||
-        !se3di_read_list(reader, root, "bodies", &list)) {
-        return false;
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        bool wanted = true;
-        if (!se3di_reader_wants(reader, node)) {
-            continue;
-        }
-        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_body(reader, node))) {
-            return false;
-        }
-    }
-    return true;
+    return status >= 0 &&
+           (reader->model->body_count > 0 || add_body(reader, "ground", NULL, ground)) &&
+           se3di_read_each(reader, root, "bodies", read_body);
 }

@@ -166,15 +166,6 @@ static bool read_bond(se3di_reader *reader, const se3di_node *node)
 bool se3di_read_bonds(se3di_reader *reader, const se3di_node *list)
 {
     se3di_tagged *particles = reader->model->particles;
-    particles->bonds =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->bonds);
-    if (!particles->bonds) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_bond(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    particles->bonds = se3di_read_room(reader, list, sizeof *particles->bonds);
+    return particles->bonds && se3di_read_entries(reader, list, read_bond);
 }

@@ -111,10 +111,5 @@ static bool read_stage(se3di_reader *reader, const se3di_node *node)
 
 bool se3di_read_cell(se3di_reader *reader, const se3di_node *list)
 {
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_stage(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    return se3di_read_entries(reader, list, read_stage);
 }

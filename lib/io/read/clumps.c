@@ -140,19 +140,13 @@ bool se3di_read_clumps(se3di_reader *reader, const se3di_node *root)
     if (!se3di_read_list(reader, root, "clumps", &list)) {
         return false;
     }
-    particles->clumps =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->clumps);
+    particles->clumps = se3di_read_room(reader, list, sizeof *particles->clumps);
     particles->clump_entries = se3di_iopool_array(&reader->model->pool, list ? list->count : 1,
                                                   sizeof *particles->clump_entries);
     if (!particles->clumps || !particles->clump_entries) {
         return se3di_reader_fail_memory(reader);
     }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_clump(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    return se3di_read_entries(reader, list, read_clump);
 }
 
 bool se3di_read_key_clump(se3di_reader *reader, const se3di_node *map, uint32_t *clump)

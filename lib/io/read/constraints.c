@@ -130,34 +130,19 @@ static bool read_primitive(se3di_reader *reader, const se3di_node *node, se3di_e
                               se3d_primitive_create(reader->system, &def, &entry->constraint));
 }
 
-bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
+static bool read_constraint(se3di_reader *reader, const se3di_node *node)
 {
-    const se3di_node *list = NULL;
     const char *type = NULL;
     se3di_element_entry *entry = NULL;
-    if (!se3di_read_list(reader, root, "constraints", &list)) {
+    if (!se3di_read_type(reader, node, &se3di_object_constraint, &type) ||
+        !se3di_read_element(reader, node, SE3DI_ELEMENT_CONSTRAINT, &entry)) {
         return false;
     }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        bool wanted = true;
-        if (!se3di_reader_wants(reader, node)) {
-            continue;
-        }
-        if (!se3di_read_when(reader, node, &wanted)) {
-            return false;
-        }
-        if (!wanted) {
-            continue;
-        }
-        if (!se3di_read_type(reader, node, &se3di_object_constraint, &type) ||
-            !se3di_read_element(reader, node, SE3DI_ELEMENT_CONSTRAINT, &entry)) {
-            return false;
-        }
-        const bool pair = strncmp(type, "perpendicular", 13) == 0;
-        if (pair ? !se3di_read_pair(reader, node, type, entry)
-                 : !read_primitive(reader, node, entry)) {
-            return false;
-        }
-    }
-    return true;
+    return strncmp(type, "perpendicular", 13) == 0 ? se3di_read_pair(reader, node, type, entry)
+                                                   : read_primitive(reader, node, entry);
+}
+
+bool se3di_read_constraints(se3di_reader *reader, const se3di_node *root)
+{
+    return se3di_read_each(reader, root, "constraints", read_constraint);
 }

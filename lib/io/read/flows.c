@@ -86,15 +86,6 @@ static bool read_flow(se3di_reader *reader, const se3di_node *node)
 bool se3di_read_flows(se3di_reader *reader, const se3di_node *list)
 {
     se3di_tagged *particles = reader->model->particles;
-    particles->flows =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->flows);
-    if (!particles->flows) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_flow(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    particles->flows = se3di_read_room(reader, list, sizeof *particles->flows);
+    return particles->flows && se3di_read_entries(reader, list, read_flow);
 }

@@ -597,18 +597,5 @@ static bool read_force(se3di_reader *reader, const se3di_node *node)
 
 bool se3di_read_forces(se3di_reader *reader, const se3di_node *root)
 {
-    const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, root, "forces", &list)) {
-        return false;
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        bool wanted = true;
-        if (!se3di_reader_wants(reader, node)) {
-            continue;
-        }
-        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_force(reader, node))) {
-            return false;
-        }
-    }
-    return true;
+    return se3di_read_each(reader, root, "forces", read_force);
 }

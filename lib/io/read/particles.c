@@ -445,17 +445,8 @@ static bool read_sink(se3di_reader *reader, const se3di_node *node)
 static bool read_sinks(se3di_reader *reader, const se3di_node *list)
 {
     se3di_tagged *particles = reader->model->particles;
-    particles->sinks =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->sinks);
-    if (!particles->sinks) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_sink(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    particles->sinks = se3di_read_room(reader, list, sizeof *particles->sinks);
+    return particles->sinks && se3di_read_entries(reader, list, read_sink);
 }
 
 static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_entry *region)
@@ -483,21 +474,18 @@ static bool read_box(se3di_reader *reader, const se3di_node *node, se3di_region_
     return se3di_read_key_set(reader, node, "set", &region->tag);
 }
 
+static bool add_region(se3di_reader *reader, const se3di_node *node)
+{
+    se3di_tagged *particles = reader->model->particles;
+    return read_box(reader, node, &particles->regions[particles->region_count]) &&
+           ++particles->region_count > 0;
+}
+
 static bool read_regions(se3di_reader *reader, const se3di_node *list)
 {
     se3di_tagged *particles = reader->model->particles;
-    particles->regions =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->regions);
-    if (!particles->regions) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_box(reader, node, &particles->regions[particles->region_count])) {
-            return false;
-        }
-        ++particles->region_count;
-    }
-    return true;
+    particles->regions = se3di_read_room(reader, list, sizeof *particles->regions);
+    return particles->regions && se3di_read_entries(reader, list, add_region);
 }
 
 /* Particles push bodies in `verlet` only; in kinematics the motion of the bodies is given. */

@@ -87,15 +87,6 @@ static bool read_servo(se3di_reader *reader, const se3di_node *node)
 bool se3di_read_servos(se3di_reader *reader, const se3di_node *list)
 {
     se3di_tagged *particles = reader->model->particles;
-    particles->servos =
-        se3di_iopool_array(reader->pool, list ? list->count : 1, sizeof *particles->servos);
-    if (!particles->servos) {
-        return se3di_reader_fail_memory(reader);
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        if (!read_servo(reader, node)) {
-            return false;
-        }
-    }
-    return true;
+    particles->servos = se3di_read_room(reader, list, sizeof *particles->servos);
+    return particles->servos && se3di_read_entries(reader, list, read_servo);
 }

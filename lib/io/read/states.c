@@ -154,17 +154,7 @@ static bool read_state(se3di_reader *reader, const se3di_node *node)
 
 bool se3di_read_states(se3di_reader *reader, const se3di_node *root)
 {
-    const se3di_node *list = NULL;
-    if (!se3di_read_list(reader, root, "states", &list)) {
-        return false;
-    }
-    for (const se3di_node *node = list ? list->first : NULL; node; node = node->next) {
-        bool wanted = true;
-        if (!se3di_read_when(reader, node, &wanted) || (wanted && !read_state(reader, node))) {
-            return false;
-        }
-    }
-    return true;
+    return se3di_read_each(reader, root, "states", read_state);
 }
 
 /* ---- what they depend on --------------------------------------------------------------------*/
