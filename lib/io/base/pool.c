@@ -124,6 +124,28 @@ void *se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *c
     return grown;
 }
 
+bool se3di_iotext_put(se3di_iotext *t, se3di_iopool *pool, const char *text)
+{
+    const size_t length = strlen(text);
+    if (t->used + length + 1 > t->room) {
+        const size_t room = 2 * (t->used + length) + 4096;
+        char *grown = se3di_iopool_alloc(pool, room);
+        if (!grown) {
+            return false;
+        }
+        if (t->used > 0) {
+            memcpy(grown, t->text, t->used);
+        }
+        t->text = grown;
+        t->room = room;
+    }
+    memcpy(t->text + t->used, text, length + 1);
+    t->used += length;
+    const char *line = strrchr(text, '\n');
+    t->column = line ? strlen(line + 1) : t->column + length;
+    return true;
+}
+
 static size_t name_hash(const char *name)
 {
     uint64_t hash = UINT64_C(14695981039346656037);

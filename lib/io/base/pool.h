@@ -34,6 +34,16 @@ char *se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length);
 void *se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *capacity,
                         size_t size);
 
+/* A text that grows at its end. */
+typedef struct se3di_iotext {
+    char *text; /* ends with a zero; NULL: nothing yet */
+    size_t used, room;
+    size_t column; /* after the last line break */
+} se3di_iotext;
+
+/* @return false: no memory, nothing changed. */
+bool se3di_iotext_put(se3di_iotext *t, se3di_iopool *pool, const char *text);
+
 /* Names to indices: open addressing over texts that the caller keeps. */
 typedef struct se3di_ionames {
     struct se3di_ionames_entry {

@@ -14,36 +14,13 @@ enum { WIDTH = 110 };
 
 typedef struct writer {
     se3di_machine *m;
-    char *text;
-    size_t used, room;
-    size_t column;
+    se3di_iotext out;
     bool failed;
 } writer;
 
 static void put(writer *w, const char *text)
 {
-    const size_t length = text ? strlen(text) : 0;
-    if (!text || w->failed) {
-        w->failed = true;
-        return;
-    }
-    if (w->used + length + 1 > w->room) {
-        const size_t room = 2 * (w->used + length) + 4096;
-        char *grown = se3di_iopool_alloc(w->m->pool, room);
-        if (!grown) {
-            w->failed = true;
-            return;
-        }
-        if (w->used > 0) {
-            memcpy(grown, w->text, w->used);
-        }
-        w->text = grown;
-        w->room = room;
-    }
-    memcpy(w->text + w->used, text, length + 1);
-    w->used += length;
-    const char *line = strrchr(text, '\n');
-    w->column = line ? strlen(line + 1) : w->column + length;
+    w->failed = w->failed || !text || !se3di_iotext_put(&w->out, w->m->pool, text);
 }
 
 /* A comment, each of its lines as far as it goes. */
@@ -75,7 +52,7 @@ static void put_comment(writer *w, const char *indent, const char *text)
 static void put_pair(writer *w, const char *indent, const char *key, const char *value, bool first)
 {
     if (value && !first) {
-        if (w->column + strlen(key) + strlen(value) + 4 > WIDTH) {
+        if (w->out.column + strlen(key) + strlen(value) + 4 > WIDTH) {
             put(w, ",\n");
             put(w, indent);
         } else {
@@ -440,8 +417,8 @@ se3d_status se3di_machine_write(se3di_machine *m, const char **text, size_t *len
         put(&w, se3di_machine_number(m, m->step));
     }
     put(&w, "}\n");
-    *text = w.text;
-    *length = w.used;
+    *text = w.out.text;
+    *length = w.out.used;
     if (m->pool->is_short || m->status < 0) {
         se3di_machine_fail_memory(m);
         return m->status;

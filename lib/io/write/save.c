@@ -11,31 +11,9 @@ enum { WIDTH = 110 };
 
 void se3di_save_put(se3di_save *s, const char *text)
 {
-    if (s->status < 0) {
-        return;
-    }
-    if (!text) {
+    if (s->status >= 0 && (!text || !se3di_iotext_put(&s->out, &s->pool, text))) {
         s->status = SE3D_ERR_NO_MEMORY;
-        return;
     }
-    const size_t length = strlen(text);
-    if (s->used + length + 1 > s->room) {
-        const size_t room = 2 * (s->used + length) + 4096;
-        char *grown = se3di_iopool_alloc(&s->pool, room);
-        if (!grown) {
-            s->status = SE3D_ERR_NO_MEMORY;
-            return;
-        }
-        if (s->used > 0) {
-            memcpy(grown, s->text, s->used);
-        }
-        s->text = grown;
-        s->room = room;
-    }
-    memcpy(s->text + s->used, text, length + 1);
-    s->used += length;
-    const char *line = strrchr(text, '\n');
-    s->column = line ? strlen(line + 1) : s->column + length;
 }
 
 void se3di_save_line(se3di_save *s, const char *text)
@@ -134,7 +112,7 @@ void se3di_save_put_quoted(se3di_save *s, const char *text)
 /* Break the line before a pair or a number that would go beyond its end. */
 static void make_room(se3di_save *s, size_t length)
 {
-    if (s->column + length > WIDTH) {
+    if (s->out.column + length > WIDTH) {
         se3di_save_put(s, "\n");
         se3di_save_put(s, s->indent);
     } else {
@@ -245,7 +223,7 @@ void se3di_save_begin_section(se3di_save *s, const char *title)
 
 se3di_save_entry se3di_save_open(se3di_save *s)
 {
-    const se3di_save_entry entry = {s->used, s->column, s->section};
+    const se3di_save_entry entry = {s->out.used, s->out.column, s->section};
     if (s->section) {
         se3di_save_put(s, "\n");
         se3di_save_put(s, s->section);
@@ -267,8 +245,8 @@ bool se3di_save_close(se3di_save *s, const se3di_save_entry *entry)
         s->status = SE3D_ERR_UNSUPPORTED;
     }
     if (s->status >= 0) {
-        s->used = entry->used;
-        s->column = entry->column;
+        s->out.used = entry->used;
+        s->out.column = entry->column;
         s->section = entry->section;
         se3di_save_comment(s, "", "Left out:");
         se3di_save_comment(s, "", s->problem);

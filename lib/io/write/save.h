@@ -24,8 +24,7 @@ typedef struct se3di_save {
     const char *path;        /* of the file to be; NULL: none */
     bool wants_document;     /* what only the model knows, too */
     bool partial;            /* what cannot be said becomes a comment */
-    char *text;
-    size_t used, room, column;
+    se3di_iotext out;
     bool is_first; /* the next pair is the first of its map */
     const char *indent;
     bool in_files;       /* `file` of the document's nodes is one that the model reads */

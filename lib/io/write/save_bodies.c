@@ -307,7 +307,7 @@ void se3di_save_shapes(se3di_save *s, se3d_body body)
         const se3di_shape_entry *entry = &s->model->shapes[k];
         if (entry->shape.body.index1 == body.index1) {
             open_part(s, "shapes", &is_first);
-            const se3di_save_entry at = {s->used - strlen("      - {"), 0, NULL};
+            const se3di_save_entry at = {s->out.used - strlen("      - {"), 0, NULL};
             save_shape(s, entry);
             close_shape(s, &at, body, entry->shape.file);
         }
@@ -319,7 +319,7 @@ void se3di_save_shapes(se3di_save *s, se3d_body body)
         (void)se3d_shape_get_body(s->system, shape, &owner);
         if (owner.index1 == body.index1) {
             open_part(s, "shapes", &is_first);
-            const se3di_save_entry at = {s->used - strlen("      - {"), 0, NULL};
+            const se3di_save_entry at = {s->out.used - strlen("      - {"), 0, NULL};
             save_made_shape(s, shape);
             close_shape(s, &at, body, NULL);
         }
@@ -443,7 +443,7 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
 static void save_pairs(se3di_save *s)
 {
     const size_t count = se3d_system_count_materials(s->system);
-    const size_t before = s->used;
+    const size_t before = s->out.used;
     bool any = false;
     se3di_save_line(s, "  pairs:");
     for (size_t i = 0; i < count; ++i) {
@@ -454,7 +454,7 @@ static void save_pairs(se3di_save *s)
             any = save_pair(s, a, b) || any;
         }
     }
-    s->used = any || s->status < 0 ? s->used : before;
+    s->out.used = any || s->status < 0 ? s->out.used : before;
 }
 
 /* Of particles. */
@@ -495,7 +495,7 @@ void se3di_save_contact(se3di_save *s)
     se3di_save_begin_section(s, NULL);
     if (settings.law == SE3D_CONTACT_LAW_CALLBACK) {
         se3di_save_refuse(s, "the law of contact is a callback");
-        const se3di_save_entry at = {s->used, s->column, NULL};
+        const se3di_save_entry at = {s->out.used, s->out.column, NULL};
         (void)se3di_save_close(s, &at);
         return;
     }

@@ -42,7 +42,7 @@ void se3di_save_put_node(se3di_save *s, const se3di_node *node)
     se3di_save_put(s, is_map ? "{" : "[");
     for (const se3di_node *child = node->first; child; child = child->next) {
         if (child != node->first) {
-            se3di_save_put(s, s->column > WIDTH - 20 ? ",\n     " : ", ");
+            se3di_save_put(s, s->out.column > WIDTH - 20 ? ",\n     " : ", ");
         }
         if (is_map) {
             se3di_save_put(s, child->key);

@@ -86,7 +86,7 @@ static se3d_status write_file(se3di_save *s, const char *path, const se3d_write_
     if (!file) {
         return fail_write(error, path);
     }
-    if (fwrite(s->text, 1, s->used, file) != s->used) {
+    if (fwrite(s->out.text, 1, s->out.used, file) != s->out.used) {
         status = fail_write(error, path);
         se3di_partial_abandon(file, path);
         return status;
@@ -142,10 +142,10 @@ se3d_status se3d_model_write_text(const se3d_model *model, const se3d_write_opti
     se3di_iopool_init(&s.pool, &model->pool.allocator);
     se3d_status status = make_text(&s, options, error);
     if (status >= 0) {
-        *length = s.used;
-        if (text && s.used < capacity) {
-            memcpy(text, s.text, s.used);
-            text[s.used] = '\0'; /* what was taken back may follow */
+        *length = s.out.used;
+        if (text && s.out.used < capacity) {
+            memcpy(text, s.out.text, s.out.used);
+            text[s.out.used] = '\0'; /* what was taken back may follow */
         } else if (text) {
             status = fail(error, SE3D_ERR_INVALID_ARGUMENT, "", "capacity is too small");
         }

@@ -349,8 +349,8 @@ static void put_table(se3di_save *s, const se3d_function_def *def)
     se3di_save_put(s, ": [");
     for (size_t k = 0; k < def->table_count; ++k) {
         if (k > 0) {
-            se3di_save_put(s, s->column > 90 ? ",\n" : ", ");
-            se3di_save_put(s, s->column == 0 ? s->indent : "");
+            se3di_save_put(s, s->out.column > 90 ? ",\n" : ", ");
+            se3di_save_put(s, s->out.column == 0 ? s->indent : "");
         }
         se3di_save_put(s, "[");
         put_number(s, def->table_x[k]);
