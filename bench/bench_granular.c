@@ -11,6 +11,8 @@
  *     mesh=0        1: these planes are 48 triangles
  *     funnel=0      1: the box is a conical hopper of 192 triangles, opened below before the lead
  *     gate=0        1: it stays shut, a silo
+ *     clump=0       1: edge^3/2 dimers instead, two of these spheres half a diameter apart, from a
+ *                   lattice above the box; without a state
  *     state=FILE    the settled state as a LAMMPS data file: read if there is one, written
  *                   otherwise, so that others start from the same
  *     tiles=1       the state is one of (edge/tiles)^3 spheres, put side by side and on top of each
@@ -48,7 +50,7 @@ typedef struct bench {
     double turned; /* angle of the drum */
     int hertz, reserved;
     double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles, funnel;
-    double mesh, shut;
+    double mesh, shut, clump;
     se3d_shape gate;
     const char *file;
 } bench;
@@ -180,6 +182,25 @@ static void add_walls(bench *b, se3d_material material)
     }
 }
 
+/* As many layers as it takes. */
+static void use_dimers(bench *b, se3d_fill_def *fill)
+{
+    const double r[6] = {-0.25 * DIAMETER, 0.0, 0.0, 0.25 * DIAMETER, 0.0, 0.0};
+    const double radius[2] = {0.5 * DIAMETER, 0.5 * DIAMETER};
+    se3d_clump_def def = se3d_clump_def_default();
+    uint32_t index;
+    def.count = 2;
+    def.r = r;
+    def.radius = radius;
+    must(b, se3d_particles_add_clump_template(b->particles, &def, &index));
+    fill->clump = 1 + index;
+    fill->radius_min = fill->radius_max = 0.75 * DIAMETER;
+    fill->spacing = 1.5 * SPACING;
+    const double side = floor(width_of(b) / fill->spacing);
+    const double layers = ceil(0.5 * (double)(b->edge * b->edge * b->edge) / (side * side));
+    fill->upper[2] = (layers + 0.01) * fill->spacing;
+}
+
 static void build(bench *b)
 {
     must(b, se3d_system_create(NULL, &b->system));
@@ -205,7 +226,11 @@ static void build(bench *b)
     fill.jitter = 0.045 * DIAMETER;
     fill.spacing = SPACING;
     fill.seed = 1;
+    if (b->clump > 0.0) {
+        use_dimers(b, &fill);
+    }
     must(b, se3d_particles_fill_lattice(b->particles, &fill, &b->count));
+    b->count = se3d_particles_count(b->particles);
     b->state = calloc(9 * b->count, sizeof *b->state);
 }
 
@@ -229,6 +254,10 @@ static void go(bench *b, size_t steps)
 static void settle(bench *b)
 {
     double *v = b->state + 3 * b->count;
+    if (b->clump > 0.0) {
+        must(b, se3d_particles_step(b->particles, (size_t)b->settle));
+        return;
+    }
     for (double k = 0; k < b->settle; k += 50) {
         must(b, se3d_particles_step(b->particles, 50));
         must(b, se3d_particles_get_all(b->particles, b->count, NULL, v, v + 3 * b->count));
@@ -404,7 +433,7 @@ static int parse(bench *b, const char *text)
     } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
                    {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
                    {"drum", &b->drum_rate},  {"tiles", &b->tiles},     {"funnel", &b->funnel},
-                   {"mesh", &b->mesh},       {"gate", &b->shut}};
+                   {"mesh", &b->mesh},       {"gate", &b->shut},       {"clump", &b->clump}};
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states.
+"""Granular beds here, in LAMMPS and in LIGGGHTS, in turn, from the same settled states; dimers, as
+they fall into a box and settle, from lattices here and at random there.
 
     compare.py BENCH [--quick] [--edges 20 32 50] [--laws hooke hertz] [--avalanche 20] [--drum 20]
-               [--funnel 21] [--silo 19] [--repeats 3] [--processes 1 2] [--keep FOLDER]
+               [--funnel 21] [--silo 19] [--clump 14] [--repeats 3] [--processes 1 2] [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -80,7 +81,8 @@ class Case:
     planes or of triangles, a hopper of triangles that empties, or a silo, which is one that does
     not."""
 
-    LEADS = {"avalanche": 10000, "drum": 20000, "shell": 20000, "funnel": 5000, "silo": 300}
+    LEADS = {"avalanche": 10000, "drum": 20000, "shell": 20000, "funnel": 5000, "silo": 300,
+             "clump": 40000}
     TILT = 45.0
     RATE = 2.0  # of the drum [rad/s]
 
@@ -89,16 +91,20 @@ class Case:
         self.count = edge ** 3
         self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
         self.steps = max(100, self.LEADS.get(kind, 0) // 2, round(options.work / self.count))
+        self.has_state = kind != "clump"
         self.drum, self.hopper = kind in ("drum", "shell"), kind in ("funnel", "silo")
         bed = "drum" if self.drum else "funnel" if self.hopper else "column"
         self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
-        self.own = [options.bench, f"edge={edge}", f"law={law}", f"state={self.state}"]
+        self.own = [options.bench, f"edge={edge}", f"law={law}"]
+        self.own += [f"state={self.state}"] if self.has_state else ["clump=1", "settle=0"]
         self.own += [f"drum={self.RATE}"] if self.drum else []
         self.own += ["mesh=1"] if kind == "shell" else []
         self.own += ["funnel=1"] if self.hopper else []
         self.own += ["gate=1"] if kind == "silo" else []
 
     def settle(self):
+        if not self.has_state:
+            return
         if not os.path.exists(self.state):
             more = ["settle=120000"] if self.hopper else []
             run(self.own + more + ["steps=1", "lead=0"])
@@ -132,6 +138,11 @@ class Case:
             gate = ["-var", "gate", repr(RINGS[-1][1] * width)] if self.kind == "silo" else []
             write_funnel(shell, width)
             return "funnel", ["-var", "shell", shell] + gate
+        if not self.has_state:
+            dimer = self.state + ".dimer"
+            with open(dimer, "w", encoding="ascii") as target:
+                target.write("-0.0025 0 0 0.005\n0.0025 0 0 0.005\n")
+            return "clump", ["-var", "count", str(self.count // 2), "-var", "dimer", dimer]
         angle = math.radians(self.TILT if self.kind == "avalanche" else 0.0)
         return self.law, ["-var", "gx", repr(math.sin(angle)), "-var", "gz",
                           repr(-math.cos(angle))]
@@ -142,7 +153,8 @@ class Case:
         what, more = self.peer_inputs(name)
         state = self.state + (".plain" if program == "liggghts" else "")
         command = [program, "-in", f"{HERE}/{name}_{what}.in", "-log", "none",
-                   "-var", "data", state, "-var", "w", repr(self.edge * PITCH)] + more
+                   "-var", "w", repr(self.edge * PITCH)] + more
+        command += ["-var", "data", state] if self.has_state else []
         command += ["-var", "lead", str(self.lead), "-var", "steps"]
         if ranks > 1:
             command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", str(ranks)] + command
@@ -202,6 +214,7 @@ def main():
     parser.add_argument("--drum", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--funnel", type=int, nargs="*", default=[21], help="edges")
     parser.add_argument("--silo", type=int, nargs="*", default=[19], help="edges")
+    parser.add_argument("--clump", type=int, nargs="*", default=[14], help="edges")
     parser.add_argument("--quick", action="store_true",
                         help="8,000 spheres only, each program once, for a short time")
     parser.add_argument("--repeats", type=int, default=3)
@@ -226,10 +239,11 @@ def main():
     cases += [(kind, e, "hooke") for kind in ("drum", "shell") for e in options.drum]
     cases += [("funnel", e, "hooke") for e in options.funnel]
     cases += [("silo", e, "hooke") for e in options.silo]
+    cases += [("clump", e, "hooke") for e in options.clump]
     for kind, edge, law in cases:
         case = Case(options, kind, edge, law)
         case.settle()
-        may = [p for p in programs if not case.hopper or p != "lmp"]  # no triangles in LAMMPS 2021
+        may = [p for p in programs if p != "lmp" or not (case.hopper or kind == "clump")]
         report(case, measure(case, may, options), programs, options.processes)
 
 
