@@ -168,6 +168,9 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations)
 static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double t1)
 {
     se3di_assembly *assembly = &equations->assembly;
+    if (assembly->row_count == 0) {
+        return SE3D_OK;
+    }
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t1, equations->error));
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_jacobian(assembly);
@@ -217,6 +220,33 @@ static se3d_status project(se3di_equations *equations, double t1)
     return se3di_state_project(equations, t1, &scale, 1e-15, 0);
 }
 
+/* Without constraints each body has its own equations; what sleeps has none. */
+static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations, double t1)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    const se3di_model *model = assembly->model;
+    if (assembly->row_count > 0) {
+        return se3di_acceleration_solve(equations, t1);
+    }
+    SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t1, equations->error));
+    ++equations->counters.evaluations;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t at = assembly->free_body[k];
+        const double *w = model->frames[at].w, *wrench = assembly->wrench + 6 * (size_t)at;
+        double *a = model->acceleration + 6 * (size_t)at, J[9], L[3], gyro[3], torque[3];
+        if (c->asleep[k]) {
+            continue;
+        }
+        se3di_inertia_matrix(model->bodies[at].J, J);
+        se3di_mul(J, w, L);
+        se3di_cross(w, L, gyro);
+        se3di_sub(wrench + 3, gyro, torque);
+        se3di_scale(1.0 / model->bodies[at].mass, wrench, a);
+        se3di_solve3(J, torque, a + 3);
+    }
+    return SE3D_OK;
+}
+
 /* What the step has become, at t1. */
 static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double t1)
 {
@@ -234,7 +264,10 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     model->time = t1;
     se3di_angles_accept(model);
     se3di_loads_accept(model);
-    SE3DI_TRY(se3di_acceleration_solve(equations, t1));
+    model->contacts.frozen = c->asleep_count > 0 ? c->frozen : NULL;
+    const se3d_status accelerated = accelerate(c, equations, t1);
+    model->contacts.frozen = NULL;
+    SE3DI_TRY(accelerated);
     SE3DI_TRY(se3di_user_report(model, equations->error));
     model->work[0] += taken;
     model->work[1] += se3di_convex_fed(c);

@@ -254,12 +254,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
                         const se3di_body_contact *record)
 {
     const se3di_model *model = assembly->model;
-    const uint32_t bodies[2] = {model->shapes[record->shape_i].body,
-                                model->shapes[record->shape_j].body};
     se3di_convex_contact *c = &convex->contacts[convex->contact_count];
-    if (convex->frozen[bodies[0]] && convex->frozen[bodies[1]]) {
-        return;
-    }
     *c = (se3di_convex_contact){.record = record, .coupling = -1};
     set_geometry(c, assembly);
     if (c->free[0] < 0 && c->free[1] < 0) {
@@ -318,8 +313,12 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
     convex->contact_count = 0;
     memset(convex->touched, 0, assembly->body_count);
     for (size_t k = 0; k < count; ++k) {
-        SE3DI_TRY(check_pair(&c, &model->contacts.list[k]));
-        collect_one(convex, assembly, &model->contacts.list[k]);
+        const se3di_body_contact *record = &model->contacts.list[k];
+        if (!convex->frozen[model->shapes[record->shape_i].body] ||
+            !convex->frozen[model->shapes[record->shape_j].body]) {
+            SE3DI_TRY(check_pair(&c, record));
+            collect_one(convex, assembly, record);
+        }
     }
     return SE3D_OK;
 }

@@ -8,6 +8,7 @@
  * The caps of friction follow the normal impulses until they agree.    docs/theory/convex.md */
 #include "integrator/convex.h"
 
+#include "math/inertia.h"
 #include "math/larger.h"
 #include "math/vec3.h"
 
@@ -119,15 +120,29 @@ static se3d_status reserve_blocks(const se3d_allocator *allocator, double **bloc
     return status;
 }
 
-/* The mass by places, and its inverse. */
+/* The mass by places, and its inverse, of what takes part. */
 static void place_mass(se3di_convex *c, const se3di_assembly *assembly)
 {
+    const int is_bound = assembly->row_count > 0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_body *body = &assembly->model->bodies[assembly->free_body[k]];
         const size_t at = (size_t)c->place[k];
         double *M = c->own + 36 * at, *mobility = c->mobility + 10 * at, J[9];
-        memcpy(M, assembly->H + 36 * k, 36 * sizeof *M);
-        for (size_t r = 0; r < 3; ++r) {
-            memcpy(J + 3 * r, M + 6 * (3 + r) + 3, 3 * sizeof *J);
+        if (!c->touched[k] && !is_bound) {
+            continue;
+        }
+        se3di_inertia_matrix(body->J, J);
+        if (is_bound) {
+            memcpy(M, assembly->H + 36 * k, 36 * sizeof *M);
+            for (size_t r = 0; r < 3; ++r) {
+                memcpy(J + 3 * r, M + 6 * (3 + r) + 3, 3 * sizeof *J);
+            }
+        } else {
+            memset(M, 0, 36 * sizeof *M);
+            for (size_t r = 0; r < 3; ++r) {
+                M[7 * r] = body->mass;
+                memcpy(M + 6 * (3 + r) + 3, J + 3 * r, 3 * sizeof *J);
+            }
         }
         mobility[0] = 1.0 / M[0];
         for (size_t r = 0; r < 3; ++r) {

@@ -125,7 +125,10 @@ void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wre
 {
     if (are_stepped(model)) {
         for (size_t k = 0; k < model->contacts.count; ++k) {
-            add_stepped_wrench(model, &model->contacts.list[k], wrench);
+            const se3di_body_contact *c = &model->contacts.list[k];
+            if (!se3di_contact_is_frozen(model, c->shape_i, c->shape_j)) {
+                add_stepped_wrench(model, c, wrench);
+            }
         }
         return;
     }
@@ -186,6 +189,7 @@ typedef struct preparation {
     double t;
     double overlap_limit;
     se3di_error *error;
+    size_t place; /* in the list, of the last pair that stays */
 } preparation;
 
 const char *se3di_shape_describe(const se3di_model *model, uint32_t shape)
@@ -238,9 +242,14 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
 /* The contacts of two bodies that stay go on as they are. */
 static se3d_status keep_pair(void *ctx, uint32_t i, uint32_t j)
 {
-    const preparation *p = ctx;
+    preparation *p = ctx;
     se3di_body_contacts *c = &p->model->contacts;
-    const size_t first = find_pair(c, i, j);
+    while (p->place < c->count &&
+           (c->list[p->place].shape_i < i ||
+            (c->list[p->place].shape_i == i && c->list[p->place].shape_j < j))) {
+        ++p->place;
+    }
+    const size_t first = p->place;
     size_t end = first;
     while (end < c->count && c->list[end].shape_i == i && c->list[end].shape_j == j) {
         ++end;
@@ -279,7 +288,7 @@ se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *er
 
 static se3d_status note_all(se3di_model *model, double t, double overlap_limit, se3di_error *error)
 {
-    preparation p = {model, t, overlap_limit, error};
+    preparation p = {model, t, overlap_limit, error, 0};
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     model->contacts.next_time = t;
