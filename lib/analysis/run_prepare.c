@@ -294,6 +294,7 @@ se3d_status se3di_run_build(se3di_run *run)
     run->values_version = run->model->values_version;
     if (se3di_run_is_driven(run)) {
         se3di_assembly_level(&run->equations.assembly);
+        run->equations.is_suited = 0; /* the solver is told of it */
     }
     se3di_assembly_eval_mass(&run->equations.assembly); /* steps may rely on constant blocks */
     se3d_status status = allocate_work(run);

@@ -55,6 +55,12 @@ static int has_light_body(const se3di_assembly *assembly)
     return least[0] < LIGHT * most[0] || least[1] < LIGHT * most[1];
 }
 
+/* Rows that determine a motion and are no more than its unknowns do not depend on each other. */
+static int has_rows_to_spare(const se3di_assembly *assembly)
+{
+    return !assembly->levels || assembly->row_count != assembly->unknown_count;
+}
+
 void se3di_equations_suit_masses(se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
@@ -75,8 +81,10 @@ void se3di_equations_suit_masses(se3di_equations *equations)
     equations->poses_version = model->poses_version;
     equations->is_suited = 1;
     se3di_kkt_settings settings = se3di_kkt_get_settings(equations->kkt);
-    settings.regularise = has_light_body(&equations->assembly) ? SE3DI_KKT_REGULARISE_LATE
-                                                               : SE3DI_KKT_REGULARISE_AUTO;
+    settings.regularise =
+        has_light_body(&equations->assembly) || !has_rows_to_spare(&equations->assembly)
+            ? SE3DI_KKT_REGULARISE_LATE
+            : SE3DI_KKT_REGULARISE_AUTO;
     se3di_kkt_set_settings(equations->kkt, &settings);
 }
 
@@ -625,15 +633,24 @@ se3d_status se3di_equations_accelerate(se3di_equations *equations, double t, int
     return se3di_equations_solve(equations);
 }
 
+/* Whether the factors that velocities were solved by are those of accelerations, too. */
+static int keeps_factors(const se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    return assembly->levels && !has_rows_to_spare(assembly) && assembly->user_count == 0 &&
+           !equations->hold && se3di_kkt_get_dependent_rows(equations->kkt) == 0;
+}
+
 /* Of a motion that the constraints determine, H weighing all bodies alike: accelerations from the
  * constraints alone, then C^T lambda = Q - M qddot, as H qddot + C^T lambda = Q - (M - H) qddot. So
  * masses decide on no rank. */
-static se3d_status solve_driven(se3di_equations *equations, double t)
+static se3d_status solve_driven(se3di_equations *equations, double t, int has_factors)
 {
     se3di_assembly *assembly = &equations->assembly;
     se3di_assembly_eval_mass(assembly);
     SE3DI_TRY(eval_accelerated(equations, t));
-    SE3DI_TRY(se3di_equations_factor_values(equations, equations->assembly.model->time, 1));
+    SE3DI_TRY(has_factors ? check_values(equations)
+                          : se3di_equations_factor_values(equations, assembly->model->time, 1));
     SE3DI_TRY(se3di_equations_solve(equations));
     se3di_assembly_subtract_inertia(assembly, equations->x, equations->b);
     se3di_assembly_mul_mass(assembly, equations->x, equations->probe);
@@ -649,12 +666,12 @@ static se3d_status solve_free(se3di_equations *equations, double t)
     return se3di_equations_accelerate(equations, t, 1);
 }
 
-se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
+static se3d_status solve_acceleration(se3di_equations *equations, double t, int has_factors)
 {
     se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     const se3d_status status =
-        assembly->levels ? solve_driven(equations, t) : solve_free(equations, t);
+        assembly->levels ? solve_driven(equations, t, has_factors) : solve_free(equations, t);
     SE3DI_TRY(status);
     ++equations->counters.evaluations;
     equations->redundant |=
@@ -667,6 +684,11 @@ se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
     SE3DI_TRY(check_level(equations, t, "acceleration"));
     se3di_assembly_set_acceleration(assembly, equations->x);
     return SE3D_OK;
+}
+
+se3d_status se3di_acceleration_solve(se3di_equations *equations, double t)
+{
+    return solve_acceleration(equations, t, 0);
 }
 
 se3d_status se3di_multipliers_reduce(se3di_equations *equations)
@@ -700,9 +722,10 @@ se3d_status se3di_state_solve(se3di_equations *equations, double t)
 {
     SE3DI_TRY(se3di_position_solve(equations, t));
     SE3DI_TRY(se3di_velocity_solve(equations, t));
+    const int has_factors = keeps_factors(equations);
     int32_t hold = equations->hold;
     equations->hold = 0; /* held bodies accelerate like all others */
-    se3d_status status = se3di_acceleration_solve(equations, t);
+    se3d_status status = solve_acceleration(equations, t, has_factors);
     equations->hold = hold;
     return status;
 }
