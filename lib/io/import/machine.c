@@ -445,21 +445,27 @@ se3di_entry *se3di_machine_add_force(se3di_machine *m, const char *name, const c
     return entry;
 }
 
-void se3di_entry_put(se3di_machine *m, se3di_entry *entry, const char *key, const char *value)
+static void append_pair(se3di_machine *m, const char *key, const char *value, se3di_pair **first,
+                        se3di_pair **last)
 {
-    se3di_pair *pair = entry && value ? se3di_iopool_alloc(m->pool, sizeof *pair) : NULL;
+    se3di_pair *pair = se3di_iopool_alloc(m->pool, sizeof *pair);
     if (!pair) {
         se3di_machine_fail_memory(m);
         return;
     }
     pair->key = key;
     pair->value = value;
-    if (entry->last) {
-        entry->last->next = pair;
-    } else {
-        entry->first = pair;
+    *(*last ? &(*last)->next : first) = pair;
+    *last = pair;
+}
+
+void se3di_entry_put(se3di_machine *m, se3di_entry *entry, const char *key, const char *value)
+{
+    if (!entry || !value) {
+        se3di_machine_fail_memory(m);
+        return;
     }
-    entry->last = pair;
+    append_pair(m, key, value, &entry->first, &entry->last);
 }
 
 void se3di_entry_put_text(se3di_machine *m, se3di_entry *entry, const char *key, const char *text)
@@ -485,17 +491,5 @@ void se3di_machine_parameter(se3di_machine *m, const char *name, const char *val
             return;
         }
     }
-    se3di_pair *pair = se3di_iopool_alloc(m->pool, sizeof *pair);
-    if (!pair) {
-        se3di_machine_fail_memory(m);
-        return;
-    }
-    pair->key = name;
-    pair->value = value;
-    if (m->last_parameter) {
-        m->last_parameter->next = pair;
-    } else {
-        m->parameters = pair;
-    }
-    m->last_parameter = pair;
+    append_pair(m, name, value, &m->parameters, &m->last_parameter);
 }
