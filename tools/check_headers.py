@@ -118,6 +118,8 @@ class Code:
                 if re.search(r"\bSE3DI_(EDIT|SET|OWNED)", body):
                     calls.add("se3di_enter")
                 found = set(re.findall(r"\bSE3D_(?:ERR_)?((?:INFO_)?[A-Z_]+)\b", body))
+                if "SE3DI_IO_GIVE_ENTRY" in body:
+                    found |= {"NULL", "INVALID_ARGUMENT"}
                 is_static = "static" in body.split("{")[0]
                 place = self.local.setdefault(path, {}) if is_static else self.shared
                 place[name] = (path, calls, found)

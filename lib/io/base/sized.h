@@ -46,4 +46,10 @@ static inline se3d_status se3di_io_give(void *to, size_t size, const void *value
     return SE3D_OK;
 }
 
+/* A getter of one of `count` entries of `owner`: (owner)->member, which may depend on `index`. */
+#define SE3DI_IO_GIVE_ENTRY(out, size, owner, index, count, member)                                \
+    (!(owner) || !(out)          ? SE3D_ERR_NULL                                                   \
+     : (index) >= (owner)->count ? SE3D_ERR_INVALID_ARGUMENT                                       \
+                                 : se3di_io_give(out, size, &(owner)->member, sizeof *(out)))
+
 #endif

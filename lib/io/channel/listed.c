@@ -78,11 +78,5 @@ se3d_status se3d_model_list_channels(se3d_model *model, size_t *count)
 se3d_status se3d_model_get_listed_channel_sized(const se3d_model *model, size_t k,
                                                 se3d_model_channel *channel, size_t size)
 {
-    if (!model || !channel) {
-        return SE3D_ERR_NULL;
-    }
-    if (k >= model->listed_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(channel, size, &model->listed[k], sizeof *model->listed);
+    return SE3DI_IO_GIVE_ENTRY(channel, size, model, k, listed_count, listed[k]);
 }

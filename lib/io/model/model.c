@@ -85,13 +85,8 @@ size_t se3d_model_count_analyses(const se3d_model *model)
 se3d_status se3d_model_get_analysis_sized(const se3d_model *model, size_t index,
                                           se3d_model_analysis *analysis, size_t size)
 {
-    if (!model || !analysis) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= model->analysis_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(analysis, size, &model->analyses[index].analysis, sizeof *analysis);
+    return SE3DI_IO_GIVE_ENTRY(analysis, size, model, index, analysis_count,
+                               analyses[index].analysis);
 }
 
 se3d_status se3d_model_get_solver(const se3d_model *model, size_t index, se3d_solver_def *def)
@@ -119,13 +114,7 @@ size_t se3d_model_count_shapes(const se3d_model *model)
 se3d_status se3d_model_get_shape_sized(const se3d_model *model, size_t index,
                                        se3d_model_shape *shape, size_t size)
 {
-    if (!model || !shape) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= model->shape_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(shape, size, &model->shapes[index].shape, sizeof *shape);
+    return SE3DI_IO_GIVE_ENTRY(shape, size, model, index, shape_count, shapes[index].shape);
 }
 
 size_t se3d_model_count_pictures(const se3d_model *model)
@@ -136,13 +125,7 @@ size_t se3d_model_count_pictures(const se3d_model *model)
 se3d_status se3d_model_get_picture_sized(const se3d_model *model, size_t index,
                                          se3d_model_picture *picture, size_t size)
 {
-    if (!model || !picture) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= model->picture_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(picture, size, &model->pictures[index], sizeof *picture);
+    return SE3DI_IO_GIVE_ENTRY(picture, size, model, index, picture_count, pictures[index]);
 }
 
 bool se3di_joint_has(const se3d_system *system, se3d_constraint joint, se3d_joint_coordinate which)

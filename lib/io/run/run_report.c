@@ -29,13 +29,7 @@ size_t se3d_run_count_analyses(const se3d_run *run)
 se3d_status se3d_run_get_analysis_sized(const se3d_run *run, size_t index,
                                         se3d_run_analysis *analysis, size_t size)
 {
-    if (!run || !analysis) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->analysis_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(analysis, size, &run->analyses[index], sizeof *analysis);
+    return SE3DI_IO_GIVE_ENTRY(analysis, size, run, index, analysis_count, analyses[index]);
 }
 
 size_t se3d_run_count_particles(const se3d_run *run)
@@ -46,13 +40,7 @@ size_t se3d_run_count_particles(const se3d_run *run)
 se3d_status se3d_run_get_particles_sized(const se3d_run *run, size_t index,
                                          se3d_run_particles *particles, size_t size)
 {
-    if (!run || !particles) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->particles_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(particles, size, &run->particles[index], sizeof *particles);
+    return SE3DI_IO_GIVE_ENTRY(particles, size, run, index, particles_count, particles[index]);
 }
 
 size_t se3d_run_count_files(const se3d_run *run)
@@ -63,13 +51,7 @@ size_t se3d_run_count_files(const se3d_run *run)
 se3d_status se3d_run_get_file_sized(const se3d_run *run, size_t index, se3d_run_file *file,
                                     size_t size)
 {
-    if (!run || !file) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->file_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(file, size, &run->files[index], sizeof *file);
+    return SE3DI_IO_GIVE_ENTRY(file, size, run, index, file_count, files[index]);
 }
 
 size_t se3d_run_count_events(const se3d_run *run)
@@ -80,13 +62,7 @@ size_t se3d_run_count_events(const se3d_run *run)
 se3d_status se3d_run_get_event_sized(const se3d_run *run, size_t index, se3d_run_event *event,
                                      size_t size)
 {
-    if (!run || !event) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->events.count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(event, size, &run->events.list[index], sizeof *event);
+    return SE3DI_IO_GIVE_ENTRY(event, size, run, index, events.count, events.list[index]);
 }
 
 size_t se3d_run_count_summaries(const se3d_run *run)
@@ -97,11 +73,5 @@ size_t se3d_run_count_summaries(const se3d_run *run)
 se3d_status se3d_run_get_summary_sized(const se3d_run *run, size_t index, se3d_run_summary *summary,
                                        size_t size)
 {
-    if (!run || !summary) {
-        return SE3D_ERR_NULL;
-    }
-    if (index >= run->summary_count) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    return se3di_io_give(summary, size, &run->summaries[index], sizeof *summary);
+    return SE3DI_IO_GIVE_ENTRY(summary, size, run, index, summary_count, summaries[index]);
 }
