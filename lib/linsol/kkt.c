@@ -222,6 +222,8 @@ static se3d_status take_vectors(se3di_kkt *kkt)
     size_t n = kkt->layout.unknown_count, m = kkt->layout.row_count;
     kkt->mobility = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count * KKT_LANES);
     kkt->weight = se3di_kkt_take_aligned(kkt, m);
+    kkt->raised = se3di_kkt_take_aligned(kkt, n * (size_t)kkt->pattern.body_size);
+    kkt->raise = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count);
     kkt->saved_l = se3di_kkt_take_aligned(kkt, m);
     kkt->saved_x = se3di_kkt_take_aligned(kkt, kkt->pattern.body_count);
     kkt->ratio = se3di_kkt_take_aligned(kkt, m);

@@ -120,6 +120,8 @@ struct se3di_kkt {
     int8_t *pivot;     /* [8 node_count]: row order, unsymmetric mode */
     double *mobility;  /* [8 body_count]: 1 / H_cc */
     double *weight;    /* [row_count]: diag(C H^-1 B) */
+    double *raised;    /* [body_count * n * n]: H of kkt_raise.c */
+    double *raise;     /* [body_count]: over that of the caller */
     double *e;         /* [row_count]: E of the last factorisation */
     double *residual_b, *residual_c, *correction_x, *correction_l;
     double *saved_l, *saved_x; /* multipliers of rows and of normalisations */
@@ -144,6 +146,7 @@ struct se3di_kkt {
     int32_t far_rows; /* with a pivot of KKT_FAR_FROM_DEPENDENT at least; with small pivots only */
     double least_far; /* the smallest of these */
     bool finite;
+    bool is_raised; /* H is `raised` */
 
     /* dense kind */
     double *dense; /* N x N row-major */
@@ -188,6 +191,12 @@ se3d_status se3di_kkt_symbolic_build(se3di_kkt *kkt);
 se3d_status se3di_kkt_dense_create(se3di_kkt *kkt);
 void se3di_kkt_dense_factor(se3di_kkt *kkt, const se3di_kkt_values *values);
 void se3di_kkt_dense_solve(se3di_kkt *kkt, const double *b, const double *c, double *x, double *l);
+
+/* kkt_raise.c: whether some bodies are far lighter than others. */
+bool se3di_kkt_has_light(const se3di_kkt *kkt);
+/* What is to be factored in place of the values; false if that is no other. The
+ * mobilities are those of the values. */
+bool se3di_kkt_raise(se3di_kkt *kkt, const se3di_kkt_values *values, se3di_kkt_values *raised);
 
 /* The kernels of each level, NULL if the compiler cannot make them. */
 const se3di_kkt_core *se3di_kkt_core_portable(void);

@@ -17,6 +17,8 @@ static const double row_rounding = 4e-16;   /* of the terms of a row */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double part_noise = 1e-14;     /* of multipliers, in the dependent directions */
 static const double weight_range = 1e4;
+static const double raised_residual = 1e-9; /* of forces, with bodies that are raised */
+static const int32_t raised_refinements = 12;
 static const double wide_eps = 1e-7; /* where rows are known to be redundant */
 
 /* ---- factor ---- */
@@ -204,15 +206,46 @@ void se3di_kkt_expect(se3di_kkt *kkt, const double *b, const double *c)
     kkt->expected_c = c;
 }
 
-se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
-                             se3di_kkt_factor_info *info)
+/* Some row that is not known to be redundant seems to be nearly dependent. */
+static bool has_doubtful_row(const se3di_kkt *kkt)
 {
-    kkt->factorisations = 0;
+    return !kkt->finite || kkt->near_dependent > 0 ||
+           kkt->dependent_rows > kkt->settings.redundant_rows;
+}
+
+/* If light bodies may be why, factor with heavier ones. */
+static void factor_raised(se3di_kkt *kkt, const se3di_kkt_values *values)
+{
+    se3di_kkt_values raised;
+    const kkt_hold hold = kkt->hold;
+    if (kkt->kind != SE3DI_KKT_STRUCTURED || values->weight || !has_doubtful_row(kkt) ||
+        !se3di_kkt_has_light(kkt) || !se3di_kkt_raise(kkt, values, &raised)) {
+        return;
+    }
+    kkt->hold = KKT_FREE;
+    weigh(kkt, &raised);
+    factor_suitably(kkt, &raised);
+    kkt->is_raised = true;
+    kkt->hold = hold == KKT_FREE ? KKT_FREE : KKT_HOLD_NEXT; /* these are not kept */
+}
+
+/* Factor the caller's values, whatever they are. */
+static void factor_given(se3di_kkt *kkt, const se3di_kkt_values *values)
+{
+    kkt->is_raised = false;
     if (kkt->hold != KKT_HELD) {
         weigh(kkt, values);
     }
     factor_suitably(kkt, values);
     kkt->hold = kkt->hold != KKT_FREE && kkt->finite ? KKT_HELD : kkt->hold;
+}
+
+se3d_status se3di_kkt_factor(se3di_kkt *kkt, const se3di_kkt_values *values,
+                             se3di_kkt_factor_info *info)
+{
+    kkt->factorisations = 0;
+    factor_given(kkt, values);
+    factor_raised(kkt, values);
     if (info) {
         *info =
             (se3di_kkt_factor_info){.factorisations = kkt->factorisations,
@@ -381,6 +414,39 @@ static void clear_multipliers(se3di_kkt *kkt, double *l)
     for (size_t i = 0; i < kkt->layout.row_count && kkt->has_unbound; ++i) {
         l[i] = kkt->correction_l[i] = 0.0;
     }
+}
+
+/* With the factors of raised bodies, until forces balance: rows may contradict each other. Returns
+ * whether they do; else the caller's values are factored, if they can be. */
+static bool refine_raised(se3di_kkt *kkt, const kkt_problem *p, double *x, double *l,
+                          se3di_kkt_solve_info *info)
+{
+    const double least = fmin(kkt->settings.tolerance, raised_residual);
+    double size = 0.0, before = HUGE_VAL, before_c = HUGE_VAL, scale = 0.0;
+    for (int32_t step = 0;; ++step) {
+        kkt->core->residual(kkt, p->values, p->b, p->c, x, l);
+        (void)measure(kkt, info);
+        size = info->residual_b * kkt->scale_b;
+        scale = fmax(scale, kkt->scale_b);
+        if (!(info->residual_b > least) || size > 0.3 * before || step == raised_refinements) {
+            break;
+        }
+        /* what rows contradict each other by would only raise their multipliers */
+        const bool falls = info->residual_c < 0.3 * before_c;
+        before = size;
+        before_c = info->residual_c;
+        solve_once(kkt, kkt->residual_b, falls ? kkt->residual_c : NULL, kkt->correction_x,
+                   kkt->correction_l);
+        add_correction(kkt, 1.0, x, l);
+        ++info->refinements;
+    }
+    /* that of the multipliers at first, which heavier bodies take: their rounding is left */
+    info->residual_b = scale > 0.0 ? size / scale : info->residual_b;
+    if (info->residual_b <= raised_residual) {
+        return true;
+    }
+    factor_given(kkt, p->values);
+    return false;
 }
 
 /* Above it a solution with E = 0 needs no check. */
@@ -554,13 +620,18 @@ se3d_status se3di_kkt_solve(se3di_kkt *kkt, const se3di_kkt_values *values, cons
     const kkt_problem problem = {values, b, c};
     clear_multipliers(kkt, l);
     solve_first(kkt, b, c, x, l);
-    const int32_t count = count_refinements(kkt);
+    if (kkt->is_raised && !refine_raised(kkt, &problem, x, l, &own)) {
+        own = (se3di_kkt_solve_info){0};
+        clear_multipliers(kkt, l);
+        solve_once(kkt, b, c, x, l);
+    }
+    const int32_t count = kkt->is_raised ? -1 : count_refinements(kkt);
     for (; own.refinements < count; ++own.refinements) {
         kkt->core->residual(kkt, values, b, c, x, l);
         solve_once(kkt, kkt->residual_b, kkt->residual_c, kkt->correction_x, kkt->correction_l);
         add_correction(kkt, 1.0, x, l);
     }
-    if (count < 0) {
+    if (count < 0 && !kkt->is_raised) {
         refine_suitably(kkt, &problem, x, l, &own);
     }
     if (kkt->dependent_rows > 0 && !kkt->settings.any_multipliers) {
