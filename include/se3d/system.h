@@ -55,9 +55,14 @@ SE3D_API se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept);
  * what was made of its pose (joints, drivers, forces, markers, wheels and roads on it) does not
  * follow, and is defined again after it. Then the system is to the bit one that was built so from
  * the start, if it has not moved yet. What has another structure (a joint of another type, other
- * rows) fails with INVALID_ARGUMENT, and what was there stays as it was. A clone does not replace.
+ * rows) fails with INVALID_ARGUMENT, and what was there stays as it was; so does, with IN_USE, a
+ * joint on other bodies with drivers, couplers, force elements or signals on it: these go first.
+ * Drivers and couplers of a joint that is defined again at another place are defined again after
+ * it; until then this mode does not end, and no analysis runs (STATE, with the name). A clone does
+ * not replace.
  * @param[in] on  not 0: from now on; 0: no longer
- * @return OK, NULL, STATE (within a callback). @since 0.1 */
+ * @return OK, NULL, STATE (within a callback; or a driver or coupler is still made of what its
+ *         joint was before, and `on` is 0). @since 0.1 */
 SE3D_API se3d_status se3d_system_set_replacing(se3d_system *system, int32_t on);
 
 /* Make an independent copy with the same allocator; handles are valid on both. @return OK, NULL,

@@ -54,9 +54,41 @@ static void place_terms(se3di_model *model, const se3di_draft *draft,
     }
 }
 
-/* Force elements on a joint, and laws that it goes into, have copies of which bodies it joins. */
+static int is_made_of(const se3di_constraint *constraint, uint32_t joint)
+{
+    for (int j = 0; j < SE3D_COUPLER_TERMS_MAX; ++j) {
+        if (constraint->joints[j] == (int32_t)joint) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* Drivers and couplers have copies of the frames of their joints, and follow when they are defined
+ * again, too. */
+static void make_stale(se3di_model *model, uint32_t joint)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        se3di_constraint *other = &model->constraints[k];
+        other->is_stale |= is_made_of(other, joint);
+    }
+}
+
+static int is_at_another_place(const se3di_constraint *a, const se3di_constraint *b)
+{
+    return memcmp(&a->frames, &b->frames, sizeof a->frames) != 0 ||
+           memcmp(&a->angle0, &b->angle0, sizeof a->angle0) != 0;
+}
+
+/* Drivers, couplers and force elements on a joint, and laws that it goes into, have copies of which
+ * bodies it joins. */
 static int is_tied(const se3di_model *model, uint32_t joint)
 {
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        if (is_made_of(&model->constraints[k], joint)) {
+            return 1;
+        }
+    }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         if (model->forces[k].joint == (int32_t)joint) {
             return 1;
@@ -81,7 +113,7 @@ static se3d_status replace_constraint(se3di_model *model, uint32_t index, const 
         old.term_count != draft->term_count || (old.angle >= 0) != (draft->has_angle != 0)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
-    if (model->target > 0 && !has_same_bodies(&old, &draft->constraint) && is_tied(model, index)) {
+    if (!has_same_bodies(&old, &draft->constraint) && is_tied(model, index)) {
         return SE3D_ERR_IN_USE;
     }
     const int is_broken =
@@ -98,7 +130,25 @@ static se3d_status replace_constraint(se3di_model *model, uint32_t index, const 
     place_terms(model, draft, constraint);
     se3di_constraint_leave_out(model, constraint, is_broken);
     count_constraint_users(model, constraint, 1);
+    if (is_at_another_place(&old, constraint)) {
+        make_stale(model, index);
+    }
     se3di_model_touch(model);
+    return SE3D_OK;
+}
+
+se3d_status se3di_model_check_stale(const se3di_model *model, se3di_error *error)
+{
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *c = &model->constraints[k];
+        if (c->is_stale) {
+            return se3di_error_set(
+                error, SE3D_ERR_STATE,
+                "%s '%.64s' is made of a joint that was defined again at another "
+                "place since; define it again, too, or destroy it",
+                c->type, c->name ? c->name : "");
+        }
+    }
     return SE3D_OK;
 }
 

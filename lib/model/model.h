@@ -127,6 +127,7 @@ typedef struct se3di_constraint {
     int32_t has_value;                        /* one row, whose prescribed value is the user's */
     int32_t pattern;                          /* se3di_row_pattern */
     double break_limit[2]; /* joints: of the reaction force [N] and moment [N m]; 0: none */
+    int32_t is_stale;      /* 1: made of a joint that was defined again at another place since */
 } se3di_constraint;
 
 /* The first callback of a user constraint that failed since an analysis began. */
@@ -376,6 +377,8 @@ se3d_status se3di_model_add_function(se3di_model *model, const se3di_function *f
                                      se3di_handle *handle); /* takes over expression and table */
 se3d_status se3di_model_add_constraint(se3di_model *model, const se3di_draft *draft,
                                        se3di_handle *handle);
+/* STATE, with its name, if a driver or coupler has not been defined again after its joint. */
+se3d_status se3di_model_check_stale(const se3di_model *model, se3di_error *error);
 se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
                                   se3di_handle *handle);
 

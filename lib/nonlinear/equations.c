@@ -256,6 +256,7 @@ static se3d_status allocate(se3di_equations *equations)
 static se3d_status init(se3di_equations *equations, se3di_model *model,
                         const se3di_formulation *formulation, int moves_states, se3di_error *error)
 {
+    SE3DI_TRY(se3di_model_check_stale(model, error));
     model->remembers = 1;
     SE3DI_TRY(se3di_assembly_init(&equations->assembly, model, formulation, moves_states, error));
     se3d_status status = allocate(equations);

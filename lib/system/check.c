@@ -202,9 +202,9 @@ se3d_status se3di_fail_added(se3d_system *system, se3d_status added, const char 
 {
     if (added == SE3D_ERR_IN_USE) {
         return SE3DI_FAIL(system, added,
-                          "%s on other bodies cannot take the place of this one, as force elements "
-                          "on it or signals of functions are made of the bodies that it has now; "
-                          "destroy them first",
+                          "%s on other bodies cannot take the place of this one, as drivers, "
+                          "couplers or force elements on it or signals of functions are made of "
+                          "the bodies that it has now; destroy them first",
                           what);
     }
     if (added == SE3D_ERR_INVALID_ARGUMENT && system->model.target > 0) {

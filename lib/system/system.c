@@ -105,6 +105,12 @@ se3d_status se3d_system_set_kept(se3d_system *system, int32_t kept)
 se3d_status se3d_system_set_replacing(se3d_system *system, int32_t on)
 {
     SE3DI_EDIT(system);
+    if (!on) {
+        const se3d_status stale = se3di_model_check_stale(&system->model, &system->error);
+        if (stale < 0) {
+            return se3di_log_error(&system->error, stale);
+        }
+    }
     system->model.replaces = on != 0;
     return SE3D_OK;
 }

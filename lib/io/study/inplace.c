@@ -160,8 +160,7 @@ static bool set_all(const prototype *p, se3di_reader *reader, const se3di_named 
     (void)se3d_system_set_replacing(reader->system, 1);
     reader->again = p->d.again;
     const bool good = se3di_read_mechanism_again(reader, model->root);
-    (void)se3d_system_set_replacing(reader->system, 0);
-    return good;
+    return se3d_system_set_replacing(reader->system, 0) >= 0 && good;
 }
 
 se3d_system *se3di_inplace_take(se3d_study *study)
