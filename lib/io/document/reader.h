@@ -95,13 +95,6 @@ bool se3di_reader_try_symbol(se3di_reader *reader, const char *name, bool *is_go
 bool se3di_read_reference(se3di_reader *reader, const se3di_node *node, const char **name);
 /* Whether the condition under `when` holds, or there is none. */
 bool se3di_read_when(se3di_reader *reader, const se3di_node *map, bool *wanted);
-/* Read the entries of a list that are wanted and whose `when` holds. */
-bool se3di_read_each(se3di_reader *reader, const se3di_node *root, const char *key,
-                     bool (*read)(se3di_reader *reader, const se3di_node *node));
-/* A zeroed array for all entries of a list (NULL: none); NULL: no memory, which is reported. */
-void *se3di_read_room(se3di_reader *reader, const se3di_node *list, size_t size);
-bool se3di_read_entries(se3di_reader *reader, const se3di_node *list,
-                        bool (*read)(se3di_reader *reader, const se3di_node *node));
 /* The name of an element of a part: with the prefix of the part. */
 bool se3di_read_part_name(se3di_reader *reader, const se3di_node *node, const char **name);
 const char *se3di_reader_prefix(se3di_reader *reader, const char *name);

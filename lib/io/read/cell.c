@@ -8,6 +8,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/entries.h"
 #include "io/read/objects.h"
 #include "se3d/cell.h"
 

@@ -10,6 +10,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/model/tagged.h"
+#include "io/read/entries.h"
 #include "io/read/inertia.h"
 #include "io/read/objects.h"
 #include "io/read/particle_clumps.h"

@@ -10,6 +10,7 @@
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
+#include "io/read/entries.h"
 #include "io/read/objects.h"
 #include "io/read/pairs.h"
 #include "io/read/sections.h"

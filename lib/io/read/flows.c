@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `flows`. */
 #include "io/read/flows.h"
+#include "io/read/entries.h"
 
 #include "io/base/pool.h"
 #include "io/document/document.h"

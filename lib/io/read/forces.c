@@ -15,6 +15,7 @@
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
+#include "io/read/entries.h"
 #include "io/read/forces_bushing.h"
 #include "io/read/forces_tyre.h"
 #include "io/read/objects.h"

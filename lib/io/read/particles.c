@@ -16,6 +16,7 @@
 #include "io/read/bonds.h"
 #include "io/read/cell.h"
 #include "io/read/clumps.h"
+#include "io/read/entries.h"
 #include "io/read/flows.h"
 #include "io/read/materials.h"
 #include "io/read/objects.h"

@@ -12,6 +12,7 @@
 #include "io/model/model.h"
 #include "io/read/bodies.h"
 #include "io/read/elements.h"
+#include "io/read/entries.h"
 #include "io/read/height_grid.h"
 #include "io/read/mesh_file.h"
 #include "io/read/objects.h"

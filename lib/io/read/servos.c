@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* `servos`. */
 #include "io/read/servos.h"
+#include "io/read/entries.h"
 
 #include "io/base/pool.h"
 #include "io/document/document.h"

@@ -15,6 +15,7 @@
 #include "io/document/value.h"
 #include "io/model/model.h"
 #include "io/read/elements.h"
+#include "io/read/entries.h"
 #include "io/read/include.h"
 #include "io/read/objects.h"
 #include "io/read/sections.h"
