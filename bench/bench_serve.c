@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The bench's driver of this library. METHOD: dop853, rk45, rk4, generalized_alpha, hht, bdf,
+/* The bench's driver of this library. METHOD: auto, dop853, rk45, rk4, generalized_alpha, hht, bdf,
  * radau, rattle, gauss, with /romega, /rp or /joint behind it for a formulation, else that of
  * `auto`; step_dop853, step_rk45 and step_rk4 make equal steps without error control, as the other
  * engines' RK4 does. */
@@ -14,17 +14,12 @@ static int find_method(const char *text, se3d_solver_def *def)
         int32_t method;
         int32_t fixed; /* SETTING is the step */
     } methods[] = {
-        {"dop853", SE3D_METHOD_DOP853, 0},
-        {"rk45", SE3D_METHOD_RK45, 0},
-        {"gauss", SE3D_METHOD_GAUSS, 0},
-        {"bdf", SE3D_METHOD_BDF, 0},
-        {"radau", SE3D_METHOD_RADAU, 0},
-        {"rattle", SE3D_METHOD_RATTLE, 1},
-        {"generalized_alpha", SE3D_METHOD_GENERALIZED_ALPHA, 1},
-        {"hht", SE3D_METHOD_HHT, 1},
-        {"step_dop853", SE3D_METHOD_DOP853, 1},
-        {"rk4", SE3D_METHOD_RK4, 0},
-        {"step_rk4", SE3D_METHOD_RK4, 1},
+        {"dop853", SE3D_METHOD_DOP853, 0},  {"rk45", SE3D_METHOD_RK45, 0},
+        {"gauss", SE3D_METHOD_GAUSS, 0},    {"auto", SE3D_METHOD_AUTO, 0},
+        {"bdf", SE3D_METHOD_BDF, 0},        {"radau", SE3D_METHOD_RADAU, 0},
+        {"rattle", SE3D_METHOD_RATTLE, 1},  {"generalized_alpha", SE3D_METHOD_GENERALIZED_ALPHA, 1},
+        {"hht", SE3D_METHOD_HHT, 1},        {"step_dop853", SE3D_METHOD_DOP853, 1},
+        {"rk4", SE3D_METHOD_RK4, 0},        {"step_rk4", SE3D_METHOD_RK4, 1},
         {"step_rk45", SE3D_METHOD_RK45, 1},
     };
     size_t length = strcspn(text, "/");

@@ -272,7 +272,7 @@ class Bench:
         peers = self.peer_ways([("mujoco", "rk4", True, "MuJoCo RK4"),
                                 ("bullet", "rk4", True, "Bullet RK4"),
                                 ("simbody", "merson", False, "Simbody")])
-        ours = [Way(self.ours, "dop853", False, "dop853"), Way(self.ours, "gauss", False, "gauss"),
+        ours = [Way(self.ours, "auto", False, "auto"), Way(self.ours, "dop853", False, "dop853"),
                 Way(self.ours, "rk45", False, "rk45"),
                 Way(self.ours, "step_dop853", True, "dop853 h"),
                 Way(self.ours, "step_rk45", True, "rk45 h"), Way(self.ours, "rk4", False, "rk4"),
@@ -310,11 +310,11 @@ class Bench:
         peers = self.peer_ways([("mujoco", "rk4/2/.9999", True, "MuJoCo 2h"),
                                 ("mujoco", "rk4/1/.9999", True, "MuJoCo 1h"),
                                 ("mujoco", "rk4/.5/.9999", True, "MuJoCo h/2")])
-        ours = [Way(self.ours, "dop853", False, "dop853"), Way(self.ours, "gauss", False, "gauss")]
-        exact = [Way(self.ours, "dop853", False, "tip 1e-6"),
-                 Way(self.ours, "gauss", False, "gauss 1e-6")]
+        ours = [Way(self.ours, "auto", False, "auto"), Way(self.ours, "dop853", False, "dop853")]
+        exact = [Way(self.ours, "auto", False, "tip 1e-6"),
+                 Way(self.ours, "dop853", False, "dop853 1e-6")]
         print("\n## Four-bar windows, 10 s, plain revolutes: CPU ms to a drift of energy")
-        print("(on the right branch: tip within .01 m; 'tip 1e-6', 'gauss 1e-6': also tip within 1e-6 m,")
+        print("(on the right branch: tip within .01 m; 'tip 1e-6', 'dop853 1e-6': also tip within 1e-6 m,")
         print(" gap within 1e-10; MuJoCo RK4, Newton, loops by `connect`: time constant 2 h (its safe")
         print(" least), 1 h and h/2 (its safeguard off), impedance .9999; ratios: best of ours to drift,")
         print(" and to drift and tip, over the best of MuJoCo to drift)")
