@@ -157,7 +157,7 @@ is "$(cat "$dir/axle.yaml")" "$(cat "$models/axle.yaml")"
 is "$(cat "$dir/parts/corner.yaml")" "$(cat "$models/parts/corner.yaml")"
 mkfifo "$dir/pipe.yaml"
 expect 'write over a pipe' 1 "$program" write "$models/pendulum.yaml" -o "$dir/pipe.yaml"
-has "$dir/err" 'pipe.yaml: is no regular file'
+has "$dir/err" 'pipe.yaml: cannot be written: is no regular file'
 [ -p "$dir/pipe.yaml" ] || fail 'the pipe is gone'
 cp "$models/bracket.obj" "$dir"
 cat >"$dir/mirrored.yaml" <<'END_OF_YAML'
