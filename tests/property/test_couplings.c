@@ -207,15 +207,15 @@ static const int32_t planet_methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RADAU,
                                          SE3D_METHOD_BDF,    SE3D_METHOD_RATTLE,
                                          SE3D_METHOD_GAUSS,  SE3D_METHOD_GENERALIZED_ALPHA};
 
-static void run_planets(double light, int32_t method, int32_t formulation, int rows)
+static void run_planets(double light, int32_t method, int32_t formulation, double end)
 {
     char text[8000];
     double effort[2];
     write_planets(light, text, sizeof text);
     find_efforts(light, effort);
     text_model m = text_model_open(text, method, formulation, 0.0);
-    for (int row = 0; row <= rows; ++row) {
-        const se3d_status status = se3d_solver_run(m.solver, 0.1 * row);
+    for (int row = 0; row <= 2; ++row) {
+        const se3d_status status = se3d_solver_run(m.solver, 0.5 * end * row);
         CHECK(status == SE3D_INFO_REDUNDANT);
         if (status < 0) {
             fprintf(stderr, "planets of %g by %s, formulation %d: %s\n", light,
@@ -235,17 +235,17 @@ static void run_planets(double light, int32_t method, int32_t formulation, int r
 static void equal_planets_carry_equal_loads(void)
 {
     for (int32_t k = 0; k < 12; ++k) {
-        run_planets(1.0, planet_methods[k / 2], k % 2, 4);
+        run_planets(1.0, planet_methods[k / 2], k % 2, 0.4);
     }
 }
 
 /* They carry the sun's load to the ring and the arm, however light they are. */
 static void light_planets_carry_what_heavy_ones_do(void)
 {
-    static const double masses[] = {1e-4, 1e-7, 1e-10, 1e-13};
-    for (size_t light = 0; light < 4; ++light) {
+    static const double masses[] = {1e-7, 1e-10, 1e-13};
+    for (size_t light = 0; light < 3; ++light) {
         for (int32_t k = 0; k < 12; ++k) {
-            run_planets(masses[light], planet_methods[k / 2], k % 2, 1);
+            run_planets(masses[light], planet_methods[k / 2], k % 2, 0.05);
         }
     }
 }
