@@ -9,70 +9,36 @@
 #include "se3d/io.h"
 #include "support/damage.h"
 
-enum { TEXT_MAX = 8192, ITERATIONS = 1200 };
+enum { TEXT_MAX = 16384, ITERATIONS = 1200 };
 
-typedef struct seed_text {
-    const char *name, *path, *text; /* a file of the source folder, or the text itself */
-} seed_text;
-
-static const seed_text seeds[] = {
-    {"x.adm", "tests/import/crank.adm", NULL},
-    {"x.chrono.yaml", NULL,
-     "chrono-version: 10.0\nmodel:\n  name: m\n  angle_degrees: true\n  bodies:\n"
-     "    - {name: a, mass: 2, inertia: {moments: [1, 2, 3], products: [0.1, 0, 0]}, location: [1, "
-     "0, 0], orientation: [0, 30, 0]}\n"
-     "    - {name: g, fixed: true, location: [0, 0, 0]}\n"
-     "  joints:\n    - {name: j, type: revolute, body1: a, body2: g, location: [0, 0, 0], axis: "
-     "[0, "
-     "0, 1]}\n"
-     "  tsdas:\n    - {name: s, body1: a, body2: g, point1: [1, 0, 0], point2: [0, 0, 3], "
-     "spring_coefficient: 50, damping_coefficient: 2, free_length: 1}\n"
-     "  motors:\n    - {name: m, type: ROTATION, actuation_type: SPEED, body1: a, body2: g, "
-     "location: [0, 0, 0], axis: [0, 0, 1], actuation_function: {type: SINE, amplitude: 2, "
-     "frequency: 3, phase: 0.1}}\n"},
-    {"x.mdl", NULL,
-     "{\"name\": \"m\", \"gravity\": [0, 0, -9.81],\n \"bodies\": [{\"id\": 1, \"mass\": 2, "
-     "\"jbar\": [1, 2, 2], \"q0\": [0, 1, 0, 1, 0, 0, 0], \"qd0\": [0, 0, 0, 0, 0, 0, 0]}],\n "
-     "\"constraints\": [{\"type\": \"cons_dp1\", \"body1\": 1, \"body2\": \"ground\", \"aiBAR\": "
-     "[1, 0, 0], \"ajBAR\": [0, 1, 0], \"fun\": \"@(t)(sin(t).*2)\"},\n {\"type\": \"CD\", "
-     "\"body_i\": 0, \"body_j\": 1, \"si\": [0, 0, 1], \"c\": [0, 1, 0], \"f\": 1, \"df\": 2}]}\n"},
+/* Files of fuzz/seeds/import, which have all that importers look at. */
+static const char *const seeds[] = {
+    "chrono_bodies.yaml", "chrono_guides.yaml",  "chrono_joints.yaml", "chrono_loads.yaml",
+    "chrono_motors.yaml", "chrono_springs.yaml", "chrono_stops.yaml",  "couplings.adm",
+    "crank.adm",          "forces.mdl",          "functions.adm",      "gforce.adm",
+    "joints.adm",         "kinds.mdl",           "loads.mdl",          "lost.adm",
+    "lost.mdl",           "machine.yaml",        "oscillator.adm",
 #if defined(SE3D_HAS_EXPAT)
-    {"x.urdf", "tests/import/arm.urdf", NULL},
-    {"x.sdf", "tests/import/loop.sdf", NULL},
-    {"x.xml", NULL,
-     "<mujoco model=\"m\"><compiler angle=\"degree\"/><default><joint damping=\"0.5\" "
-     "armature=\"0.1\"/><default class=\"c\"><geom density=\"500\"/></default></default>\n"
-     "<worldbody><body name=\"a\" pos=\"0 0 1\" euler=\"10 20 30\"><joint name=\"h\" axis=\"0 1 "
-     "0\" "
-     "range=\"-90 0\" ref=\"5\" stiffness=\"2\"/>\n<geom type=\"capsule\" fromto=\"0 0 0 0 0 1\" "
-     "size=\"0.1\" class=\"c\"/><site name=\"s\" pos=\"0 0 1\"/>\n<body name=\"b\"><joint "
-     "name=\"k\" type=\"slide\" axis=\"0 0 1\"/><inertial pos=\"0 0 0\" mass=\"1\" "
-     "fullinertia=\"1 1 1 0 0 0\"/></body></body>\n<body name=\"f\"><freejoint/><geom "
-     "type=\"box\" size=\"1 2 3\"/><site name=\"e\"/></body></worldbody>\n<equality><connect "
-     "body1=\"b\" body2=\"f\" anchor=\"0 0 0\"/><joint joint1=\"h\" polycoef=\"0 1 0 0 "
-     "0\"/></equality><actuator><motor joint=\"h\" gear=\"10\"/></actuator><tendon><spatial "
-     "stiffness=\"5\"><site site=\"s\"/><site site=\"e\"/></spatial></tendon></mujoco>\n"},
+    "arm.urdf",           "expressed.sdf",       "loop.sdf",           "lost.sdf",
+    "machine.xml",        "mjcf_bodies.xml",     "mjcf_loops.xml",     "mjcf_lost.xml",
+    "mjcf_materials.xml", "mjcf_touching.xml",   "same.urdf",          "surface.sdf",
 #endif
 };
 enum { SEEDS = sizeof seeds / sizeof *seeds };
 
-static size_t read_seed(const seed_text *s, char *text)
+static size_t read_seed(const char *name, char *text)
 {
     const char *source = getenv("SE3D_SOURCE_DIR");
     char path[800];
     size_t length = 0;
-    if (s->text) {
-        length = strlen(s->text);
-        memcpy(text, s->text, length);
-        return length;
-    }
-    snprintf(path, sizeof path, "%s/%s", source ? source : ".", s->path);
+    snprintf(path, sizeof path, "%s/fuzz/seeds/import/%s", source ? source : ".", name);
     FILE *file = fopen(path, "rb");
     CHECK(file != NULL);
     if (file) {
         length = fread(text, 1, TEXT_MAX / 2, file);
         fclose(file);
     }
+    CHECK(length > 0 && length < TEXT_MAX / 2);
     return length;
 }
 
@@ -113,7 +79,7 @@ static void undamaged_texts_are_imported(void)
 {
     static char text[TEXT_MAX];
     for (size_t k = 0; k < SEEDS; ++k) {
-        CHECK(try_text(seeds[k].name, text, read_seed(&seeds[k], text)));
+        CHECK(try_text(seeds[k], text, read_seed(seeds[k], text)));
     }
 }
 
@@ -125,14 +91,14 @@ static void damaged_texts_never_crash_an_importer(void)
     uint64_t seed = 20250117;
     long accepted = 0;
     for (long k = 0; k < iterations && check_failures == 0; ++k) {
-        const seed_text *s = &seeds[damage_pick(&seed, SEEDS)];
+        const char *s = seeds[damage_pick(&seed, SEEDS)];
         size_t length = read_seed(s, text);
         const size_t times = 1 + damage_pick(&seed, 3);
         for (size_t i = 0; i < times; ++i) {
             length =
                 damage_text(text, length, TEXT_MAX, pieces, sizeof pieces / sizeof *pieces, &seed);
         }
-        accepted += try_text(s->name, text, length);
+        accepted += try_text(s, text, length);
     }
     CHECK(accepted > iterations / 100 && accepted < iterations);
 }
@@ -163,14 +129,14 @@ static void every_word_may_be_wrong(void)
     static char text[TEXT_MAX], out[TEXT_MAX + 8];
     size_t tried = 0, turn = 0, accepted = 0;
     for (size_t k = 0; k < SEEDS; ++k) {
-        const size_t length = read_seed(&seeds[k], text);
+        const size_t length = read_seed(seeds[k], text);
         text[length] = '\0';
         for (size_t at = 0; at < length;) {
             const size_t size = word_length(text + at);
             for (size_t w = 0; size > 0 && w < (check_is_long() ? WORDS : 2); ++w) {
                 const size_t made =
                     put_word(text, length, at, size, words[(turn + 3 * w) % WORDS], out);
-                accepted += (size_t)try_text(seeds[k].name, out, made);
+                accepted += (size_t)try_text(seeds[k], out, made);
                 ++tried;
             }
             turn += size > 0;

@@ -28,6 +28,9 @@
 
 #define MUJOCO(x) "<mujoco><worldbody><body>" x "</body></worldbody></mujoco>"
 
+#define MDL(x)                                                                                     \
+    "{\"constraints\": [], \"bodies\": [{\"id\": 1, \"mass\": 1, \"jbar\": [1, 1, 1]}],\n" x "}\n"
+
 typedef struct bad_file {
     const char *name, *text;
     size_t line;
@@ -51,6 +54,14 @@ static const bad_file table[] = {
     {"a.adm", "title\nPART/2\nJOINT/1, REVOLUTE, I=1, J=2\n", 3, {"JOINT/1", "MARKER"}},
     {"a.adm", "title\nPART/2\nMARKER/1\nJOINT/1, REVOLUTE, I=1, J=1\n", 4, {"one part", NULL}},
     {"a.adm", "title\nPART/2\nMOTION/1, JOINT=7, FUNCTION=1\n", 3, {"no JOINT/7", NULL}},
+    {"a.mdl",
+     MDL("\"TSDAs\": [{\"bodyi\": \"1\", \"bodyj\": \"0\", \"l0\": -1}]"),
+     2,
+     {"number >= 0", NULL}},
+    {"a.mdl",
+     MDL("\"simulation\": {\"tend\": 1, \"outputSteps\": 1e9}"),
+     2,
+     {"at most 1e8 rows", NULL}},
     {"a.yaml", "se3d: 1\n", 1, {"model file already", NULL}},
     {"a.yaml", "a: 1\n", 1, {"chrono-version", NULL}},
     {"a.yaml", "a: [1\n", 0, {"a.yaml", NULL}},

@@ -58,13 +58,17 @@ static bool read_mass(se3di_chrono *c, const se3di_node *map, se3di_machine_body
 
 static bool read_sizes(se3di_chrono *c, const se3di_node *map, se3di_machine_shape *shape)
 {
-    return se3di_chrono_frame(c, map, &shape->frame) &&
-           se3di_chrono_numbers(c, map, "dimensions", shape->size, 3) &&
-           se3di_chrono_number(c, map, "radius", &shape->radius) &&
-           se3di_chrono_number(c, map, "length", &shape->length) &&
-           se3di_chrono_number(c, map, "scale", &shape->scale) &&
-           se3di_chrono_axis(c, map, "axis", shape->frame.A) &&
-           se3di_chrono_numbers(c, map, "color", shape->color, 3);
+    const bool good = se3di_chrono_frame(c, map, &shape->frame) &&
+                      se3di_chrono_numbers(c, map, "dimensions", shape->size, 3) &&
+                      se3di_chrono_number(c, map, "radius", &shape->radius) &&
+                      se3di_chrono_number(c, map, "length", &shape->length) &&
+                      se3di_chrono_number(c, map, "scale", &shape->scale) &&
+                      se3di_chrono_axis(c, map, "axis", shape->frame.A) &&
+                      se3di_chrono_numbers(c, map, "color", shape->color, 3);
+    for (int k = 0; k < 3 && se3di_node_get(map, "color"); ++k) {
+        shape->color[k] = fmin(fmax(shape->color[k], 0.0), 1.0);
+    }
+    return good;
 }
 
 /* A shape that has a size of its own. */
@@ -156,7 +160,9 @@ static bool read_material(se3di_chrono *c, const se3di_node *parent, const se3di
         material.young = 0.0;
     }
     material.poisson = material.poisson >= 0.0 && material.poisson <= 0.49 ? material.poisson : 0.3;
-    material.stiffness = material.stiffness > 0.0 ? material.stiffness : 0.0;
+    if (!(material.stiffness > 0.0 && material.stiffness <= 1e30)) {
+        material.stiffness = 0.0;
+    }
     shape->material = se3di_machine_material_name(c->m, &material, map->line);
     return shape->material != NULL;
 }

@@ -431,6 +431,8 @@ bool se3di_import_is_me751(const se3di_node *root)
            se3di_node_get(root, "constraints") && !se3di_node_get(root, "se3d");
 }
 
+#define ROWS_MAX 1e8
+
 /* How long it runs, and in how many rows; the method is the user's choice. */
 static bool read_simulation(se3di_machine *m, const se3di_node *root)
 {
@@ -448,6 +450,9 @@ static bool read_simulation(se3di_machine *m, const se3di_node *root)
     if ((duration && !se3di_me751_read_number(m, duration, &end)) ||
         (count && !se3di_me751_read_number(m, count, &rows))) {
         return false;
+    }
+    if (rows > ROWS_MAX) {
+        return se3di_me751_expect(m, count, "at most 1e8 rows");
     }
     if (end > 0.0 && end <= 1e9) {
         m->duration = end;

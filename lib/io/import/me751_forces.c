@@ -41,7 +41,7 @@ static bool take_function(se3di_machine *m, const se3di_node *node, const char *
 }
 
 static bool put_number(se3di_machine *m, const se3di_node *map, const se3di_me751_member *wanted,
-                       const char *key, se3di_entry *entry)
+                       const char *key, double least, se3di_entry *entry)
 {
     const se3di_node *node = se3di_me751_find(map, wanted);
     double value = 0.0;
@@ -50,6 +50,9 @@ static bool put_number(se3di_machine *m, const se3di_node *map, const se3di_me75
     }
     if (!se3di_me751_read_number(m, node, &value)) {
         return false;
+    }
+    if (value < least) {
+        return se3di_me751_expect(m, node, "a number >= 0");
     }
     se3di_entry_put_number(m, entry, key, value);
     return m->status >= 0;
@@ -66,9 +69,10 @@ static se3di_entry *begin_force(se3di_machine *m, const se3di_node *map, const c
 static bool put_law(se3di_machine *m, const se3di_node *map, bool turns, const char *actuator,
                     se3di_entry *entry)
 {
-    if (!put_number(m, map, &stiffness_names, "k", entry) ||
-        !put_number(m, map, &damping_names, "c", entry) ||
-        !put_number(m, map, turns ? &angle_names : &length_names, turns ? "theta0" : "l0", entry)) {
+    if (!put_number(m, map, &stiffness_names, "k", -(double)INFINITY, entry) ||
+        !put_number(m, map, &damping_names, "c", -(double)INFINITY, entry) ||
+        !put_number(m, map, turns ? &angle_names : &length_names, turns ? "theta0" : "l0",
+                    turns ? -(double)INFINITY : 0.0, entry)) {
         return false;
     }
     if (actuator) {

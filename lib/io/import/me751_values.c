@@ -143,7 +143,13 @@ bool se3di_me751_compiles(const char *text)
     def.text = text;
     def.variables = time;
     def.variable_count = 1;
-    const bool good = !SE3D_FAILED(se3d_expression_create(&def, &expression, NULL));
+    const double start = 0.0;
+    double value = 0.0;
+    bool good = !SE3D_FAILED(se3d_expression_create(&def, &expression, NULL));
+    if (se3d_expression_is_constant(expression)) { /* may be larger than a model takes */
+        good = !SE3D_FAILED(se3d_expression_eval(expression, &start, &value)) &&
+               fabs(value) <= SE3DI_SCAN_LARGEST;
+    }
     se3d_expression_destroy(expression);
     return good;
 }
