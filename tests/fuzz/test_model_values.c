@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Values of the example models made hostile one by one: the reader takes the model or says where
- * and why not, and what it takes is checked and moved two steps without NaN or infinity.
- * SE3D_FUZZ_ROUNDS multiplies the work, SE3D_FUZZ_SEED begins elsewhere. */
+/* Values of the example models made hostile one by one: the reader takes the
+ * model or says where and why not, and what it takes is checked and moved two
+ * steps without NaN or infinity. SE3D_FUZZ_ROUNDS multiplies the work,
+ * SE3D_FUZZ_SEED begins elsewhere. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <stdlib.h>
@@ -90,7 +91,8 @@ static size_t pick(uint64_t *seed, size_t count)
     return (size_t)(0.5 * (check_random(seed) + 1.0) * (double)count) % count;
 }
 
-/* Values stand after `: `, `[`, `, ` and `- `, and end before a mark of flow style or a line's. */
+/* Values stand after `: `, `[`, `, ` and `- `, and end before a mark of flow
+ * style or a line's. */
 static void find_values(example *e)
 {
     for (size_t k = 2; k < e->length && e->count < VALUES_MAX; ++k) {
@@ -133,7 +135,8 @@ static size_t put_long(char *to, uint64_t *seed)
     return length + (size_t)sprintf(to + length, "1");
 }
 
-/* The example with one value replaced, or a line of it twice. @return the length */
+/* The example with one value replaced, or a line of it twice. @return the
+ * length */
 static size_t spoil(const example *e, char *text, uint64_t *seed)
 {
     const size_t which = pick(seed, e->count);
@@ -194,8 +197,8 @@ static void check_and_move(se3d_model *model)
     se3d_solver_destroy(solver);
 }
 
-/* Nothing in a message may move a cursor; it begins with the place, in the file or in one that it
- * includes. */
+/* Nothing in a message may move a cursor; it begins with the place, in the file
+ * or in one that it includes. */
 static int is_message(const char *text, const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -250,8 +253,49 @@ static void hostile_values_are_refused_or_harmless(void)
     CHECK(taken > tries / 100 && taken < tries);
 }
 
+static size_t line_of(const char *text, size_t at)
+{
+    size_t line = 1;
+    for (size_t k = 0; k < at; ++k) {
+        line += text[k] == '\n';
+    }
+    return line;
+}
+
+/* A list of lists, or a map with an unknown key, is the value of few keys: it
+ * is refused in its line. */
+static void each_value_of_each_example_is_refused_in_its_line(void)
+{
+    static char text[TEXT_MAX];
+    static const char *const words[] = {"[[x]]", "{x: 1}"};
+    size_t tried = 0, refused = 0, there = 0;
+    for (size_t n = 0; n < example_count; ++n) {
+        const example *e = &examples[n];
+        for (size_t k = 0; k < e->count; ++k) {
+            const char *wrong = words[(n + k) % 2];
+            const size_t size = strlen(wrong);
+            se3d_model *model = NULL;
+            se3d_model_error error;
+            memcpy(text, e->text, e->begin[k]);
+            memcpy(text + e->begin[k], wrong, size);
+            memcpy(text + e->begin[k] + size, e->text + e->end[k], e->length - e->end[k]);
+            const size_t length = e->length - (e->end[k] - e->begin[k]) + size;
+            const se3d_status status =
+                se3d_model_read_text(text, length, e->path, NULL, &model, &error);
+            CHECK(status == SE3D_OK || (status == SE3D_ERR_MODEL && error.message[0]));
+            ++tried;
+            refused += status == SE3D_ERR_MODEL;
+            there += status == SE3D_ERR_MODEL && error.line == line_of(e->text, e->begin[k]);
+            se3d_model_destroy(model);
+        }
+    }
+    CHECK(tried > 2000);
+    CHECK(refused > tried - tried / 10 && there > refused - refused / 10);
+}
+
 int main(void)
 {
     RUN(hostile_values_are_refused_or_harmless);
+    RUN(each_value_of_each_example_is_refused_in_its_line);
     return check_finish();
 }
