@@ -8,7 +8,8 @@
 A line with `unreached: <reason>` in a comment on it, or on the line before it, counts as reached:
 what guards against damage that cannot be made in a test. --missing prints the branches that are
 left. Branches of `assert` count as reached, and those that ask for the processor; kernels at their
-instruction levels do not count."""
+instruction levels do not count. The preset takes force from `always_inline`: a kernel that is made
+once for each size or kind counts once, not once a copy. Files must be as they were compiled."""
 import argparse
 import gzip
 import json
