@@ -26,6 +26,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#define ENVELOPE 0.4  /* of tyres on meshes, over the radius */
 #define UPRIGHT  1e-3 /* cos g: a wheel that lies touches nothing */
 #define SHORTEST 0.1  /* relaxation length over the radius: those of light wheels vanish */
 
@@ -80,6 +81,12 @@ static se3d_status take_road(const se3di_model *model, const se3di_force *force,
                               .radius = force->rest,
                               .length = force->tyre->envelope[0],
                               .width = force->tyre->envelope[1]};
+    if (road->kind == SE3DI_ROAD_MESH && !(wheel.length > 0.0)) {
+        wheel.length = ENVELOPE * force->rest;
+    }
+    if (!(wheel.width > 0.0)) {
+        wheel.width = wheel.length;
+    }
     double part[3];
     for (int k = 0; k < 3; ++k) { /* columns */
         double axis[3];

@@ -327,11 +327,11 @@ static se3d_status project_end(se3di_bdf *m)
 }
 
 /* The frames and y_1 are the projected end of the step; `is_bdf`: without the works yet. */
-static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
+static void take(se3di_bdf *m, int order, int is_bdf)
 {
     const size_t bodies = m->count - SE3DI_STATE_WORK;
     for (size_t k = bodies; k < m->count && is_bdf; ++k) {
-        m->y[k] = m->base[k] + m->c * power[k - bodies];
+        m->y[k] = m->base[k] + m->c * m->power[k - bodies];
     }
     se3di_bdf_push(m, m->y, m->t);
     m->past->at.begin = m->past->at.time;
@@ -346,30 +346,37 @@ static void take(se3di_bdf *m, const double *power, int order, int is_bdf)
     ++m->equations->counters.steps;
 }
 
-/* The powers at the end of the step. */
-static se3d_status find_power(se3di_bdf *m, double power[SE3DI_STATE_WORK])
+/* The powers at the end of the step, once. */
+static se3d_status find_power(se3di_bdf *m)
 {
+    if (m->has_power) {
+        return SE3D_OK;
+    }
     se3di_model *model = m->assembly->model;
     if (m->assembly->row_count > 0) {
         memcpy(model->lambda, m->lambda, m->assembly->row_count * sizeof *m->lambda);
     }
     SE3DI_TRY(se3di_state_prepare(m->equations, m->t));
-    return se3di_loads_power(model, m->t, power);
+    SE3DI_TRY(se3di_loads_power(model, m->t, m->power));
+    m->has_power = 1;
+    return SE3D_OK;
 }
 
-/* *error is raised to that of the works: where drivers prescribe the motion, and where nothing but
- * stiff forces moves, it is the only one. */
+/* *error is raised to that of the works where drivers prescribe the motion, and where nothing but
+ * stiff forces moves: it is the only one there. */
 static se3d_status review_work(se3di_bdf *m, int order, double *error)
 {
-    double power[SE3DI_STATE_WORK];
     const size_t bodies = m->count - SE3DI_STATE_WORK;
-    const se3d_status status = find_power(m, power);
+    if (m->assembly->timed_count == 0 && m->assembly->user_count == 0 && !is_filtered(m)) {
+        return SE3D_OK;
+    }
+    const se3d_status status = find_power(m);
     if (status < 0) {
         forget(m);
         return status;
     }
     for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
-        m->y[bodies + k] = m->base[bodies + k] + m->c * power[k];
+        m->y[bodies + k] = m->base[bodies + k] + m->c * m->power[k];
     }
     se3di_bdf_get_error(m, order);
     const double off = se3di_norm(m->difference + bodies) / m->past->scale.energy;
@@ -383,8 +390,7 @@ static se3d_status review_work(se3di_bdf *m, int order, double *error)
 /* Take y_1, and let the scales follow. */
 static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
 {
-    double power[SE3DI_STATE_WORK];
-    se3d_status status = find_power(m, power);
+    se3d_status status = find_power(m);
     status = status < 0 ? status
                         : se3di_state_derivative(m->assembly, m->t, m->acceleration, m->lambda,
                                                  m->difference);
@@ -392,7 +398,8 @@ static se3d_status accept(se3di_bdf *m, int order, int is_bdf)
         forget(m);
         return status;
     }
-    take(m, power, order, is_bdf);
+    m->has_power = 0;
+    take(m, order, is_bdf);
     se3di_state_scale_grow(m->assembly, m->difference, &m->past->scale);
     return SE3D_OK;
 }
@@ -438,6 +445,7 @@ static se3d_status measure_errors(se3di_bdf *m, int order, errors *e)
 static se3d_status attempt(se3di_bdf *m, int order, errors *e)
 {
     *e = (errors){HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    m->has_power = 0;
     se3di_bdf_predict(m, order);
     SE3DI_TRY(se3di_bdf_solve(m));
     SE3DI_TRY(project_end(m));

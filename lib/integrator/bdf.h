@@ -50,6 +50,8 @@ typedef struct se3di_bdf {
     double t, h, c;       /* the end of the step, its length, its weight */
     double *relaxation;   /* [2 * unknowns + rows] */
     se3di_fastness fast;
+    double power[SE3DI_STATE_WORK]; /* at the end of the step, */
+    int32_t has_power;              /* once it is known */
     int32_t iterations_max;
     int32_t is_controlled; /* shorter steps find where contact begins */
 } se3di_bdf;

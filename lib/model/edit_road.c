@@ -20,6 +20,7 @@ static void replace_road(se3di_model *model, uint32_t index, se3di_road *own)
     se3di_road_release(&model->allocator, old);
     *old = *own;
     count_road_users(model, old, 1);
+    se3di_model_touch(model);
 }
 
 se3d_status se3di_model_add_road(se3di_model *model, const se3di_road *road, se3di_handle *handle)

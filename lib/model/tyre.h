@@ -23,8 +23,8 @@ typedef struct se3di_tyre {
     int32_t lags[2];      /* 1: the slip, forward or to the side, lags: it is a state, */
     uint32_t carrier[2];  /* the velocity of this body (model/state.h) */
     double relaxation[2]; /* lengths [m]; 0: follow from the coefficients */
-    double
-        envelope[2]; /* length and width over which obstacles are rolled; 0: it touches a point */
+    double envelope
+        [2]; /* length and width over which obstacles are rolled, as given; 0: the default */
     double coefficients[SE3D_TYRE_COEFFICIENTS]; /* of the Magic Formula */
     int32_t has_turn_slip;                       /* 1: it knows of turning */
     int32_t reserved;

@@ -12,7 +12,6 @@
 
 #define LARGE       1e40
 #define POSITIVE    1e-40
-#define ENVELOPE    0.4  /* of tyres on meshes, over the radius */
 #define SHAPE_LEAST 0.01 /* of QDRP1, whose sine sin(QDRP1 pi/2) is divided by */
 #define SHAPE_MOST  1.99
 #define SLIP        0.1 /* that errors of a slip that lags are measured by, at least: tyres slide */
@@ -205,10 +204,7 @@ static se3d_status take_road(se3d_system *system, const se3d_tyre_def *def, se3d
     }
     tyre->surface = (int32_t)index;
     tyre->envelope[0] = def->envelope_length;
-    if (road->kind == SE3DI_ROAD_MESH && !(def->envelope_length > 0.0)) {
-        tyre->envelope[0] = ENVELOPE * def->radius;
-    }
-    tyre->envelope[1] = def->envelope_width > 0.0 ? def->envelope_width : tyre->envelope[0];
+    tyre->envelope[1] = def->envelope_width;
     return SE3D_OK;
 }
 

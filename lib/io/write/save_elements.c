@@ -393,7 +393,7 @@ static void save_surface(se3di_save *s, const se3d_tyre_def *def)
     }
     se3di_save_text(s, "road", name);
     se3di_save_number_but(s, "envelope", def->envelope_length, 0.0);
-    se3di_save_number_but(s, "envelope_width", def->envelope_width, def->envelope_length);
+    se3di_save_number_but(s, "envelope_width", def->envelope_width, 0.0);
 }
 
 static void save_tyre(se3di_save *s, se3d_force force)
