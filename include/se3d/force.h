@@ -150,7 +150,8 @@ SE3D_API se3d_status se3d_force_create_bushing(se3d_system *system, const se3d_b
                                                se3d_force *force);
 
 /* Friction on a coordinate of a joint: sliding against the rate with mu N + limit, plus viscous
- * times the rate; sticking by a spring that gives at most `presliding`. N is the joint's reaction
+ * times the rate; sticking by a spring that gives at most `presliding` and, if that is below 1e-7,
+ * a damper by which it settles and which the limit does not hold for. N is the joint's reaction
  * perpendicular to its axis; on an angle the moment is mu (radius N + thrust_radius |F_axial|) +
  * limit. With a `length` N also has the moment of the reaction: two places at +-length/2 about the
  * joint point carry both. With a `width` of a guide, N has 2 |M_axial| / width more: two rails

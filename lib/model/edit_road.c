@@ -29,11 +29,10 @@ se3d_status se3di_model_add_road(se3di_model *model, const se3di_road *road, se3
     const uint32_t old = se3di_model_find_replaced(model, &model->road_slots, 0, road->name);
     const int is_new = old == SE3DI_NO_INDEX;
     se3di_road own = *road;
-    if (!is_new && model->roads[old].users > 0 && model->roads[old].body != road->body) {
-        return SE3D_ERR_IN_USE;
+    if (is_new) {
+        SE3DI_RESERVE(model, roads, road_capacity, count + 1, sizeof *model->roads);
+        SE3DI_TRY(se3di_slots_reserve(&model->road_slots, &model->allocator));
     }
-    SE3DI_RESERVE(model, roads, road_capacity, count + 1, sizeof *model->roads);
-    SE3DI_TRY(se3di_slots_reserve(&model->road_slots, &model->allocator));
     SE3DI_TRY(se3di_road_own(&model->allocator, &own));
     const int is_mesh = own.kind == SE3DI_ROAD_MESH;
     if ((is_mesh && se3di_road_sort(&model->allocator, &own) < 0) ||

@@ -103,6 +103,21 @@ static se3d_status take_surface(se3d_system *system, const se3d_road_def *def, s
     return def->triangles ? take_mesh(system, def, road) : SE3D_OK;
 }
 
+/* Tyres act on the body of the road that they are on. */
+static se3d_status check_body(se3d_system *system, const se3d_road_def *def, uint32_t body)
+{
+    const uint32_t old =
+        se3di_model_find_replaced(&system->model, &system->model.road_slots, 0, def->name);
+    const se3di_road *road = old == SE3DI_NO_INDEX ? NULL : &system->model.roads[old];
+    if (road && road->users > 0 && road->body != body) {
+        return SE3DI_FAIL_OF(system, "body", SE3D_ERR_IN_USE,
+                             " is another one than that of the road, which %u tyres are on; "
+                             "destroy them first",
+                             road->users);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *def, se3d_road *road)
 {
     SE3DI_CREATE(system, road);
@@ -112,6 +127,7 @@ se3d_status se3d_road_create(se3d_system *system, const se3d_road_def *def, se3d
     SE3DI_TRY(se3di_check_def(system, "road def", def, &full, sizeof full));
     SE3DI_TRY(se3di_check_new_name(system, &system->model.road_slots, 0, "road", full.name));
     SE3DI_TRY(se3di_find_body(system, "body", full.body, &data.body));
+    SE3DI_TRY(check_body(system, &full, data.body));
     SE3DI_TRY(se3di_check_finites(system, "point", full.point, 3));
     SE3DI_TRY(se3di_check_axes(system, full.forward, "normal", full.normal, data.axes));
     SE3DI_TRY(take_surface(system, &full, &data));

@@ -15,8 +15,9 @@
 #include <math.h>
 #include <string.h>
 
-#define MARK    UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION UINT64_C(7)
+#define MASS_MOST 1e100 /* of the two of a contact: the inverse is divided by */
+#define MARK      UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
+#define VERSION   UINT64_C(7)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 
@@ -248,9 +249,9 @@ static int are_contacts(const se3di_saved *state, const se3di_model *model)
                            sum_of(c->turn, 4) + sum_of(c->point, 3) + sum_of(c->normal, 3) +
                            sum_of(c->force, 3) + sum_of(c->torque, 3) + fabs(c->twist) +
                            fabs(c->overlap) + fabs(c->inverse_mass) + fabs(c->energy);
-        if (!isfinite(sum) || !(c->inverse_mass > 1e-100) || list[k].shape_i >= list[k].shape_j ||
-            list[k].shape_j >= model->shape_slots.count || list[k].kind < SE3DI_CONTACT_LAWFUL ||
-            list[k].kind > SE3DI_CONTACT_PARTING) {
+        if (!isfinite(sum) || !(c->inverse_mass > 1.0 / MASS_MOST) ||
+            list[k].shape_i >= list[k].shape_j || list[k].shape_j >= model->shape_slots.count ||
+            list[k].kind < SE3DI_CONTACT_LAWFUL || list[k].kind > SE3DI_CONTACT_PARTING) {
             return 0;
         }
     }
