@@ -415,6 +415,49 @@ static void roads_on_bodies_are_written_as_they_are_defined(void)
     free(second);
 }
 
+/* Lengths of the road and the shape that a file of another unit of length names, and of a road that
+ * calls have given other heights since. */
+static void heights_are_written_as_they_are_now(void)
+{
+    static const char *const units[] = {"", "units: {length: mm}\n"};
+    char path[800], table[800];
+    put_file(file_of("", path, sizeof path), "hills.csv", "0,1\n2,3\n");
+    file_of("hills.csv", table, sizeof table);
+    for (size_t k = 0; k < 4; ++k) {
+        char text[2400];
+        double h[2][4];
+        se3d_write_options how = se3d_write_options_default();
+        se3d_road_def def = se3d_road_def_default();
+        se3d_road road;
+        snprintf(text, sizeof text,
+                 "se3d: 1\n%sroads: [{name: way, type: heightfield, spacing: 1, file: '%.700s'}]\n"
+                 "bodies: [{name: hill, mass: 1, inertia: [1, 1, 1], shapes: [{type: heightfield, "
+                 "spacing: 1, file: '%.700s'}]}]\n",
+                 units[k % 2], table, table);
+        se3d_model *model = read_again(text, "m.yaml");
+        se3d_system *system = se3d_model_get_system(model);
+        CHECK(!se3d_road_find(system, "way", &road));
+        CHECK(!se3d_road_get_def(system, road, &def));
+        if (k > 1) {
+            const double other[4] = {0.5, 0.25, 0.125, 0.75};
+            def.heights = other;
+            CHECK(!se3d_road_set_def(system, road, &def));
+        }
+        CHECK(!se3d_road_get_height(system, road, 0.0001, 0.0002, h[0]) && h[0][0] > 0.0);
+        how.elements_only = 1;
+        char *first = text_of(model, &how);
+        CHECK(first && (strstr(first, "hills.csv") != NULL) == (k % 2 == 0));
+        se3d_model *again = read_again(first ? first : "", "m.yaml");
+        CHECK(again && !se3d_road_find(se3d_model_get_system(again), "way", &road));
+        CHECK(!se3d_road_get_height(se3d_model_get_system(again), road, 0.0001, 0.0002, h[1]));
+        CHECK_NEAR(h[0][0], h[1][0], 1e-15);
+        free(first);
+        se3d_model_destroy(model);
+        se3d_model_destroy(again);
+    }
+    CHECK(remove(table) == 0);
+}
+
 static void a_road_of_triangles_without_a_file_is_refused(void)
 {
     static const double corners[9] = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0};
@@ -607,6 +650,7 @@ int main(void)
     RUN(texts_are_read_again_as_they_were);
     RUN(files_that_a_model_names_are_found_from_another_place);
     RUN(roads_on_bodies_are_written_as_they_are_defined);
+    RUN(heights_are_written_as_they_are_now);
     RUN(a_road_of_triangles_without_a_file_is_refused);
     RUN(what_calls_have_made_and_set_is_in_the_file);
     RUN(turns_are_in_the_file);

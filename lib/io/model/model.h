@@ -67,6 +67,8 @@ typedef struct se3di_element_entry {
     const char *break_channel; /* joint with limits: the channel that tells whether it broke */
     se3d_function height;      /* road: over (t, x, y); null: none */
     const se3di_mesh *surface; /* road: its triangles; NULL: none */
+    const double *heights;     /* road: those of its grid, as read; NULL: none */
+    size_t row_count, column_count;
 } se3di_element_entry;
 
 /* What `modes` writes. */

@@ -237,6 +237,9 @@ static bool read_road(se3di_reader *reader, const se3di_node *node)
     }
     entry->body_i = def.body;
     entry->height = def.height;
+    entry->heights = def.heights;
+    entry->row_count = def.row_count;
+    entry->column_count = def.column_count;
     memcpy(entry->point_i, def.point, sizeof entry->point_i);
     memcpy(entry->axis_i, def.normal, sizeof entry->axis_i);
     memcpy(entry->axis_j, def.forward, sizeof entry->axis_j);

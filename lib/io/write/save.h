@@ -93,6 +93,9 @@ void se3di_save_spacing(se3di_save *s, const double spacing[2]);
 /* Let what is wrong with the entry at hand say whose it is. */
 void se3di_save_name_problem(se3di_save *s, const char *what, const char *name);
 
+/* Whether numbers without a unit are metres in the file of a part that are lengths: those of tables
+ * of heights. */
+bool se3di_save_is_in_metres(const se3di_component *part);
 /* A file that a part of the model names (NULL: the model itself), as the file to be has to say it:
  * from its own folder. */
 const char *se3di_save_get_file(se3di_save *s, const se3di_component *part, const char *file);

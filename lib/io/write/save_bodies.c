@@ -148,7 +148,7 @@ static void save_heights(se3di_save *s, const se3di_shape_entry *entry)
     se3di_save_spacing(s, mesh->spacing);
     if (!mesh->heights) {
         se3di_save_refuse(s, "a heightfield that is mirrored has no heights");
-    } else if (file && file->text) {
+    } else if (file && file->text && se3di_save_is_in_metres(entry->part)) {
         se3di_save_text(s, "file", se3di_save_get_file(s, entry->part, file->text));
     } else {
         se3di_save_heights(s, mesh->heights, 1, mesh->row_count, mesh->column_count);

@@ -51,6 +51,13 @@ static bool find_way(const char *from, const char *to, char *way, size_t size)
            lead(whole_from, whole_to, way, size);
 }
 
+bool se3di_save_is_in_metres(const se3di_component *part)
+{
+    const se3di_units si = se3di_units_si();
+    const se3di_measure *length = part && part->scope ? &part->scope->units.length : &si.length;
+    return length->times / length->over == 1.0;
+}
+
 const char *se3di_save_get_file(se3di_save *s, const se3di_component *part, const char *file)
 {
     char way[PATH_SIZE];
