@@ -13,7 +13,7 @@
 
 #define BALANCE     8e-15 /* rounding of accelerations, relative to those of forces that balance */
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
-#define GAUSS_PART  0.3   /* of the tolerance, instead of SE3DI_EXPLICIT_PART */
+#define GAUSS_PART  0.3   /* of the tolerance, instead of SE3DI_EXPLICIT_PART, where all is plain */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
@@ -45,12 +45,20 @@ static double inner_tolerance(const se3di_integration *integration, const se3di_
     const double tolerance = integration->settings.tolerance;
     const se3di_integrator *method = integration->method;
     const int is_gauss = method->tag == SE3D_METHOD_GAUSS;
-    const int is_plain =
-        (is_gauss || method->tag == SE3D_METHOD_DOP853) && motion->can_wait(integration->equations);
+    const int is_plain = (is_gauss || method->tag == SE3D_METHOD_DOP853) &&
+                         motion->are_all_plain(integration->equations);
     const int is_loose = is_plain && tolerance > SE3DI_EXPLICIT_LOOSE;
     const double more = is_loose ? sqrt(tolerance / SE3DI_EXPLICIT_LOOSE) : 1.0;
     const double part = is_plain && is_gauss ? GAUSS_PART : SE3DI_EXPLICIT_PART;
     return fmax(part * more * tolerance, SE3DI_EXPLICIT_LEAST);
+}
+
+double se3di_gauss_get_reach(const se3di_integration *integration, const se3di_model *model)
+{
+    const se3di_equations *equations = integration->equations;
+    const int is_built = equations && equations->assembly.model == model;
+    const int is_plain = is_built && se3di_motion_find(equations)->are_all_plain(equations);
+    return is_plain ? SE3DI_EXPLICIT_LEAST / GAUSS_PART : SE3DI_EXPLICIT_REACH;
 }
 
 /* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular

@@ -128,6 +128,7 @@ void se3di_explicit_watch_crowd(se3di_explicit *m);
 /* For the table of a method, see integrator.h. */
 size_t se3di_explicit_history_count(const se3di_assembly *assembly);
 size_t se3di_explicit_work_count(const se3di_assembly *assembly);
+double se3di_gauss_get_reach(const se3di_integration *integration, const se3di_model *model);
 se3d_status se3di_explicit_start(se3di_integration *integration, double h);
 se3d_status se3di_explicit_renew(se3di_integration *integration);
 int se3di_explicit_renews_all(const se3di_integration *integration);

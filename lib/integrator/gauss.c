@@ -472,6 +472,7 @@ const se3di_integrator se3di_integrator_gauss = {
     .tag = SE3D_METHOD_GAUSS,
     SE3DI_EXPLICIT_METHOD_WITH(se3di_gauss_work_count),
     .explicit_class = &gauss_class,
+    .get_reach = se3di_gauss_get_reach,
     .is_held = se3di_explicit_is_held,
     .orders = 1u << 8 | 1u << 16,
     .takes_lanes = 1,

@@ -110,6 +110,7 @@ const se3di_motion se3di_motion_bodies = {
     .show = show,
     .finds_all = finds_all,
     .may_report = finds_all,
+    .are_all_plain = finds_all,
     .can_wait = finds_all,
     .count_dependent = count_dependent,
 };

@@ -53,10 +53,12 @@ typedef struct se3di_motion {
     /* y in the places of state.h; the model is left alone. */
     void (*show)(se3di_equations *equations, const double *y, double *bodies);
     /* Whether `evaluate` finds all that a model shows of its accelerations and multipliers: at
-     * every state, or at most of them; and whether it can do so later, when only efforts have
-     * changed and nobody's code is called, */
+     * every state, or at most of them; whether nothing acts on an open tree but force elements
+     * without functions and memory, and constant gravity; and whether it can do so later, when only
+     * efforts have changed and nobody's code is called, */
     int (*finds_all)(const se3di_equations *equations);
     int (*may_report)(const se3di_equations *equations);
+    int (*are_all_plain)(const se3di_equations *equations);
     int (*can_wait)(const se3di_equations *equations);
     /* and then: those of the last evaluation become the model's (0: at that state it has not found
      * them, the model's stay); `evaluate` with the efforts of the last evaluation, whatever they

@@ -658,16 +658,21 @@ static int is_plain(const se3di_force *force)
     return plain;
 }
 
-static int can_wait(const se3di_equations *equations)
+static int are_all_plain(const se3di_equations *equations)
 {
     const se3di_model *model = equations->assembly.model;
-    int can = is_open(equations) && !equations->tree->has_others && !equations->assembly.push &&
-              model->shape_slots.count <= 1 && model->wheel_slots.count == 0 &&
-              !se3di_model_gravity_varies(model);
-    for (size_t k = 0; can && k < model->force_slots.count; ++k) {
-        can = is_plain(&model->forces[k]);
+    int all = is_open(equations) && !equations->tree->has_others && !equations->assembly.push &&
+              model->shape_slots.count <= 1 && !se3di_model_gravity_varies(model);
+    for (size_t k = 0; all && k < model->force_slots.count; ++k) {
+        all = is_plain(&model->forces[k]);
     }
-    return can;
+    return all;
+}
+
+/* A wheel is measured at the end of every step. */
+static int can_wait(const se3di_equations *equations)
+{
+    return equations->assembly.model->wheel_slots.count == 0 && are_all_plain(equations);
 }
 
 static se3d_status evaluate_again(se3di_equations *equations, double t, double *derivative)
@@ -718,6 +723,7 @@ const se3di_motion se3di_motion_joints = {
     .show = show,
     .finds_all = is_open,
     .may_report = may_report,
+    .are_all_plain = are_all_plain,
     .can_wait = can_wait,
     .report = report,
     .evaluate_again = evaluate_again,
