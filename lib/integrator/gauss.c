@@ -356,7 +356,7 @@ static double estimate_end(se3di_explicit *m, double h, double error)
     find_defects(m, m->sum, m->sum3);
     const double begin = length_of(m, m->sum), end = length_of(m, m->sum3);
     const double defect = fmax(begin, end), whole = length_of(m, get_form(m, 0));
-    const double size = h * se3di_explicit_size(m, begin > end ? m->sum : m->sum3);
+    const double size = h * fmax(se3di_explicit_size(m, m->sum), se3di_explicit_size(m, m->sum3));
     const double part = defect < whole ? defect / whole : 1.0;
     if (!(size > 0.0)) {
         return size == 0.0 ? 0.0 : HUGE_VAL;
