@@ -634,7 +634,7 @@ static se3d_status run_again(se3di_run *run, double t_end)
         run->refused = 0;
         run->events.goes_on = 0;
         SE3DI_TRY(se3di_run_prepare(run));
-        se3di_run_suit_call(run, 0);
+        se3di_run_choose_for_call(run, 0);
         SE3DI_TRY(prepare_integrals(run, t_end));
         const se3d_status told = begin(run);
         status = conclude(run, run_to(run, t_end), t_end, told);
@@ -683,7 +683,7 @@ se3d_status se3di_run_step(se3di_run *run, double h)
     run->refused = 0;
     run->events.goes_on = 0;
     SE3DI_TRY(se3di_run_prepare(run));
-    se3di_run_suit_call(run, 1);
+    se3di_run_choose_for_call(run, 1);
     SE3DI_TRY(prepare_integrals(run, t_end));
     const se3d_status told = begin(run);
     run->steps_once = 1;

@@ -20,7 +20,8 @@ typedef struct se3di_run {
     int32_t determined;           /* kinematics: the drivers determine the motion (checked once) */
     int32_t automatic;            /* the method is chosen from what the model holds, */
     int32_t picks_formulation;    /* and so is the formulation */
-    int32_t leaps;                /* auto: by gauss, single steps by dop853, with one memory */
+    int32_t in_lanes;             /* auto: by gauss, single steps by dop853, with one memory */
+    int32_t gravity_varies;       /* when the method was chosen */
     int32_t has_tolerance;        /* it was asked for */
     int32_t refused;              /* a prescribed value jumps in the run that is asked for */
     const se3di_integrator *left; /* the method that was left on the way, NULL: none */

@@ -14,6 +14,7 @@
 #include "integrator/explicit_step.h"
 #include "integrator/gauss_lanes.h"
 #include "nonlinear/against.h"
+#include "primitive/user.h"
 
 #include <string.h>
 
@@ -40,7 +41,7 @@ static void release(se3di_run *run)
         se3di_equations_destroy(&run->equations);
         run->equations.counters = counters;
     }
-    run->prepared = run->leaps = 0;
+    run->prepared = run->in_lanes = 0;
 }
 
 void se3di_run_destroy(se3di_run *run)
@@ -107,15 +108,14 @@ static int is_history_of(const se3di_model *model, int32_t method)
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
 {
     run->integration.method = method;
-    run->integration.settings.leaves_stiff =
-        method->tag == SE3D_METHOD_DOP853 || (run->automatic && method->tag == SE3D_METHOD_GAUSS);
+    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
 }
 
 /* A step of given length has no tolerance, to which iterations would end. */
-void se3di_run_suit_call(se3di_run *run, int is_step)
+void se3di_run_choose_for_call(se3di_run *run, int is_step)
 {
     const se3di_integrator *method = is_step ? &se3di_integrator_dop853 : &se3di_integrator_gauss;
-    if (run->leaps && run->integration.method != method) {
+    if (run->in_lanes && run->integration.method != method) {
         se3di_run_use_method(run, method);
     }
 }
@@ -137,18 +137,32 @@ int se3di_run_is_crowded(const se3di_run *run)
            (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_bodies_crowd(model));
 }
 
-/* auto: stages in lanes are faster where nothing acts that does not go into them. Loops at the
- * tightest tolerances are left to the equations of the bodies. */
-static int may_leap(const se3di_run *run)
+/* A function of time or the user's code is among the rows. */
+static int is_given(const se3di_model *model)
 {
+    int given = 0;
+    for (size_t k = 0; !given && k < model->row_count; ++k) {
+        given = model->rows[k].function >= 0 && !(model->rows[k].left_out & SE3DI_ROW_BROKEN);
+    }
+    for (size_t k = 0; !given && k < model->constraint_slots.count; ++k) {
+        given = se3di_is_user(&model->constraints[k]);
+    }
+    return given;
+}
+
+/* auto: stages in lanes are faster where nothing acts that does not go into them. */
+static int may_take_lanes(const se3di_run *run)
+{
+    const se3di_model *model = run->model;
     const int is_joint = run->picks_formulation || run->formulation == &se3di_formulation_joint;
     return run->analysis == SE3D_ANALYSIS_DYNAMICS && is_joint &&
-           run->model->constraint_slots.count > 0 && se3di_gauss_lanes_suit_model(run->model);
+           model->constraint_slots.count > 0 && se3di_gauss_lanes_suit_model(model) &&
+           !is_given(model);
 }
 
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
- * small steps, or have done so before. A motion under way goes on by its method: the state would
- * now decide otherwise. */
+ * small steps, or have done so before. A motion under way stays with radau, or without it: the
+ * state would now decide otherwise. */
 static void choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;
@@ -159,9 +173,9 @@ static void choose_method(se3di_run *run)
         run->analysis == SE3D_ANALYSIS_DYNAMICS &&
         (is_history_of(model, SE3D_METHOD_RADAU) ||
          (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
-    int32_t method = stiff           ? SE3D_METHOD_RADAU
-                     : may_leap(run) ? SE3D_METHOD_GAUSS
-                                     : SE3D_METHOD_DOP853;
+    int32_t method = stiff                 ? SE3D_METHOD_RADAU
+                     : may_take_lanes(run) ? SE3D_METHOD_GAUSS
+                                           : SE3D_METHOD_DOP853;
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
     } else if (se3di_run_is_crowded(run)) {
@@ -316,33 +330,49 @@ static se3d_status enter_crowd(se3di_run *run)
     return se3di_run_build(run);
 }
 
-/* With these equations; dop853, for single steps, needs no more memory. */
-static int leaps(const se3di_run *run)
+/* With these equations; dop853, for single steps, needs no more memory. Loops at the tightest
+ * tolerances are left to the equations of the bodies. */
+static int are_in_lanes(const se3di_run *run)
 {
     return run->formulation == &se3di_formulation_joint &&
            se3di_gauss_lanes_suit_equations(&run->equations) &&
            !(run->equations.has_loops && run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
 }
 
-static se3d_status build_anew(se3di_run *run)
+/* By the method in use; of auto, which takes gauss for the sake of lanes, dop853 without them. */
+static se3d_status build_chosen(se3di_run *run)
 {
-    choose_method(run);
     SE3DI_TRY(se3di_run_build(run));
     if (!run->automatic || run->integration.method != &se3di_integrator_gauss) {
         return SE3D_OK;
     }
-    run->leaps = leaps(run);
-    if (!run->leaps) {
+    run->in_lanes = are_in_lanes(run);
+    if (!run->in_lanes) {
         se3di_run_use_method(run, &se3di_integrator_dop853);
         return se3di_run_build(run);
     }
     return SE3D_OK;
 }
 
+static se3d_status build_anew(se3di_run *run)
+{
+    choose_method(run);
+    SE3DI_TRY(build_chosen(run));
+    run->gravity_varies = se3di_model_gravity_varies(run->model);
+    return SE3D_OK;
+}
+
+/* auto: gravity, which functions of time come to and go from without a change of the structure, is
+ * still what the method was chosen by. */
+static int is_chosen(const se3di_run *run)
+{
+    return !run->automatic || run->gravity_varies == se3di_model_gravity_varies(run->model);
+}
+
 se3d_status se3di_run_prepare(se3di_run *run)
 {
     SE3DI_TRY(se3di_breaks_check(run));
-    if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly)) {
+    if (!run->prepared || !se3di_assembly_fits(&run->equations.assembly) || !is_chosen(run)) {
         SE3DI_TRY(build_anew(run));
     } else if (run->integration.settings.leaves_crowd && se3di_run_is_crowded(run)) {
         SE3DI_TRY(enter_crowd(run));
@@ -367,8 +397,12 @@ se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method
     if (!run->automatic || method == run->integration.method) {
         return SE3D_OK;
     }
-    const int is_light =
-        run->leaps && (method == &se3di_integrator_dop853 || method == &se3di_integrator_gauss);
-    se3di_run_use_method(run, method);
-    return is_light ? SE3D_OK : se3di_run_build(run);
+    const int is_of_lanes = method == &se3di_integrator_dop853 || method == &se3di_integrator_gauss;
+    if (is_of_lanes && !run->in_lanes) {
+        se3di_run_use_method(run, may_take_lanes(run) ? &se3di_integrator_gauss
+                                                      : &se3di_integrator_dop853);
+        SE3DI_TRY(build_chosen(run));
+    }
+    se3di_run_use_method(run, run->in_lanes || !is_of_lanes ? method : &se3di_integrator_dop853);
+    return is_of_lanes ? SE3D_OK : se3di_run_build(run);
 }

@@ -6,7 +6,7 @@
 #include "analysis/run.h"
 
 /* Before a call of one step of given length, or of a run. */
-void se3di_run_suit_call(se3di_run *run, int is_step);
+void se3di_run_choose_for_call(se3di_run *run, int is_step);
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method);
 /* auto: many bodies are at each other, which convex is for, or have been. */
 int se3di_run_is_crowded(const se3di_run *run);

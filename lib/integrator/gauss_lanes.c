@@ -35,16 +35,6 @@ static int is_bare(const se3di_model *model)
     return model->force_slots.count == 0 && model->shape_slots.count == 0;
 }
 
-/* The stages share one gravity. Its functions are inputs: they come and go without a rebuild. */
-static int is_gravity_constant(const se3di_model *model)
-{
-    int constant = 1;
-    for (int c = 0; c < 3; ++c) {
-        constant &= model->gravity_function[c] < 0;
-    }
-    return constant;
-}
-
 int se3di_gauss_lanes_suit_loops(const se3di_equations *equations)
 {
     return equations->lanes.rows.count > 0 && is_bare(equations->assembly.model) &&
@@ -57,16 +47,15 @@ int se3di_gauss_lanes_suit_loops(const se3di_equations *equations)
 
 int se3di_gauss_lanes_take_loops(const se3di_explicit *m)
 {
-    return m->motion == &se3di_motion_joints && is_gravity_constant(m->assembly->model) &&
+    return m->motion == &se3di_motion_joints && !se3di_model_gravity_varies(m->assembly->model) &&
            se3di_gauss_lanes_suit_loops(m->equations);
 }
 
-/* Open, and moved by nothing but gravity. */
+/* Open, and moved by nothing but gravity, of which the stages share one. */
 static int is_bare_tree(const se3di_explicit *m)
 {
-    const se3di_model *model = m->assembly->model;
-    return m->motion == &se3di_motion_joints && m->equations->is_open_tree && is_bare(model) &&
-           is_gravity_constant(model);
+    return m->motion == &se3di_motion_joints && m->equations->is_open_tree &&
+           se3di_gauss_lanes_suit_model(m->assembly->model);
 }
 
 int se3di_gauss_lanes_suit(const se3di_explicit *m)
@@ -76,7 +65,7 @@ int se3di_gauss_lanes_suit(const se3di_explicit *m)
 
 int se3di_gauss_lanes_suit_model(const se3di_model *model)
 {
-    return is_bare(model) && is_gravity_constant(model) && model->wheel_slots.count == 0;
+    return is_bare(model) && !se3di_model_gravity_varies(model);
 }
 
 int se3di_gauss_lanes_suit_equations(const se3di_equations *equations)

@@ -14,9 +14,9 @@
 #define SE3DI_GAUSS_RULE_H
 
 #define SE3DI_GAUSS_MAX 8 /* stages */
-#define SE3DI_GAUSS_FORMS                                                                          \
-    10 /* of the polynomial through both ends: a_0 ... a_{s-1} of P_k, then
-                              * (d_0 + d_1)/2 of P_s and (d_1 - d_0)/2 of xi P_s */
+/* Of the polynomial through both ends: a_0 ... a_{s-1} of P_k, then (d_0 + d_1)/2 of P_s and
+ * (d_1 - d_0)/2 of xi P_s. */
+#define SE3DI_GAUSS_FORMS 10
 
 typedef struct se3di_gauss_rule {
     int stages;

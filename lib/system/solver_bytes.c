@@ -40,14 +40,6 @@ static void code_method(se3di_coder *c, const se3di_integrator **method)
     }
 }
 
-/* The method in use, which `auto` would now choose by another state. */
-static se3d_status code_method_in_use(se3di_coder *c, se3di_run *run)
-{
-    const se3di_integrator *method = run->integration.method;
-    code_method(c, &method);
-    return c->in && method ? se3di_run_take_method(run, method) : SE3D_OK;
-}
-
 /* A body by its place; none: as many as there are. */
 static void code_body(se3di_coder *c, const se3di_slots *slots, se3di_handle *body)
 {
@@ -254,14 +246,15 @@ static se3d_status code_events(se3di_coder *c, se3di_events *events)
     return c->failed && c->in ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
 }
 
-static se3d_status code_solver(se3di_coder *c, se3di_run *run)
+/* *method: the one in use, which `auto` would now choose by another state. */
+static se3d_status code_solver(se3di_coder *c, se3di_run *run, const se3di_integrator **method)
 {
     int32_t analysis = run->analysis;
     se3di_code_int32(c, &analysis);
     if (analysis != run->analysis) {
         return SE3D_ERR_STATE;
     }
-    SE3DI_TRY(code_method_in_use(c, run));
+    code_method(c, method);
     code_counters(c, run);
     code_method(c, &run->left);
     se3di_code_numbers(c, &run->left_at, 1);
@@ -285,7 +278,7 @@ se3d_status se3d_solver_write(const se3d_solver *solver, void *bytes, size_t cap
     se3di_run copy = solver->run; /* what it points to is only looked at */
     se3di_coder measure = {.size = SIZE_MAX};
     uint64_t mark = MARK, version = VERSION;
-    (void)code_solver(&measure, &copy);
+    (void)code_solver(&measure, &copy, &copy.integration.method);
     *size = measure.at + FRAME;
     if (!bytes || capacity < *size) {
         return bytes ? SE3D_ERR_INVALID_ARGUMENT : SE3D_OK;
@@ -293,7 +286,7 @@ se3d_status se3d_solver_write(const se3d_solver *solver, void *bytes, size_t cap
     se3di_coder c = {.out = bytes, .size = *size};
     se3di_code_word(&c, &mark);
     se3di_code_word(&c, &version);
-    (void)code_solver(&c, &copy);
+    (void)code_solver(&c, &copy, &copy.integration.method);
     uint64_t sum = se3di_hash_bytes(SE3DI_HASH_START, bytes, c.at);
     se3di_code_word(&c, &sum);
     return SE3D_OK;
@@ -334,9 +327,13 @@ static se3d_status read_solver(se3d_solver *solver, se3di_coder *c)
 {
     se3d_system *system = solver->system;
     SE3DI_TRY(se3di_run_prepare(&solver->run));
-    se3d_status status = code_solver(c, &solver->run);
+    const se3di_integrator *method = NULL;
+    se3d_status status = code_solver(c, &solver->run, &method);
     if (status >= 0 && (c->failed || c->at != c->size)) {
         status = SE3D_ERR_INVALID_ARGUMENT;
+    }
+    if (status >= 0 && method) { /* last: what fails before has not changed it */
+        status = se3di_run_take_method(&solver->run, method);
     }
     if (status >= 0) {
         return status;

@@ -132,6 +132,185 @@ static void steps_between_runs_are_made_by_dop853(void)
     support_model_destroy(&model);
 }
 
+/* A solver on a clone of the system, which goes on from what `solver` has written. */
+static se3d_solver *read_beside(const support_model *model, const se3d_solver *solver,
+                                se3d_system **clone)
+{
+    unsigned char bytes[8192];
+    size_t size = 0;
+    CHECK(se3d_solver_write(solver, bytes, sizeof bytes, &size) >= 0 && size <= sizeof bytes);
+    CHECK(!se3d_system_clone(model->system, clone));
+    se3d_solver *read = make_solver(*clone, SE3D_METHOD_AUTO, 1e-6);
+    CHECK(!se3d_solver_read(read, bytes, size));
+    return read;
+}
+
+static void set_gravity(const support_model *model, const char *text)
+{
+    se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+    if (text) {
+        CHECK(!se3d_function_create_expression(model->system, text, &gravity[2]));
+    }
+    CHECK(!se3d_system_set_gravity_function(model->system, gravity));
+}
+
+/* Gravity becomes a function of time, and a constant again: the solver, one that has read it and a
+ * new one go on by the same method, to the same bits. */
+static void it_is_decided_again_when_gravity_varies(void)
+{
+    static const struct {
+        const char *gravity, *method;
+        double t_end;
+    } rows[] = {{"-9.81 + sin(t)", "dop853", 0.2}, {NULL, "gauss", 0.3}, {"-5 - t", "dop853", 0.4}};
+    static const char *const mechanisms[] = {"double_pendulum", "four_bar"};
+    for (size_t m = 0; m < sizeof mechanisms / sizeof *mechanisms; ++m) {
+        support_model model;
+        support_model_make(&model, mechanisms[m], 1);
+        se3d_solver *solver = make_solver(model.system, SE3D_METHOD_AUTO, 1e-6);
+        CHECK(se3d_solver_run(solver, 0.1) >= 0 && moves_by(solver, "gauss"));
+        for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+            se3d_system *clones[2];
+            set_gravity(&model, rows[k].gravity);
+            se3d_solver *read = read_beside(&model, solver, &clones[0]);
+            CHECK(!se3d_system_clone(model.system, &clones[1]));
+            se3d_solver *fresh = make_solver(clones[1], SE3D_METHOD_AUTO, 1e-6);
+            se3d_solver *const all[] = {solver, read, fresh};
+            for (int s = 0; s < 3; ++s) {
+                CHECK(se3d_solver_run(all[s], rows[k].t_end) >= 0);
+                CHECK(moves_by(all[s], rows[k].method));
+            }
+            for (int c = 0; c < 2; ++c) {
+                CHECK(se3d_system_hash(clones[c]) == se3d_system_hash(model.system));
+            }
+            se3d_solver_destroy(fresh);
+            se3d_solver_destroy(read);
+            se3d_system_destroy(clones[1]);
+            se3d_system_destroy(clones[0]);
+        }
+        se3d_solver_destroy(solver);
+        support_model_destroy(&model);
+    }
+}
+
+/* A wheel measures: it comes and goes, and nothing moves in another way. */
+static void a_wheel_has_no_say(void)
+{
+    for (int method = 0; method < 2; ++method) {
+        uint64_t steps[2];
+        double r[2][3];
+        for (int has_wheel = 0; has_wheel < 2; ++has_wheel) {
+            support_model model;
+            se3d_wheel wheel;
+            se3d_solver_stats stats;
+            se3d_wheel_def def = se3d_wheel_def_default();
+            support_model_make(&model, "double_pendulum", 1);
+            se3d_solver *solver =
+                make_solver(model.system, method ? SE3D_METHOD_DOP853 : SE3D_METHOD_AUTO, 1e-2);
+            CHECK(se3d_solver_run(solver, 0.1) >= 0);
+            if (has_wheel) {
+                def.body = model.bodies[1];
+                def.chassis = model.bodies[0];
+                def.axis[0] = def.axis[2] = 1.0;
+                def.radius = 0.3;
+                world_must(model.system, se3d_wheel_create(model.system, &def, &wheel), "wheel");
+            }
+            CHECK(se3d_solver_run(solver, 0.5) >= 0);
+            CHECK(moves_by(solver, method ? "dop853" : "gauss"));
+            CHECK(!se3d_solver_get_stats(solver, &stats));
+            se3d_solver_destroy(solver);
+            solver = make_solver(model.system, SE3D_METHOD_AUTO, 1e-2);
+            CHECK(se3d_solver_run(solver, 0.6) >= 0 && moves_by(solver, "gauss"));
+            steps[has_wheel] = stats.steps;
+            look(&model, r[has_wheel]);
+            se3d_solver_destroy(solver);
+            support_model_destroy(&model);
+        }
+        CHECK(steps[0] == steps[1] && part(r[0], r[1]) < 1e-13);
+    }
+}
+
+/* Read into a solver that moved by radau, as its system had before: runs and single steps are those
+ * of the writer, to the bit. */
+static void what_is_read_goes_on_as_what_was_written(void)
+{
+    static const double steps[] = {0.0, 0.3}; /* the last call before writing is a run, a step */
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; ++k) {
+        support_model model, other;
+        se3d_snapshot *snapshot = NULL;
+        unsigned char bytes[8192];
+        size_t size = 0;
+        support_model_make(&model, "chain_ball", 3);
+        support_model_make(&other, "chain_ball", 3);
+        se3d_solver *solver = make_solver(model.system, SE3D_METHOD_AUTO, 1e-6);
+        CHECK(se3d_solver_run(solver, 0.1) >= 0 && moves_by(solver, "gauss"));
+        CHECK(steps[k] == 0.0 || se3d_solver_step(solver, 0.01) >= 0);
+        se3d_solver *before = make_solver(other.system, SE3D_METHOD_RADAU, 1e-6);
+        CHECK(se3d_solver_run(before, 0.02) >= 0);
+        se3d_solver *read = make_solver(other.system, SE3D_METHOD_AUTO, 1e-6);
+        CHECK(se3d_solver_run(read, 0.05) >= 0 && moves_by(read, "radau"));
+        CHECK(!se3d_snapshot_create(model.system, &snapshot));
+        CHECK(!se3d_snapshot_restore(snapshot, other.system));
+        CHECK(se3d_solver_write(solver, bytes, sizeof bytes, &size) >= 0 && size <= sizeof bytes);
+        CHECK(!se3d_solver_read(read, bytes, size));
+        CHECK(moves_by(read, steps[k] > 0.0 ? "dop853" : "gauss"));
+        for (int m = 0; m < 2; ++m) {
+            se3d_solver *const one = m ? read : solver;
+            CHECK(se3d_solver_step(one, 0.3) >= 0 && moves_by(one, "dop853"));
+            CHECK(se3d_solver_run(one, 0.6) >= 0 && moves_by(one, "gauss"));
+        }
+        CHECK(se3d_system_hash(model.system) == se3d_system_hash(other.system));
+        se3d_snapshot_destroy(snapshot);
+        se3d_solver_destroy(read);
+        se3d_solver_destroy(before);
+        se3d_solver_destroy(solver);
+        support_model_destroy(&other);
+        support_model_destroy(&model);
+    }
+}
+
+/* A bar, the last of those that hang, on the one before; all turn as one at `rate`. */
+static void hang(se3d_system *system, se3d_body on, double top, double length, double rate,
+                 se3d_body *bar)
+{
+    const double at[3] = {0.0, 0.0, top}, axis[3] = {0.0, 1.0, 0.0};
+    se3d_body_def def = se3d_body_def_default();
+    def.mass = length;
+    def.position[2] = top - 0.5 * length;
+    def.velocity[0] = rate * def.position[2];
+    def.angular_velocity[1] = rate;
+    for (int c = 0; c < 3; ++c) {
+        def.inertia[c] = length * length * length / 12.0;
+    }
+    world_must(system, se3d_body_create(system, &def, bar), "se3d_body_create");
+    world_join(system, se3d_joint_create_revolute, NULL, on, *bar, at, axis);
+}
+
+/* Oscillations far smaller than a turn are not stiff. */
+static void small_motions_are_not_left(void)
+{
+    static const struct {
+        double lengths[2], t_end;
+    } rows[] = {{{1.0, 0.0}, 25.0}, {{1.0, 1e-3}, 2.0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        const double *lengths = rows[k].lengths, rate = 1e-9;
+        se3d_system *system = NULL;
+        se3d_body on, bar;
+        const char *left = "";
+        double time;
+        CHECK(!se3d_system_create(NULL, &system));
+        CHECK(!se3d_system_get_ground(system, &on));
+        hang(system, on, 0.0, lengths[0], rate, &bar);
+        if (lengths[1] > 0.0) {
+            hang(system, bar, -lengths[0], lengths[1], rate, &bar);
+        }
+        se3d_solver *solver = make_solver(system, SE3D_METHOD_AUTO, 0.0);
+        CHECK(se3d_solver_run(solver, rows[k].t_end) >= 0 && moves_by(solver, "gauss"));
+        CHECK(!se3d_solver_get_switch(solver, &time, &left) && *left == '\0');
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(system);
+    }
+}
+
 /* It is faster by what it was taken for: fewer steps, errors within the tolerance. */
 static void the_motion_is_within_the_tolerance(void)
 {
@@ -168,6 +347,10 @@ int main(void)
     RUN(it_depends_on_what_acts_and_on_the_loops);
     RUN(it_is_decided_again_when_the_structure_changes);
     RUN(steps_between_runs_are_made_by_dop853);
+    RUN(it_is_decided_again_when_gravity_varies);
+    RUN(a_wheel_has_no_say);
+    RUN(what_is_read_goes_on_as_what_was_written);
+    RUN(small_motions_are_not_left);
     RUN(the_motion_is_within_the_tolerance);
     return check_finish();
 }
