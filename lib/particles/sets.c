@@ -242,19 +242,21 @@ se3d_status se3di_sets_settle(const se3di_model *model, se3d_status status, se3d
     return set ? settle(set, status, error) : status;
 }
 
-static se3d_status conclude(se3di_particles *set, se3d_status status, se3di_error *error)
+static void forget_told(se3di_particles *set)
 {
-    status = settle(set, status, error);
     if (set->share) {
         set->share->told = SE3D_OK;
     }
-    return status;
 }
 
+/* Whichever set was told of a failure, none remembers it in the next call. */
 se3d_status se3di_sets_conclude(const se3di_model *model, se3d_status status, se3di_error *error)
 {
-    se3di_particles *set = first_shared(model);
-    return set ? conclude(set, status, error) : status;
+    status = se3di_sets_settle(model, status, error);
+    for (se3di_particles *set = model->sets; set; set = set->next) {
+        forget_told(set);
+    }
+    return status;
 }
 
 /* What a step begins with. */
@@ -292,7 +294,9 @@ se3d_status se3di_particles_run(se3di_particles *set, const se3di_model *model, 
     status = status < 0 ? status : spread_set(set, error);
     status = status < 0 ? status : run_steps(set, model, length, steps, error);
     se3di_share_gather(set);
-    return conclude(set, status, error);
+    status = settle(set, status, error);
+    forget_told(set);
+    return status;
 }
 
 static se3d_status place(se3di_particles *set, const se3di_model *model, double h,
