@@ -157,10 +157,6 @@ void se3di_servos_rest(se3di_particles *set)
         servo->work += servo->half * se3di_servo_force(set, servo);
         servo->speed = servo->half = 0.0;
     }
-    for (size_t k = 0; k < set->wall_count; ++k) {
-        memset(set->walls[k].force, 0, sizeof set->walls[k].force);
-        memset(set->walls[k].torque, 0, sizeof set->walls[k].torque);
-    }
 }
 
 void se3di_servos_drift(se3di_particles *set, double h)

@@ -7,6 +7,7 @@
 #include "particles/memory.h"
 #include "particles/servo.h"
 #include "particles/share.h"
+#include "particles/wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -268,8 +269,9 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
     se3di_clumps_filter(set);
     se3di_bonds_filter(set);
     se3di_particles_remap(set, set->order);
-    if (set->count == 0 && set->servo_count > 0) {
+    if (set->count == 0) {
         se3di_servos_rest(set);
+        se3di_walls_rest(set);
     }
 }
 

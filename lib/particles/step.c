@@ -273,6 +273,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     set->law_failure = (se3di_law_failure){0, 0, 0, 0};
     set->force_valid = 1;
     if (se3di_share_total(set) == 0) {
+        se3di_walls_rest(set);
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }
     const se3di_strain strain = se3di_domain_images(set);

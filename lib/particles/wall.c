@@ -12,10 +12,19 @@
 #include "particles/share.h"
 
 #include <math.h>
+#include <string.h>
 
 #define PARCEL   8    /* particles that are compared with a wall together */
 #define PARCELS  256  /* of a slab; if it has more particles, parcels are larger */
 #define ROUNDING 1e-9 /* of a distance */
+
+void se3di_walls_rest(se3di_particles *set)
+{
+    for (size_t k = 0; k < set->wall_count; ++k) {
+        memset(set->walls[k].force, 0, sizeof set->walls[k].force);
+        memset(set->walls[k].torque, 0, sizeof set->walls[k].torque);
+    }
+}
 
 void se3di_wall_local(const se3di_wall *wall, const double x[3], double local[3])
 {

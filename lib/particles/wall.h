@@ -19,6 +19,8 @@ static inline size_t se3di_wall_count_of(const se3di_shape *shape)
     return se3di_shape_is(shape, SE3DI_SHAPE_IS_TURNED) ? 2 : 1;
 }
 
+/* There is no particle: nothing pushes them. */
+void se3di_walls_rest(se3di_particles *set);
 /* Candidates of walls. */
 se3d_status se3di_particles_list_walls(se3di_particles *set);
 /* A point in the frame of a wall's shape. */

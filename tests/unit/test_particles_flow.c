@@ -394,6 +394,70 @@ static void verlet_moves_what_a_source_gives(void)
     bed_close(&b.bed);
 }
 
+/* What the particles do to a body, as one number. */
+static double wrench_on(se3d_body body)
+{
+    double force[3], torque[3];
+    CHECK(se3d_particles_get_wrench(b.bed.particles, body, force, torque) == SE3D_OK);
+    return fabs(force[0]) + fabs(force[1]) + fabs(force[2]) + fabs(torque[0]) + fabs(torque[1]) +
+           fabs(torque[2]);
+}
+
+/* A bead slides on a heavy block, without weight, towards x = 0.1. */
+static void open_slide(int has_sink, int has_source, se3d_body *block)
+{
+    const double at[3] = {0.09, 0.0, 0.00499}, v[3] = {1.0, 0.0, 0.0};
+    se3d_particles_def domain = se3d_particles_def_default();
+    se3d_body_def heavy = se3d_body_def_default();
+    se3d_shape_def box = se3d_shape_def_default();
+    se3d_shape shape;
+    domain.boundary[0] = has_sink ? SE3D_DOMAIN_BOUNDARY_SINK : SE3D_DOMAIN_BOUNDARY_OPEN;
+    domain.lower[0] = -1.0;
+    domain.upper[0] = 0.1;
+    open_bed(0.0, &domain);
+    heavy.mass = heavy.inertia[0] = heavy.inertia[1] = heavy.inertia[2] = 10.0;
+    heavy.position[2] = -0.5;
+    box.size[0] = box.size[1] = box.size[2] = 1.0;
+    box.material = b.bed.material;
+    CHECK(se3d_body_create(b.bed.system, &heavy, block) == SE3D_OK);
+    box.body = *block;
+    CHECK(se3d_shape_create_box(b.bed.system, &box, &shape) == SE3D_OK);
+    bed_add(&b.bed, at, 0.005, v, NULL);
+    if (has_source) {
+        se3d_particles_source_def late = source_of(1.0);
+        late.start = 5.0;
+        CHECK(se3d_particles_add_source(b.bed.particles, &late, NULL) == SE3D_OK);
+    }
+}
+
+/* The bead goes over a sink or is taken away, with a source that waits or without one: nothing
+ * pushes the block any more. */
+static void shapes_are_rid_of_what_has_left(void)
+{
+    const uint32_t bead = 0;
+    for (int way = 0; way < 4; ++way) {
+        se3d_body block;
+        se3d_solver_def how = se3d_solver_def_default();
+        se3d_solver *solver = NULL;
+        double before[3], after[3];
+        open_slide(!(way & 2), way & 1, &block);
+        how.method = SE3D_METHOD_VERLET;
+        CHECK(se3d_solver_create(b.bed.system, &how, &solver) == SE3D_OK);
+        CHECK(se3d_solver_run(solver, 1e-4) == SE3D_OK);
+        CHECK(wrench_on(block) > 0.01);
+        CHECK(!(way & 2) || se3d_particles_remove(b.bed.particles, 1, &bead) == SE3D_OK);
+        CHECK(se3d_solver_run(solver, 0.02) == SE3D_OK);
+        CHECK(se3d_particles_count(b.bed.particles) == 0);
+        CHECK(wrench_on(block) == 0.0);
+        CHECK(se3d_body_get_velocity(b.bed.system, block, before) == SE3D_OK);
+        CHECK(se3d_solver_run(solver, 0.03) == SE3D_OK);
+        CHECK(se3d_body_get_velocity(b.bed.system, block, after) == SE3D_OK);
+        CHECK(after[2] < 0.0 && memcmp(before, after, sizeof after) == 0);
+        se3d_solver_destroy(solver);
+        bed_close(&b.bed);
+    }
+}
+
 int main(void)
 {
     RUN(source_gives_its_rate_with_its_velocity);
@@ -407,5 +471,6 @@ int main(void)
     RUN(what_leaves_an_open_domain_is_counted);
     RUN(fall_without_end_is_counted);
     RUN(verlet_moves_what_a_source_gives);
+    RUN(shapes_are_rid_of_what_has_left);
     return check_finish();
 }
