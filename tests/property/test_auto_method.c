@@ -192,6 +192,53 @@ static void it_is_decided_again_when_gravity_varies(void)
     }
 }
 
+static se3d_status get_height(void *ctx, const se3d_system *system, double *value)
+{
+    double r[3];
+    const se3d_status status = se3d_body_get_position(system, *(const se3d_body *)ctx, r);
+    *value = r[2];
+    return status;
+}
+
+static se3d_status vary_gravity(void *ctx, se3d_system *system, const se3d_event_record *record)
+{
+    (void)record;
+    return se3d_system_set_gravity_function(system, ctx);
+}
+
+/* A solver with an event at a height of `body`, where gravity becomes that of `gravity`. */
+static se3d_solver *make_solver_with_event(se3d_system *system, se3d_body *body, double height,
+                                           se3d_function gravity[3])
+{
+    se3d_solver *solver = make_solver(system, SE3D_METHOD_AUTO, 1e-6);
+    se3d_event event;
+    se3d_event_def def = se3d_event_def_default();
+    def.value = get_height;
+    def.ctx = body;
+    def.callback = vary_gravity;
+    def.callback_ctx = gravity;
+    def.level = height;
+    CHECK(!se3d_event_create(solver, &def, &event));
+    return solver;
+}
+
+/* In the middle of a run, and of a step, by the callback of an event. */
+static void it_is_decided_again_within_a_run(void)
+{
+    for (int is_step = 0; is_step < 2; ++is_step) {
+        support_model model;
+        se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+        support_model_make(&model, "double_pendulum", 1);
+        CHECK(!se3d_function_create_expression(model.system, "-9.81 + sin(t)", &gravity[2]));
+        se3d_solver *solver = make_solver_with_event(model.system, &model.bodies[1], -1.1, gravity);
+        CHECK(se3d_solver_run(solver, 0.05) >= 0 && moves_by(solver, "gauss"));
+        CHECK((is_step ? se3d_solver_step(solver, 0.4) : se3d_solver_run(solver, 0.45)) >= 0);
+        CHECK(se3d_solver_count_event_records(solver) == 1 && moves_by(solver, "dop853"));
+        se3d_solver_destroy(solver);
+        support_model_destroy(&model);
+    }
+}
+
 /* A wheel measures: it comes and goes, and nothing moves in another way. */
 static void a_wheel_has_no_say(void)
 {
@@ -266,6 +313,32 @@ static void what_is_read_goes_on_as_what_was_written(void)
         support_model_destroy(&other);
         support_model_destroy(&model);
     }
+}
+
+/* They are those of a solver with an event. */
+static void bytes_that_are_refused_leave_the_method(void)
+{
+    support_model model, other;
+    se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+    unsigned char bytes[8192];
+    size_t size = 0;
+    support_model_make(&model, "double_pendulum", 1);
+    support_model_make(&other, "double_pendulum", 1);
+    se3d_solver *solver = make_solver_with_event(model.system, &model.bodies[1], -50.0, gravity);
+    CHECK(se3d_solver_run(solver, 0.1) >= 0 && moves_by(solver, "gauss"));
+    CHECK(se3d_solver_write(solver, bytes, sizeof bytes, &size) >= 0 && size <= sizeof bytes);
+    se3d_solver *before = make_solver(other.system, SE3D_METHOD_RADAU, 1e-6);
+    CHECK(se3d_solver_run(before, 0.02) >= 0);
+    se3d_solver *read = make_solver(other.system, SE3D_METHOD_AUTO, 1e-6);
+    CHECK(se3d_solver_run(read, 0.05) >= 0 && moves_by(read, "radau"));
+    CHECK(se3d_solver_read(read, bytes, size) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(moves_by(read, "radau"));
+    CHECK(se3d_solver_run(read, 0.1) >= 0 && moves_by(read, "radau"));
+    se3d_solver_destroy(read);
+    se3d_solver_destroy(before);
+    se3d_solver_destroy(solver);
+    support_model_destroy(&other);
+    support_model_destroy(&model);
 }
 
 /* A bar, the last of those that hang, on the one before; all turn as one at `rate`. */
@@ -348,8 +421,10 @@ int main(void)
     RUN(it_is_decided_again_when_the_structure_changes);
     RUN(steps_between_runs_are_made_by_dop853);
     RUN(it_is_decided_again_when_gravity_varies);
+    RUN(it_is_decided_again_within_a_run);
     RUN(a_wheel_has_no_say);
     RUN(what_is_read_goes_on_as_what_was_written);
+    RUN(bytes_that_are_refused_leave_the_method);
     RUN(small_motions_are_not_left);
     RUN(the_motion_is_within_the_tolerance);
     return check_finish();
