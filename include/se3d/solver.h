@@ -30,9 +30,9 @@ SE3D_API const char *se3d_analysis_get_name(int32_t analysis);
 /* How a solver of dynamics steps in time. AUTO takes verlet with particles; convex, of order 1,
  * from where ten free bodies or more are at others, if nothing acts on them but constant gravity,
  * no tolerance is given and no step above 5 ms; radau with strong dampers; gauss where nothing but
- * constant gravity acts on an open tree of joints, or on loops of plane pins and balls (single
- * steps of given length: dop853); else dop853. It leaves both for radau if stability limits their
- * steps. @since 0.1 */
+ * constant gravity acts on an open tree of joints, or, at tolerances from 2.3e-10 on, on loops of
+ * plane pins and balls, in joint coordinates (single steps of given length: dop853); else dop853,
+ * which it leaves for radau if stability limits the steps. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,
     SE3D_METHOD_GENERALIZED_ALPHA = 1,
@@ -222,7 +222,8 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
 }
 
 /* Get the tolerance to which the steps of a run are controlled: the one asked for, or the smallest
- * one that the method in use reaches if that is larger (dop853, gauss, rk45, rk4 6.7e-12, bdf
+ * one that the method in use reaches if that is larger (dop853, gauss, rk45, rk4 6.7e-12, but
+ * gauss 6.7e-13 in joint coordinates on open trees without contact, functions and friction, bdf
  * 1e-11, radau 1e-13, or 1e-10 with redundant equations, generalized_alpha, hht 1e-11, rattle,
  * verlet 1e-10, of order 4 1e-11); the log is told of that.
  * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, and
@@ -239,7 +240,8 @@ SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_step(const se3d_solver *solver, double *step);
 
-/* Get the method in use; of AUTO the one that it picked.
+/* Get the method in use; of AUTO the one that it picked: where that is gauss, it is dop853 after a
+ * step of given length, and gauss again after a run.
  * @param[out] name  "generalized_alpha", ...; static
  * @return OK, NULL.
  * @since 0.1 */
