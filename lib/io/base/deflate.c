@@ -27,8 +27,9 @@ bool se3di_deflate_open(se3di_deflate *d, se3di_iopool *pool, int level)
         stream->zfree = leave;
         stream->opaque = pool;
     }
-    if (!stream || deflateInit(stream, level) != Z_OK) {
-        errno = ENOMEM;
+    const int status = stream ? deflateInit(stream, level) : Z_MEM_ERROR;
+    if (status != Z_OK) {
+        errno = status == Z_MEM_ERROR ? ENOMEM : EIO;
         return false;
     }
     d->stream = stream;
@@ -41,7 +42,7 @@ const unsigned char *se3di_deflate_block(se3di_deflate *d, const void *data, siz
     z_stream *stream = d->stream;
     const size_t most = size <= INT_MAX ? deflateBound(stream, (uLong)size) : 0;
     if (most == 0 || most > UINT_MAX) {
-        errno = E2BIG;
+        errno = EOVERFLOW;
         return NULL;
     }
     if (most > d->capacity) {
@@ -78,7 +79,7 @@ bool se3di_deflate_open(se3di_deflate *d, se3di_iopool *pool, int level)
 {
     *d = (se3di_deflate){.pool = pool};
     (void)level;
-    errno = EINVAL;
+    errno = ENOTSUP;
     return false;
 }
 
@@ -89,7 +90,7 @@ const unsigned char *se3di_deflate_block(se3di_deflate *d, const void *data, siz
     (void)data;
     (void)size;
     *made = 0;
-    errno = EINVAL;
+    errno = ENOTSUP;
     return NULL;
 }
 

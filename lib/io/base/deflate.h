@@ -22,8 +22,8 @@ static inline bool se3di_deflate_is_there(void)
 #endif
 }
 
-/* Begin with a level of 1 (fast) ... 9 (small). @return false: errno says why; there is nothing to
- * close. */
+/* Begin with a level of 1 (fast) ... 9 (small). @return false: errno says why (ENOTSUP: there is no
+ * zlib); there is nothing to close. */
 bool se3di_deflate_open(se3di_deflate *d, se3di_iopool *pool, int level);
 /* A block in zlib's format, which is there until the next one. @return NULL: errno says why. */
 const unsigned char *se3di_deflate_block(se3di_deflate *d, const void *data, size_t size,

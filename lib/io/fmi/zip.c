@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "io/base/file.h"
 #include "io/base/inflate.h"
 
 enum { LOCAL_SIZE = 30, CENTRAL_SIZE = 46, END_SIZE = 22, FILES_MAX = 65534 };
@@ -24,7 +23,7 @@ static void write_bytes(se3di_zip *zip, const void *bytes, size_t size)
 {
     errno = 0;
     if (!zip->problem && size > 0 && fwrite(bytes, 1, size, zip->file) != size) {
-        zip->problem = se3di_file_get_text(errno ? errno : ENOSPC);
+        zip->problem = strerror(errno ? errno : ENOSPC);
     }
     zip->written += size;
 }

@@ -192,7 +192,7 @@ static uint32_t checksum(const unsigned char *data, size_t size)
 static void add_message(se3di_hdf5 *h, bytes *to, int type, const bytes *body)
 {
     if (body->count > MESSAGE_MOST) {
-        fail(h, E2BIG);
+        fail(h, EOVERFLOW);
     }
     add_word(h, to, (uint64_t)type, 1);
     add_word(h, to, body->count, 2);
@@ -319,7 +319,7 @@ static void choose_piece(se3di_hdf5 *h, struct se3di_hdf5_node *n)
     uint64_t rows = n->shape.piece > 0 ? n->shape.piece : row < PIECE_BYTES ? PIECE_BYTES / row : 1;
     rows = rows < n->shape.dims[0] ? rows : n->shape.dims[0];
     if (row > PIECE_MOST || rows > PIECE_MOST / row) {
-        fail(h, E2BIG);
+        fail(h, EOVERFLOW);
         return;
     }
     n->shape.piece = rows;

@@ -57,7 +57,7 @@ static bool next_cell(scanner *in)
             return true;
         }
         if (in->length + 1 == CELL_MOST) {
-            errno = E2BIG;
+            errno = EOVERFLOW;
             return false;
         }
         in->cell[in->length++] = c;
@@ -84,7 +84,7 @@ static const char *make_name(table *t)
     }
     while (strchr(in->cell, ':') && is_taken(t, in->cell)) {
         if (in->length + 1 == CELL_MOST) {
-            errno = E2BIG;
+            errno = EOVERFLOW;
             return NULL;
         }
         in->cell[in->length++] = ':';
