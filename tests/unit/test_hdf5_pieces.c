@@ -58,21 +58,24 @@ static void many_pieces_have_a_tree(void)
     }
 }
 
-static void pieces_come_in_their_order(void)
+/* All of them, and nothing else; compressed and not. */
+static void values_come_in_their_order(void)
 {
-    const se3di_hdf5_shape shape = {SE3DI_HDF5_UINT8, 0, 1, {10000}, 0};
-    const unsigned char byte = 1;
-    se3di_hdf5 h;
-    if (!se3di_deflate_is_there()) {
-        return;
-    }
-    for (int past = 0; past < 2; ++past) {
-        CHECK(se3di_hdf5_open(&h, NULL, SCRATCH_FOLDER "se3d_order.h5", 1));
+    enum { SIZE = 10000 };
+    static const unsigned char bytes[SIZE + 1];
+    static const size_t parts[5][2] = {
+        {SIZE / 2, SIZE - SIZE / 2}, {SIZE / 2, SIZE - SIZE / 2 + 1}, {1, 1}, {1, 0}, {0, 0}};
+    const se3di_hdf5_shape shape = {SE3DI_HDF5_UINT8, 0, 1, {SIZE}, 0};
+    for (int way = 0; way < (se3di_deflate_is_there() ? 12 : 6); ++way) {
+        const int k = way % 6 < 5 ? way % 6 : 0, gap = way % 6 == 5;
+        se3di_hdf5 h;
+        CHECK(se3di_hdf5_open(&h, NULL, SCRATCH_FOLDER "se3d_order.h5", way / 6));
         const size_t array = se3di_hdf5_add_array(&h, 0, "a", &shape);
-        se3di_hdf5_write(&h, array, 0, &byte, 1);
-        se3di_hdf5_write(&h, array, past ? 2 : 1, &byte, 1);
-        CHECK(se3di_hdf5_close(&h) == !past);
-        CHECK(!past || errno == EINVAL);
+        se3di_hdf5_write(&h, array, 0, bytes, parts[k][0]);
+        se3di_hdf5_write(&h, array, parts[k][0] + (size_t)gap, bytes, parts[k][1] - (size_t)gap);
+        const bool is_good = k == 0 && !gap;
+        CHECK(se3di_hdf5_close(&h) == is_good);
+        CHECK(is_good || errno == EIO);
     }
     se3di_file_remove(SCRATCH_FOLDER "se3d_order.h5");
 }
@@ -81,6 +84,6 @@ int main(int argc, char **argv)
 {
     kept = argc > 1 ? argv[1] : NULL;
     RUN(many_pieces_have_a_tree);
-    RUN(pieces_come_in_their_order);
+    RUN(values_come_in_their_order);
     return check_finish();
 }

@@ -536,13 +536,23 @@ void se3di_hdf5_write(se3di_hdf5 *h, size_t array, uint64_t first, const void *d
         return;
     }
     struct se3di_hdf5_node *n = &h->nodes[array];
-    if (n->piece_size == 0) {
+    if (first != n->written || size > n->size - first) {
+        fail(h, EIO);
+    } else if (n->piece_size == 0) {
         write_at(h, n->data + first, data, size);
-    } else if (first != n->written || size > n->size - first) {
-        fail(h, EINVAL);
     } else {
         write_pieces(h, n, data, size);
-        n->written += size;
+    }
+    n->written += size;
+}
+
+/* Values that were never written would be what the place held before. */
+static void check_written(se3di_hdf5 *h)
+{
+    for (size_t k = 1; k < h->count; ++k) {
+        if (!h->nodes[k].is_group && h->nodes[k].written != h->nodes[k].size) {
+            fail(h, EIO);
+        }
     }
 }
 
@@ -683,6 +693,7 @@ static void fill_end(se3di_hdf5 *h)
 
 bool se3di_hdf5_close(se3di_hdf5 *h)
 {
+    check_written(h);
     for (size_t k = 1; k < h->count && h->failure == 0; ++k) {
         ++h->nodes[h->nodes[k].parent].children;
     }

@@ -52,7 +52,7 @@ size_t se3di_hdf5_add_group(se3di_hdf5 *h, size_t group, const char *name);
 size_t se3di_hdf5_add_array(se3di_hdf5 *h, size_t group, const char *name,
                             const se3di_hdf5_shape *shape);
 /* Write values of an array as the file has them, little-endian, from byte `first` of it on, which
- * in files that are compressed is where the last ones ended. */
+ * is where the last ones ended. All of them, before the file is closed: else that fails, EIO. */
 void se3di_hdf5_write(se3di_hdf5 *h, size_t array, uint64_t first, const void *bytes, size_t size);
 /* Give a group or an array an attribute. `values`: numbers, of which there are as many as the shape
  * says, or the text. */
