@@ -68,6 +68,13 @@ if [ -n "${SE3D_HAS_ZLIB:-}" ]; then
     for file in cone.vtp x/bodies_00000.vtp; do
         holds "$file is not smaller" [ "$(wc -c <"$dir/packed/$file")" -lt "$(($(wc -c <"$run/$file") * 3 / 4))" ]
     done
+    cat >"$dir/long.yaml" <<'END_OF_YAML'
+se3d: 1
+bodies: [{name: a, mass: 1, inertia: [1, 1, 1]}]
+analysis: {type: dynamics, duration: 0.1, step: 1e-5}
+output: [{file: long.h5, every: 1e-5, channels: [a.position.z], compression: 1}]
+END_OF_YAML
+    expect 'more than a piece' 0 "$program" run -q "$dir/long.yaml" -o "$dir/packed"
     [ ! -x "$SE3D_BUILD_DIR/tests/test_unit_hdf5_pieces" ] || "$SE3D_BUILD_DIR/tests/test_unit_hdf5_pieces" "$dir/packed/pieces.h5"
 fi
 
@@ -134,6 +141,12 @@ for name in "r", "p", "c", "s", "cone", "a":
         a, b = h5py.File(sys.argv[1] + "/%s.h5" % name), h5py.File(packed + "%s.h5" % name)
         assert list(a) == list(b) and all(a[k].dtype == b[k].dtype and np.array_equal(a[k][:], b[k][:]) for k in a), name
         assert name != "r" or not b["half"].chunks or b["half"].compression == "gzip" and b["half"].shuffle
+if os.path.exists(packed):
+    long = h5py.File(packed + "long.h5")
+    times = long["time"][:]
+    assert long["time"].chunks == (8192,) and times.shape == (10001,)  # 64 kB
+    assert np.abs(times - 1e-5 * np.arange(10001)).max() < 1e-12
+    assert np.abs(long["a.position.z"][:] + 0.5 * 9.81 * times**2).max() < 1e-9
 if os.path.exists(packed + "pieces.h5"):
     file = h5py.File(packed + "pieces.h5")
     table = 10.0 * np.arange(5000)[:, None] + np.arange(3)

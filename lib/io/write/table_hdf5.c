@@ -191,7 +191,6 @@ static bool prepare(table *t, se3di_hdf5 *h)
     for (size_t k = 0; k < t->count; ++k) {
         column *c = &t->columns[k];
         c->shape.dims[0] = t->rows;
-        c->shape.piece = t->block_rows;
         c->array = se3di_hdf5_add_array(h, 0, c->name, &c->shape);
         c->block = se3di_iopool_array(&t->pool, t->block_rows + 1, se3di_hdf5_size_of(&c->shape));
         if (!c->block) {
