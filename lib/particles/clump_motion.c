@@ -72,7 +72,7 @@ static inline void turn(top *of, int k, double part)
     }
 }
 
-/* Clumps [0, count), at most LANES: those that are missing are at rest. */
+/* Clumps [0, count), at most LANES: lanes that are left over repeat the first. */
 static void drift(const se3di_particles *set, se3di_clump *clumps, size_t count, double h)
 {
     top of;

@@ -12,9 +12,11 @@
 #include "particles/set.h"
 
 typedef struct se3di_share {
-    int32_t is_spread;               /* 0: the set is whole here */
-    uint32_t owned;                  /* own particles have the ids below this, ghosts the others */
-    uint32_t owned_clumps;           /* the first ones; their spheres are own particles */
+    int32_t is_spread; /* 0: the set is whole here */
+    uint32_t owned;    /* own particles have the ids below this, ghosts the others */
+    /* The first clumps; their spheres are own particles. Of the others, which are ghosts, only q
+     * and A are renewed: x, v and spin are those of when the lists were made. */
+    uint32_t owned_clumps;
     se3d_status told;                /* of the call under way, which has failed for all; else 0 */
     const uint32_t *number;          /* [id] their ids in the whole */
     uint64_t total;                  /* own particles of all processes */
