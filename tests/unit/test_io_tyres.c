@@ -168,10 +168,81 @@ static void slip_lags_where_file_or_model_say_so(void)
     refuse(SI "PHYP1 = 1\nQCRP1 = 1\n", MODEL(", turn_slip: true"), "PHYP2 = 0");
     refuse(SI "PHYP1 = 1\nQCRP1 = 1\nPHYP2 = 1\nQDRP1 = 2\n", MODEL(", turn_slip: true"),
            "QDRP1 = 2");
-#undef TURNING
     refuse(SI, MODEL(", transient: true"), "neither PTX1 nor LONGITUDINAL_STIFFNESS");
     refuse(SI "PTX1=1\nPTY1 = 1\n", MODEL(", transient: true"), "PTY2");
 #undef LENGTHS
+}
+
+/* A file whose last digit of USE_MODE asks for turn slip with this instead of one of its lines. */
+static void pass_without_turn_slip(const char *lines, const char *part)
+{
+    heard h;
+    char tir[3000];
+    se3d_model_error error = {0, 0, ""};
+    snprintf(tir, sizeof tir, "%s%s%s", SI "USE_MODE = 15\n" TURNING, lines, "\n");
+    CHECK(!has_turn_slip(tir, MODEL("")));
+    se3d_model_destroy(open(tir, MODEL(""), &h, &error));
+    CHECK(strstr(h.text, "turn slip"));
+    if (!strstr(h.text, part)) {
+        fprintf(stderr, "%s: %s\n  lacks: %s\n", lines, h.text, part);
+        CHECK(0);
+    }
+    refuse(tir, MODEL(", turn_slip: true"), part);
+    se3d_model_destroy(open(tir, MODEL(", turn_slip: false"), &h, &error));
+    CHECK(!strstr(h.text, "turn slip"));
+}
+
+/* A file whose USE_MODE asks for slip that lags, with these lines about lengths. */
+static void pass_without_lags(const char *lines, const char *part)
+{
+    heard h;
+    char tir[3000];
+    se3d_model_error error = {0, 0, ""};
+    snprintf(tir, sizeof tir, "%s%s", SI "USE_MODE = 14\n", lines);
+    CHECK(count_lags(tir, MODEL("")) == 0);
+    se3d_model_destroy(open(tir, MODEL(""), &h, &error));
+    CHECK(strstr(h.text, "slip that lags") && strstr(h.text, part));
+    se3d_model_destroy(open(tir, MODEL(", transient: false"), &h, &error));
+    CHECK(!strstr(h.text, "slip that lags"));
+    CHECK(count_lags(tir, MODEL(", relaxation_x: 0.3, relaxation_y: 0.3")) == 2);
+}
+
+static void lags_without_lengths_are_left_out(void)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    pass_without_lags("", "PTX1 or LONGITUDINAL_STIFFNESS, PTY1 or LATERAL_STIFFNESS");
+    pass_without_lags("PTX1 = 0\nPTY1 = 2\nPTY2 = 2\n", ": PTX1 or LONGITUDINAL_STIFFNESS\n");
+    pass_without_lags("PTX1 = 1.8\nPTY1 = 2\n", ": PTY2\n");
+    pass_without_lags("PTX1 = 1.8\nLATERAL_STIFFNESS = -1\n", ": PTY1 or LATERAL_STIFFNESS\n");
+    CHECK(count_lags(SI "USE_MODE = 14\nPTX1 = 1.8\n", MODEL(", relaxation_y: 0.3")) == 2);
+    se3d_model_destroy(
+        open(SI "USE_MODE = 14\nPTX1 = 1\nLATERAL_STIFFNESS = 1e5\n", MODEL(""), &h, &error));
+    CHECK(!strstr(h.text, "slip that lags"));
+}
+
+static void turn_slip_that_lacks_something_is_left_out(void)
+{
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    pass_without_turn_slip("PHYP1 = 0", "PHYP1 = 0");
+    pass_without_turn_slip("PHYP1 = -1", "PHYP1 = -1");
+    pass_without_turn_slip("PHYP2 = 0", "PHYP2 = 0");
+    pass_without_turn_slip("QCRP1 = 0", "QCRP1 = 0");
+    pass_without_turn_slip("LMP = 0", "LMP = 0");
+    pass_without_turn_slip("QDRP1 = 0", "QDRP1 = 0");
+    pass_without_turn_slip("QDRP1 = 0.009", "QDRP1 = 0.009");
+    pass_without_turn_slip("QDRP1 = 2", "QDRP1 = 2");
+    CHECK(has_turn_slip(SI "USE_MODE = 15\n" TURNING "QDRP1 = 0.01\n", MODEL("")));
+    CHECK(has_turn_slip(SI "USE_MODE = 15\n" TURNING "QDRP1 = 1.99\n", MODEL("")));
+    CHECK(has_turn_slip(SI "USE_MODE = 15\n" TURNING "PHYP2 = -0.1\n", MODEL("")));
+    CHECK(!has_turn_slip(SI "USE_MODE = 15\nPHYP2 = 0.15\nQCRP1 = 0.2\n", MODEL("")));
+    se3d_model_destroy(open(SI "USE_MODE = 5\nPHYP2 = 1\n", MODEL(""), &h, &error));
+    CHECK(strstr(h.text, "PHYP1 = 0") && strstr(h.text, "QCRP1 = 0") &&
+          strstr(h.text, "QDRP1 = 0") && !strstr(h.text, "PHYP2") && !strstr(h.text, "LMP"));
+    se3d_model_destroy(open(SI "USE_MODE = 5\n" TURNING, MODEL(""), &h, &error));
+    CHECK(!strstr(h.text, "turn slip"));
+#undef TURNING
 }
 
 static void what_is_unknown_or_missing_is_told(void)
@@ -215,6 +286,8 @@ int main(void)
     RUN(the_model_file_goes_before_the_tyre_file);
     RUN(what_is_unknown_or_missing_is_told);
     RUN(slip_lags_where_file_or_model_say_so);
+    RUN(lags_without_lengths_are_left_out);
+    RUN(turn_slip_that_lacks_something_is_left_out);
     RUN(files_of_other_kinds_are_refused);
     return check_finish();
 }

@@ -3,6 +3,7 @@
  * Files are data from anywhere: each line is checked, what is not known is listed in a warning. */
 #include "io/read/tir.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 #include "io/document/keys.h"
 
 enum { LIST_SIZE = 400, NUMBER_MAX = 60 };
+#define LEAST 1e-40 /* positive numbers that a tyre takes */
 
 typedef struct tir {
     se3di_reader *reader;
@@ -219,7 +221,7 @@ static bool is_idle(const char *key)
 }
 
 /* USE_MODE: from 11 to 25 in size slip lags, where the file has lengths; with the last digit 5 turn
- * slip counts, where the file has its coefficients. */
+ * slip counts, where the file has coefficients for it. */
 static bool take_mode(tir *t, const char *text)
 {
     double mode = 0.0;
@@ -402,12 +404,61 @@ static bool check_needed(const tir *t)
                                  "`%.200s` lacks what a Magic Formula needs: %s", t->file, list);
 }
 
-/* Whether the file has what relaxation lengths of both directions follow from. */
-static bool has_lengths(const tir *t)
+/* What USE_MODE asks for counts if a tyre takes the coefficients with it. Else a warning names those
+ * that it does not, unless the model file decides by a key of its own. */
+static bool conclude(const tir *t, const char *key, const char *what, const char *list)
 {
-    const bool x = t->has[SE3D_TYRE_PTX1] || t->has[SE3D_TYRE_LONGITUDINAL_STIFFNESS];
-    const bool y = t->has[SE3D_TYRE_PTY1] || t->has[SE3D_TYRE_LATERAL_STIFFNESS];
-    return x && y;
+    if (!se3di_node_get(t->tyre, key)) {
+        warn(t, what, list);
+    }
+    return !*list;
+}
+
+/* Relaxation lengths of both directions: those of the model file, or what they follow from. */
+static bool can_lag(const tir *t)
+{
+    const double *c = t->c;
+    char list[LIST_SIZE] = "";
+    if (!se3di_node_get(t->tyre, "relaxation_x") && !(fabs(c[SE3D_TYRE_PTX1]) > 0.0) &&
+        !(c[SE3D_TYRE_LONGITUDINAL_STIFFNESS] > 0.0)) {
+        append(list, "PTX1 or LONGITUDINAL_STIFFNESS");
+    }
+    if (!se3di_node_get(t->tyre, "relaxation_y")) {
+        if (fabs(c[SE3D_TYRE_PTY1]) > 0.0) {
+            if (!(fabs(c[SE3D_TYRE_PTY2]) > 0.0)) {
+                append(list, "PTY2");
+            }
+        } else if (!(c[SE3D_TYRE_LATERAL_STIFFNESS] > 0.0)) {
+            append(list, "PTY1 or LATERAL_STIFFNESS");
+        }
+    }
+    return conclude(t, "transient", "USE_MODE asks for slip that lags, which is left out without",
+                    list);
+}
+
+/* What se3d_tyre_create wants with turn slip. */
+static bool can_turn(const tir *t)
+{
+    static const struct {
+        int at;
+        const char *name, *allowed;
+        double least, most;
+    } needed[] = {{SE3D_TYRE_PHYP1, "PHYP1", "> 0", LEAST, DBL_MAX},
+                  {SE3D_TYRE_PHYP2, "PHYP2", "not 0", -DBL_MAX, DBL_MAX},
+                  {SE3D_TYRE_QCRP1, "QCRP1", "> 0", LEAST, DBL_MAX},
+                  {SE3D_TYRE_QDRP1, "QDRP1", "in [0.01, 1.99]", 0.01, 1.99},
+                  {SE3D_TYRE_LMP, "LMP", "> 0", LEAST, DBL_MAX}};
+    char list[LIST_SIZE] = "";
+    for (size_t k = 0; k < sizeof needed / sizeof *needed; ++k) {
+        const double value = t->c[needed[k].at];
+        if (!(fabs(value) > 0.0 && value >= needed[k].least && value <= needed[k].most)) {
+            char text[NUMBER_MAX];
+            snprintf(text, sizeof text, "%s = %g (must be %s)", needed[k].name, value,
+                     needed[k].allowed);
+            append(list, text);
+        }
+    }
+    return conclude(t, "turn_slip", "USE_MODE asks for turn slip, which is left out", list);
 }
 
 bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *file,
@@ -427,8 +478,8 @@ bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *fi
         return false;
     }
     convert(&t);
-    def->is_transient = t.is_transient && has_lengths(&t);
-    def->has_turn_slip = t.has_turn_slip && t.has[SE3D_TYRE_PHYP2] && t.has[SE3D_TYRE_QCRP1];
+    def->is_transient = t.is_transient && can_lag(&t);
+    def->has_turn_slip = t.has_turn_slip && can_turn(&t);
     list_missing(&t, missing);
     warn(&t, "has no effect here", t.unknown);
     warn(&t, "is missing and counts as without it", missing);
