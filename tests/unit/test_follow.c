@@ -228,7 +228,7 @@ static const char goal_tail[] =
     "    off: {misfit: coil.length, curve: {linear: [[0, 0.3], [1, 0.5]]}}\n"
     "    mixed: m*most + k\n";
 
-/* A search has the derivatives of one run, also at bounds (J, k) and of one process a parameter,
+/* A search has the derivatives of one run, also at bounds (J, k) and for a part of its parameters,
  * and the bits of the measures are those of a run that nobody follows. */
 static void searches_have_the_derivatives_of_one_run(void)
 {
@@ -237,6 +237,7 @@ static void searches_have_the_derivatives_of_one_run(void)
         char text[6000];
         double plain[MEASURES], y[MEASURES], own[PARAMETERS][MEASURES];
         double slopes[PARAMETERS * MEASURES];
+        se3d_model_error error;
         se3d_model *model = NULL;
         se3d_study *study = NULL;
         write(text, sizeof text, at, run, run == 1, goal_tail);
@@ -248,18 +249,20 @@ static void searches_have_the_derivatives_of_one_run(void)
         for (size_t which = 0; which < PARAMETERS; ++which) {
             double value, wanted[MEASURES];
             const int is_run = run == 3 && (which == 1 || which == 2); /* a motion at a bound */
-            CHECK(!se3di_study_derive_unknown(study, which, at, y, own[which]));
+            const se3di_study_part part = {which, 1};
+            CHECK(!se3di_study_eval_part(study, part, at, y, own[which], &error));
+            CHECK(memcmp(plain, y, sizeof y) == 0);
             CHECK(memcmp(own[which], slopes + which * MEASURES, sizeof own[which]) == 0);
             CHECK(!se3d_study_eval_sensitivity(study, which, &value, wanted, NULL, NULL));
             for (size_t k = 0; k < MEASURES; ++k) {
                 const double size = fabs(wanted[k]) + (1.0 + fabs(y[k])) / value;
-                const double error = fabs(own[which][k] - wanted[k]) / size;
+                const double off = fabs(own[which][k] - wanted[k]) / size;
                 if (getenv("SE3D_SHOW")) {
                     fprintf(stderr, "%d %s by %s: %.12g %.12g %.2g\n", run,
                             se3d_study_get_measure_name(study, k), names[which], own[which][k],
-                            wanted[k], error);
+                            wanted[k], off);
                 }
-                CHECK(error < (is_run ? 1e-4 : run == 3 ? 1e-8 : 2e-9));
+                CHECK(off < (is_run ? 1e-4 : run == 3 ? 1e-8 : 2e-9));
             }
         }
         se3d_study_destroy(study);
@@ -352,6 +355,77 @@ static int lose_patience(void *ctx)
 {
     patience *p = ctx;
     return ++p->asked >= p->most;
+}
+
+static int count_asked(void *ctx)
+{
+    ++*(int *)ctx;
+    return 0;
+}
+
+enum { GOALS = 5 };
+
+/* Processes that share out the parameters make a run each, and no more: what solvers ask is that
+ * of one process and of one run for each other process. @return what one process asks, in runs */
+static double share_out(se3d_study *study, size_t most)
+{
+    int asked = 0;
+    double y[GOALS], all[PARAMETERS * GOALS], some[PARAMETERS * GOALS];
+    se3d_model_error error;
+    CHECK(!se3d_study_set_interrupt(study, count_asked, &asked));
+    CHECK(!se3d_study_eval_unknowns(study, at, y, NULL, NULL));
+    const int run = asked;
+    asked = 0;
+    CHECK(!se3d_study_eval_unknowns(study, at, y, all, NULL));
+    const int whole = asked;
+    CHECK(run > 10);
+    for (size_t parts = 2; parts <= most; ++parts) {
+        asked = 0;
+        for (size_t k = 0; k < parts; ++k) {
+            const size_t first = k * PARAMETERS / parts;
+            const se3di_study_part part = {first, (k + 1) * PARAMETERS / parts - first};
+            CHECK(!se3di_study_eval_part(study, part, at, y, some + first * GOALS, &error));
+        }
+        CHECK(asked == whole + ((int)parts - 1) * run);
+        CHECK(memcmp(all, some, sizeof all) == 0);
+    }
+    return (double)whole / run;
+}
+
+/* If the run fails all that was asked for is NaN. */
+static void fail_with_nothing(se3d_study *study)
+{
+    const se3di_study_part part = {1, PARAMETERS - 2};
+    double y[GOALS], some[PARAMETERS * GOALS], p[PARAMETERS];
+    se3d_model_error error = {.message = ""};
+    memcpy(p, at, sizeof p);
+    p[6] = 0.01; /* no rod is so short */
+    for (int k = 0; k < PARAMETERS * GOALS; ++k) {
+        some[k] = 7.0;
+    }
+    CHECK(se3di_study_eval_part(study, part, p, y, some, &error) < 0);
+    CHECK(error.message[0] != '\0' && isnan(y[0]));
+    for (int k = 0; k < PARAMETERS * GOALS; ++k) {
+        const int is_asked = k < (PARAMETERS - 2) * GOALS;
+        CHECK(is_asked ? isnan(some[k]) : !(fabs(some[k] - 7.0) > 0.0));
+    }
+}
+
+static void a_part_of_the_parameters_takes_one_run(void)
+{
+    for (int motion = 0; motion < 2; ++motion) {
+        char text[6000];
+        se3d_model *model = NULL;
+        se3d_study *study = NULL;
+        write(text, sizeof text, at, motion ? 3 : 0, 0, goal_tail);
+        CHECK(!se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, NULL));
+        CHECK(!se3d_study_create(model, &study, NULL));
+        const double runs = share_out(study, motion ? 2 : PARAMETERS);
+        CHECK(motion ? runs > 2.0 : !(fabs(runs - 1.0) > 0.0));
+        fail_with_nothing(study);
+        se3d_study_destroy(study);
+        se3d_model_destroy(model);
+    }
 }
 
 /* What follows a run, and what leads there, ends where the user wants it to. */
@@ -451,6 +525,7 @@ int main(void)
 {
     RUN(other_types_are_refused);
     RUN(a_run_that_begins_anew_is_followed_anew);
+    RUN(a_part_of_the_parameters_takes_one_run);
     RUN(followers_are_interrupted);
     RUN(derivatives_are_those_of_runs);
     RUN(searches_have_the_derivatives_of_one_run);

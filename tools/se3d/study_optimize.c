@@ -53,11 +53,18 @@ typedef struct found {
     uint64_t evaluation;
 } found;
 
+/* How the run of a process has ended. */
+typedef struct reply {
+    se3d_status status;
+    se3d_model_error error;
+} reply;
+
 typedef struct search {
     const options *o;
     se3d_study *study;
     se3d_study_goal goal;
-    size_t unknowns, measures, side_count, jobs;
+    size_t unknowns, measures, side_count;
+    size_t parts; /* of the parameters, each for a process; at most 1: this one takes all */
     double *from, *width;
     double *derivatives; /* [unknowns][measures] at the present point */
     double *point;       /* in 0 ... 1, of what is known */
@@ -73,7 +80,7 @@ typedef struct search {
     char path[PATH_SIZE];
     se3d_model_error error; /* of the first run */
     se3d_status status;     /* that ended the search */
-    se3d_status taken;      /* of derivatives that another process took */
+    reply told;             /* by the processes: the first failure, if there is one */
     char missing[400];      /* a derivative, which ended it */
 } search;
 
@@ -181,44 +188,65 @@ static void end(search *s, se3d_status status)
     nlopt_force_stop(s->opt);
 }
 
-/* The derivatives by one parameter, in a process of its own. */
+/* The parameters that one of several processes has. */
+static se3di_study_part get_part(const search *s, size_t index)
+{
+    const size_t first = index * s->unknowns / s->parts;
+    const se3di_study_part part = {first, (index + 1) * s->unknowns / s->parts - first};
+    return part;
+}
+
+/* The measures, and the derivatives by a part of the parameters, in a process of its own: one run
+ * for all of the part, if models can follow it. */
 static int work(void *ctx, size_t index, FILE *to)
 {
     search *s = ctx;
-    double *slopes = s->derivatives + index * s->measures;
-    const se3d_status status =
-        se3di_study_derive_unknown(s->study, index, s->now.values, s->now.measures, slopes);
-    return fwrite(&status, sizeof status, 1, to) == 1 &&
-           fwrite(slopes, sizeof *slopes, s->measures, to) == s->measures;
+    const se3di_study_part part = get_part(s, index);
+    double *slopes = s->derivatives + part.first * s->measures;
+    reply r;
+    memset(&r, 0, sizeof r);
+    r.status =
+        se3di_study_eval_part(s->study, part, s->now.values, s->now.measures, slopes, &r.error);
+    return fwrite(&r, sizeof r, 1, to) == 1 &&
+           fwrite(s->now.measures, sizeof *slopes, s->measures, to) == s->measures &&
+           fwrite(slopes, sizeof *slopes, part.count * s->measures, to) == part.count * s->measures;
 }
 
+/* All processes tell the same measures. */
 static int take(void *ctx, size_t index, FILE *from)
 {
     search *s = ctx;
-    double *slopes = s->derivatives + index * s->measures;
-    return fread(&s->taken, sizeof s->taken, 1, from) == 1 &&
-           fread(slopes, sizeof *slopes, s->measures, from) == s->measures && s->taken >= 0;
+    const se3di_study_part part = get_part(s, index);
+    const size_t count = part.count * s->measures;
+    double *slopes = s->derivatives + part.first * s->measures;
+    reply r;
+    if (fread(&r, sizeof r, 1, from) != 1 ||
+        fread(s->now.measures, sizeof *slopes, s->measures, from) != s->measures ||
+        fread(slopes, sizeof *slopes, count, from) != count) {
+        return 0;
+    }
+    if (s->told.status >= 0) {
+        s->told = r;
+    }
+    return r.status != SE3D_ERR_NO_MEMORY && r.status != SE3D_ERR_INTERRUPTED;
 }
 
 /* The measures at s->now.values, and the derivatives if they are wanted. */
 static se3d_status eval_now(search *s, int with_derivatives, se3d_model_error *error)
 {
-    const study_tasks tasks = {s->unknowns, work, take, s};
+    const study_tasks tasks = {s->parts, work, take, s};
     const char *why = "";
-    const int shared = with_derivatives && s->jobs > 1 && s->unknowns > 1;
-    se3d_status status =
-        se3d_study_eval_unknowns(s->study, s->now.values, s->now.measures,
-                                 with_derivatives && !shared ? s->derivatives : NULL, error);
-    for (size_t k = 0; shared && k < s->unknowns * s->measures; ++k) {
-        s->derivatives[k] = (double)NAN;
+    if (!with_derivatives || s->parts < 2) {
+        return se3d_study_eval_unknowns(s->study, s->now.values, s->now.measures,
+                                        with_derivatives ? s->derivatives : NULL, error);
     }
-    s->taken = SE3D_OK;
-    if (shared && (status >= 0 || status == SE3D_ERR_NOT_FINITE) &&
-        !study_run_tasks(&tasks, s->jobs, &why)) {
+    memset(&s->told, 0, sizeof s->told);
+    if (!study_run_tasks(&tasks, s->parts, &why) && s->told.status != SE3D_ERR_NO_MEMORY) {
         snprintf(s->missing, sizeof s->missing, "%s", why); /* a process has ended, by itself */
-        status = s->taken < 0 ? s->taken : SE3D_ERR_INTERRUPTED;
+        return SE3D_ERR_INTERRUPTED;
     }
-    return status;
+    *error = s->told.error;
+    return s->told.status;
 }
 
 /* Run the model at a point, unless that was the last one. */
@@ -627,7 +655,6 @@ int study_optimize(const options *o, se3d_study *study, size_t jobs, const char 
 {
     search s = {.o = o,
                 .study = study,
-                .jobs = jobs,
                 .unknowns = se3d_study_count_unknowns(study),
                 .measures = se3d_study_count_measures(study)};
     double *memory = NULL;
@@ -639,6 +666,7 @@ int study_optimize(const options *o, se3d_study *study, size_t jobs, const char 
                        "for?");
         return EXIT_USAGE;
     }
+    s.parts = jobs < s.unknowns ? jobs : s.unknowns;
     const int length = snprintf(s.path, sizeof s.path, "%s/optimize.csv", folder);
     if (length < 0 || (size_t)length >= sizeof s.path) {
         code = fail(&s, "the path of the results is too long");

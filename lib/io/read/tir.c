@@ -404,8 +404,8 @@ static bool check_needed(const tir *t)
                                  "`%.200s` lacks what a Magic Formula needs: %s", t->file, list);
 }
 
-/* What USE_MODE asks for counts if a tyre takes the coefficients with it. Else a warning names those
- * that it does not, unless the model file decides by a key of its own. */
+/* What USE_MODE asks for counts if a tyre takes the coefficients with it. Else a warning names
+ * those that it does not, unless the model file decides by a key of its own. */
 static bool conclude(const tir *t, const char *key, const char *what, const char *list)
 {
     if (!se3di_node_get(t->tyre, key)) {

@@ -232,48 +232,43 @@ static se3d_status derive(se3d_study *study, const enquiry *q, se3di_named *name
     return status;
 }
 
-se3d_status se3di_study_derive_unknown(se3d_study *study, size_t index, const double *values,
-                                       double *measures, double *derivatives)
+/* What is not told is NaN. */
+static se3d_status eval(se3d_study *study, const enquiry *q, const double *values,
+                        se3d_model_error *error)
 {
-    se3d_model_error error;
     se3di_iopool pool;
-    const enquiry q = {index, 1, measures, derivatives};
-    se3di_iopool_init(&pool, &study->pool.allocator);
-    se3di_named *named = name_values(study, values, &pool);
-    const se3d_status status = named ? derive(study, &q, named, &error) : SE3D_ERR_NO_MEMORY;
-    se3di_iopool_destroy(&pool);
-    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED ? status : SE3D_OK;
-}
-
-se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, double *measures,
-                                     double *derivatives, se3d_model_error *error)
-{
-    se3d_model_error own;
-    error = error ? error : &own;
-    se3d_status status = check(study, values, measures, error);
-    if (status < 0) {
-        return status;
-    }
-    const size_t count = study->entry->goal->unknown_count;
-    for (size_t k = 0; derivatives && k < count * study->entry->measure_count; ++k) {
-        derivatives[k] = (double)NAN;
-    }
-    se3di_iopool pool;
-    se3di_iopool_init(&pool, &study->pool.allocator);
-    se3di_named *named = name_values(study, values, &pool);
-    if (!named) {
-        return fail(study, error, SE3D_ERR_NO_MEMORY, "out of memory");
+    for (size_t k = 0; k < q->count * study->entry->measure_count; ++k) {
+        q->derivatives[k] = (double)NAN;
     }
     memset(error, 0, sizeof *error);
-    if (derivatives) {
-        const enquiry q = {0, count, measures, derivatives};
-        status = derive(study, &q, named, error);
-    } else {
-        status = se3di_study_run(study, named, count, measures, error);
+    se3di_iopool_init(&pool, &study->pool.allocator);
+    se3di_named *named = name_values(study, values, &pool);
+    se3d_status status = SE3D_ERR_NO_MEMORY;
+    if (named && q->count > 0) {
+        status = derive(study, q, named, error);
+    } else if (named) {
+        status =
+            se3di_study_run(study, named, study->entry->goal->unknown_count, q->measures, error);
     }
     if (status < 0 && error->message[0] == '\0') {
         status = fail(study, error, status, se3d_status_get_text(status));
     }
     se3di_iopool_destroy(&pool);
     return status;
+}
+
+se3d_status se3di_study_eval_part(se3d_study *study, se3di_study_part part, const double *values,
+                                  double *measures, double *derivatives, se3d_model_error *error)
+{
+    const enquiry q = {part.first, part.count, measures, derivatives};
+    const se3d_status status = check(study, values, measures, error);
+    return status < 0 ? status : eval(study, &q, values, error);
+}
+
+se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *values, double *measures,
+                                     double *derivatives, se3d_model_error *error)
+{
+    se3d_model_error own;
+    const se3di_study_part all = {0, derivatives ? se3d_study_count_unknowns(study) : 0};
+    return se3di_study_eval_part(study, all, values, measures, derivatives, error ? error : &own);
 }
