@@ -76,13 +76,58 @@ static size_t largest_history(const se3di_run *run)
     return run->integration.method->history_count(&of_bodies);
 }
 
+static int is_history_of(const se3di_model *model, int32_t method)
+{
+    return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
+}
+
+void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
+{
+    run->integration.method = method;
+    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
+}
+
+/* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
+#define TOLERANCE_OF_LOOPS 2.3e-10
+
+static int are_loops_loose(const se3di_run *run)
+{
+    return !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
+}
+
+/* With these equations; dop853, for single steps, needs no more memory. Loops at the tightest
+ * tolerances are left to the equations of the bodies. */
+static int are_in_lanes(const se3di_run *run)
+{
+    return run->formulation == &se3di_formulation_joint &&
+           se3di_gauss_lanes_suit_equations(&run->equations) &&
+           (!run->equations.has_loops || are_loops_loose(run));
+}
+
+/* auto takes gauss for the sake of lanes: without them dop853 goes on with the same equations. */
+static se3d_status keep_lanes(se3di_run *run)
+{
+    if (!run->automatic || run->integration.method != &se3di_integrator_gauss) {
+        return SE3D_OK;
+    }
+    if (are_loops_loose(run)) {
+        SE3DI_TRY(se3di_equations_take_lanes(&run->equations));
+    }
+    run->in_lanes = are_in_lanes(run);
+    if (!run->in_lanes) {
+        se3di_run_use_method(run, &se3di_integrator_dop853);
+    }
+    return SE3D_OK;
+}
+
 static se3d_status allocate_work(se3di_run *run)
 {
-    const se3di_integrator *method = run->integration.method;
     se3di_model *model = run->model;
     if (run->analysis != SE3D_ANALYSIS_DYNAMICS) {
         return SE3D_OK;
     }
+    SE3DI_TRY(keep_lanes(run));
+    const se3di_integrator *method = run->integration.method;
     const size_t count = largest_history(run);
     void *history = model->history;
     se3d_status status = se3di_array_reserve(&model->allocator, &history, &model->history_capacity,
@@ -98,17 +143,6 @@ static se3d_status allocate_work(se3di_run *run)
     }
     return method->is_implicit ? se3di_newton_init(&run->integration.newton, &run->equations)
                                : SE3D_OK;
-}
-
-static int is_history_of(const se3di_model *model, int32_t method)
-{
-    return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
-}
-
-void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
-{
-    run->integration.method = method;
-    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
 }
 
 /* A step of given length has no tolerance, to which iterations would end. */
@@ -160,6 +194,11 @@ static int may_take_lanes(const se3di_run *run)
            !is_given(model);
 }
 
+static int32_t choose_explicit(const se3di_run *run)
+{
+    return may_take_lanes(run) ? SE3D_METHOD_GAUSS : SE3D_METHOD_DOP853;
+}
+
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
  * small steps, or have done so before. A motion under way stays with radau, or without it: the
  * state would now decide otherwise. */
@@ -173,9 +212,7 @@ static void choose_method(se3di_run *run)
         run->analysis == SE3D_ANALYSIS_DYNAMICS &&
         (is_history_of(model, SE3D_METHOD_RADAU) ||
          (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
-    int32_t method = stiff                 ? SE3D_METHOD_RADAU
-                     : may_take_lanes(run) ? SE3D_METHOD_GAUSS
-                                           : SE3D_METHOD_DOP853;
+    int32_t method = stiff ? SE3D_METHOD_RADAU : choose_explicit(run);
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
     } else if (se3di_run_is_crowded(run)) {
@@ -200,22 +237,19 @@ static se3d_status build_equations(se3di_run *run)
                                 run->analysis == SE3D_ANALYSIS_DYNAMICS, run->error);
 }
 
-/* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
-#define TOLERANCE_OF_LOOPS 2.3e-10
-
 static int takes_loops(const se3di_run *run)
 {
-    return run->integration.method->takes_lanes ||
-           !(run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
+    return (run->integration.method->takes_lanes && !run->automatic) || are_loops_loose(run);
 }
 
 /* If loops cannot be computed in lanes, gauss passes singular positions in fewer steps, and more
  * exactly, by the bodies. What changes without a rebuild has no say: a run that began before the
- * change and one that is prepared after it go on alike. */
+ * change and one that is prepared after it go on alike. auto takes dop853 for them. */
 static se3d_status leave_slow_loops(se3di_run *run, int *picked)
 {
     se3di_equations *equations = &run->equations;
-    if (!*picked || !equations->has_loops || !run->integration.method->takes_lanes) {
+    if (!*picked || !equations->has_loops || !run->integration.method->takes_lanes ||
+        run->automatic) {
         return SE3D_OK;
     }
     const se3d_status status = se3di_equations_take_lanes(equations);
@@ -330,34 +364,10 @@ static se3d_status enter_crowd(se3di_run *run)
     return se3di_run_build(run);
 }
 
-/* With these equations; dop853, for single steps, needs no more memory. Loops at the tightest
- * tolerances are left to the equations of the bodies. */
-static int are_in_lanes(const se3di_run *run)
-{
-    return run->formulation == &se3di_formulation_joint &&
-           se3di_gauss_lanes_suit_equations(&run->equations) &&
-           !(run->equations.has_loops && run->integration.settings.tolerance < TOLERANCE_OF_LOOPS);
-}
-
-/* By the method in use; of auto, which takes gauss for the sake of lanes, dop853 without them. */
-static se3d_status build_chosen(se3di_run *run)
-{
-    SE3DI_TRY(se3di_run_build(run));
-    if (!run->automatic || run->integration.method != &se3di_integrator_gauss) {
-        return SE3D_OK;
-    }
-    run->in_lanes = are_in_lanes(run);
-    if (!run->in_lanes) {
-        se3di_run_use_method(run, &se3di_integrator_dop853);
-        return se3di_run_build(run);
-    }
-    return SE3D_OK;
-}
-
 static se3d_status build_anew(se3di_run *run)
 {
     choose_method(run);
-    SE3DI_TRY(build_chosen(run));
+    SE3DI_TRY(se3di_run_build(run));
     run->gravity_varies = se3di_model_gravity_varies(run->model);
     return SE3D_OK;
 }
@@ -398,11 +408,13 @@ se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method
         return SE3D_OK;
     }
     const int is_of_lanes = method == &se3di_integrator_dop853 || method == &se3di_integrator_gauss;
-    if (is_of_lanes && !run->in_lanes) {
-        se3di_run_use_method(run, may_take_lanes(run) ? &se3di_integrator_gauss
-                                                      : &se3di_integrator_dop853);
-        SE3DI_TRY(build_chosen(run));
+    if (!is_of_lanes || !run->in_lanes) {
+        se3di_run_use_method(run,
+                             is_of_lanes ? se3di_integrator_find(choose_explicit(run)) : method);
+        SE3DI_TRY(se3di_run_build(run));
     }
-    se3di_run_use_method(run, run->in_lanes || !is_of_lanes ? method : &se3di_integrator_dop853);
-    return is_of_lanes ? SE3D_OK : se3di_run_build(run);
+    if (run->in_lanes) {
+        se3di_run_use_method(run, method);
+    }
+    return SE3D_OK;
 }
