@@ -2,6 +2,7 @@
 /* A system that follows a solver is where its own solution is but for terms of second order in what
  * its data differ; so derivatives of states are those of solutions, and derivatives of all kinds of
  * measures of a study those of its runs. docs/theory/sensitivities.md */
+#include "support/counting.h"
 #include "support/text_model.h"
 
 #include "io/study/derive.h"
@@ -428,6 +429,36 @@ static void a_part_of_the_parameters_takes_one_run(void)
     }
 }
 
+/* Rows that followers keep, as for a time of settling, go with them. */
+static void derivatives_leave_no_memory_behind(void)
+{
+    char text[6000];
+    double y[GOALS], slopes[PARAMETERS * GOALS];
+    support_counting counting = {0};
+    const se3d_allocator allocator = support_counting_allocator(&counting);
+    se3d_model_options options = se3d_model_options_default();
+    se3d_model *model = NULL;
+    se3d_study *study = NULL;
+    write(text, sizeof text, at, 0, 0, goal_tail);
+    char *off = strstr(text, "    off: ");
+    CHECK(off != NULL);
+    strcpy(off, "    settled: {settling: coil.length, band: 0.01}\n");
+    options.allocator = &allocator;
+    CHECK(!se3d_model_read_text(text, strlen(text), "a.yaml", &options, &model, NULL));
+    CHECK(!se3d_study_create(model, &study, NULL));
+    CHECK(se3d_study_count_measures(study) == 4);
+    CHECK(!se3d_study_eval_unknowns(study, at, y, slopes, NULL));
+    const size_t bytes = counting.bytes;
+    CHECK(bytes > 0);
+    for (int k = 0; k < 3; ++k) {
+        CHECK(!se3d_study_eval_unknowns(study, at, y, slopes, NULL));
+        CHECK(counting.bytes == bytes);
+    }
+    se3d_study_destroy(study);
+    se3d_model_destroy(model);
+    CHECK(counting.bytes == 0);
+}
+
 /* What follows a run, and what leads there, ends where the user wants it to. */
 static void followers_are_interrupted(void)
 {
@@ -526,6 +557,7 @@ int main(void)
     RUN(other_types_are_refused);
     RUN(a_run_that_begins_anew_is_followed_anew);
     RUN(a_part_of_the_parameters_takes_one_run);
+    RUN(derivatives_leave_no_memory_behind);
     RUN(followers_are_interrupted);
     RUN(derivatives_are_those_of_runs);
     RUN(searches_have_the_derivatives_of_one_run);

@@ -186,6 +186,7 @@ static se3d_status prepare(follower *one, size_t stage)
     if (!one->row || !t->tallies) {
         return SE3D_ERR_NO_MEMORY;
     }
+    t->tally_pool = &t->pool;
     se3di_trial_begin(t);
     return stage == SIZE_MAX ? SE3D_OK : create_solver(one, stage);
 }

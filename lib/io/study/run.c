@@ -82,7 +82,7 @@ void se3di_trial_begin(trial *t)
 
 se3d_status se3di_trial_take_row(trial *t, const double *row)
 {
-    se3d_study *study = t->study;
+    const se3d_study *study = t->study;
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         se3di_tally *tally = &t->tallies[k];
         const se3di_study_measure *m = tally->measure;
@@ -95,7 +95,7 @@ se3d_status se3di_trial_take_row(trial *t, const double *row)
             value -= se3di_tally_get_wanted(
                 m, m->along == SE3DI_STUDY_NO_SOURCE ? since : row[t->places[m->along]]);
         }
-        if (!se3di_tally_add(tally, &study->pool, row[0], value)) {
+        if (!se3di_tally_add(tally, t->tally_pool, row[0], value)) {
             return SE3D_ERR_NO_MEMORY;
         }
     }
@@ -300,7 +300,11 @@ se3d_status se3di_study_run_with(se3d_study *study, const se3di_named *values, s
                                  const se3di_row_listener *listener, double *measures,
                                  se3d_model_error *error)
 {
-    trial t = {.study = study, .tallies = study->tallies, .listener = listener, .error = error};
+    trial t = {.study = study,
+               .tallies = study->tallies,
+               .tally_pool = &study->pool,
+               .listener = listener,
+               .error = error};
     memset(error, 0, sizeof *error);
     for (size_t k = 0; k < study->entry->measure_count; ++k) {
         measures[k] = (double)NAN;

@@ -10,6 +10,7 @@ typedef struct se3di_trial {
     se3d_study *study;
     se3d_model *model;
     se3di_tally *tallies;            /* [measure_count] */
+    se3di_iopool *tally_pool;        /* of the rows they keep; lasts as long as they do */
     bool is_set;                     /* the model is that of the study's prototype */
     se3di_iopool pool;               /* of this sample */
     size_t *places;                  /* [source_count] in a row */
