@@ -33,11 +33,12 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     o.add(lines);
   };
   // Parts that look alike share a material; what changes on its own gets one of its own first.
-  const owners = new Set();
+  const owners = new Set(), shared = new Set();
   const alone = (o) => {
-    if (!owners.has(o)) o.material = o.material.clone();
+    if (owners.has(o)) return o.material;
+    shared.add(o.material); // the last one to leave it makes it unreachable from the scene
     owners.add(o);
-    return o.material;
+    return (o.material = o.material.clone());
   };
   // The loader makes names of its own.
   const nodes = await gltf.parser.getDependencies("node"), isDrawn = (o) => o.isMesh || o.isLine;
@@ -372,13 +373,14 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
     return found;
   };
   const clear = new Set();
-  const glaze = () => solids.forEach((o) => {
-    if (!clear.has(o)) return;
-    Object.assign(alone(o), state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
-    o.castShadow = state.solid || !packed; // else grains within it would be dark
-    o.material.needsUpdate = true;
+  const glaze = () => {
+    solids.filter((o) => clear.has(o)).forEach((o) => {
+      Object.assign(alone(o), state.solid ? { opacity: 1, transparent: false, depthWrite: true } : { opacity: 0.3, transparent: true, depthWrite: false });
+      o.castShadow = state.solid || !packed; // else grains within it would be dark
+      o.material.needsUpdate = true;
+    });
     face(state.cut);
-  });
+  };
   // Only given shapes are seen through, never a bar or another joint; nor tubes, of which little would be left.
   const isSlim = (o) => {
     const box = o.geometry.boundingBox, wide = va.copy(box.max).sub(box.min).multiply(o.scale).toArray().map(Math.abs).sort((a, b) => a - b);
@@ -866,6 +868,7 @@ const se3dView = async ({ glb, other, results, packed, modes, live }) => {
       light.close();
       rounds.close();
       scene.traverse((o) => { if (o.geometry) o.geometry.dispose(); if (o.material && o.material.dispose) o.material.dispose(); });
+      shared.forEach((m) => m.dispose());
     };
   };
   // For tests and films.
