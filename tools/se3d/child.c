@@ -52,6 +52,7 @@ static void become(char *const *words, const int to[2], const int from[2], const
 {
     const int nothing = open("/dev/null", O_RDWR);
     signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_DFL); /* this program ignores it */
     setpgid(0, 0);
     dup2(nothing, 0);
     if (mute) {

@@ -40,6 +40,7 @@ int path_get_absolute(const char *path, char *out, size_t size)
     return _fullpath(out, path, size) != NULL;
 }
 #else
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -58,6 +59,7 @@ int process_run(const char *folder, const char *const *words)
     fflush(NULL);
     const pid_t child = count > 0 ? fork() : -1;
     if (child == 0) {
+        signal(SIGXFSZ, SIG_DFL); /* this program ignores it */
         if (!folder || chdir(folder) == 0) {
             execvp(copy[0], copy);
         }
