@@ -2,7 +2,7 @@
 # The libraries that libse3d and libse3d-io are linked with, as targets se3d_deps::<name>. Used by
 # the build, and by the installed package for those who link statically.
 
-# se3d_find_library(<name> <library> <header or ""> <apt package> [REQUIRED])
+# se3d_find_library(<name> <names of the library> <header or ""> <apt package> [REQUIRED])
 function(se3d_find_library name library header package)
     if(TARGET se3d_deps::${name})
         return()
@@ -88,13 +88,13 @@ function(se3d_find_io_dependencies)
     se3d_find_math()
 endfunction()
 
-# se3d_find_part(<wanted> <name> <library> <header> <package> <without>): a library that libse3d-io can
+# se3d_find_part(<wanted> <name> <names of the library> <header> <package> <without>): a library that libse3d-io can
 # do without. SE3D_HAS_<NAME> says whether it is there; without it se3d_deps::<name> links nothing, and a
 # message says what is missing.
 function(se3d_find_part wanted name library header package without)
     string(TOUPPER "SE3D_HAS_${name}" has)
     if(wanted)
-        se3d_find_library(${name} ${library} ${header} ${package})
+        se3d_find_library(${name} "${library}" ${header} ${package})
     endif()
     set(${has} OFF)
     if(TARGET se3d_deps::${name})
@@ -111,10 +111,12 @@ function(se3d_find_part wanted name library header package without)
     set(${has} ${${has}} PARENT_SCOPE)
 endfunction()
 
-# What reads the XML of robots' formats, and what compresses results.
-macro(se3d_find_io_parts expat zlib)
-    se3d_find_part("${expat}" expat expat expat.h libexpat1-dev "URDF cannot be imported")
-    se3d_find_part("${zlib}" zlib z zlib.h zlib1g-dev "results are not compressed")
+# What reads the XML of robots' formats, and what compresses results; <without expat> and <without zlib> tell
+# what is not there without them. The names of the libraries on Windows follow those of others.
+macro(se3d_find_io_parts expat zlib without_expat without_zlib)
+    se3d_find_part("${expat}" expat "expat;libexpat;libexpatMD;libexpatd;libexpatdMD" expat.h libexpat1-dev
+                   "${without_expat}")
+    se3d_find_part("${zlib}" zlib "z;zlib;zlibstatic;zlibd;zlibstaticd" zlib.h zlib1g-dev "${without_zlib}")
 endmacro()
 
 # se3d_find_optional(<wanted> <name> <header> <package> <without>): a library that the program can do

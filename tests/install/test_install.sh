@@ -140,6 +140,17 @@ find_package() {
     "$CMAKE" --build "$work/project/build" >"$work/project/log" 2>&1 ||
         { cat "$work/project/log"; exit 1; }
     "$CMAKE" -E chdir "$work/project/build" ctest --output-on-failure --no-tests=error
+    if grep -q '^Libs.private:.* -lz ' "$(library_folder)/pkgconfig/se3d-io.pc" 2>/dev/null; then
+        without_zlib 'se3d;se3d_static;io' || { cat "$work/project/log"; fail "se3d_static needs zlib"; }
+        grep -q 'No zlib: se3d::io_static needs it' "$work/project/log" || fail "it is not told what needs zlib"
+        ! without_zlib io_static || fail "se3d::io_static is there without zlib"
+    fi
+}
+
+# without_zlib COMPONENTS: whether a machine without zlib has them.
+without_zlib() {
+    "$CMAKE" -S "$work/project" -B "$work/project/without" -DCMAKE_PREFIX_PATH="$prefix" -DSE3D_zlib_LIBRARY= \
+        -DCMAKE_C_COMPILER="$CC" -DCMAKE_CXX_COMPILER="$CXX" "-DCOMPONENTS=$1" >"$work/project/log" 2>&1
 }
 
 # The sources as a part of another project: only the libraries are built, and none of our options or settings leaks.
