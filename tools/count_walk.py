@@ -66,6 +66,9 @@ def below(calls, name):
 
 
 def main():
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(__doc__)
+        return
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
     calls = read(sys.argv[1])

@@ -9,6 +9,7 @@
 #include "assembly/loads.h"
 #include "contact/bodies/pace.h"
 #include "integrator/turns.h"
+#include "math/over.h"
 #include "math/steps.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
@@ -512,7 +513,7 @@ static double limit_step(const se3di_integration *integration, double h)
  * with a small error. */
 static double get_most(const double h[2], const double error[2])
 {
-    const double ratio = h[0] / h[1];
+    const double ratio = se3di_over(h[0], h[1]);
     const int jumps = isfinite(error[0]) && isfinite(error[1]) && error[1] > 0.0 &&
                       error[0] / error[1] < ratio * sqrt(ratio);
     return jumps ? JUMP_ERROR : 1.0;

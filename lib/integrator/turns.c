@@ -3,6 +3,7 @@
 
 #include "force/measure.h"
 #include "math/elementary.h"
+#include "math/over.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -31,7 +32,7 @@ static const char *name_of_angle(const se3di_model *model, size_t angle)
 static double round_down(double longest)
 {
     const double unit = se3di_pow(10.0, floor(se3di_log10(longest)) - 2.0);
-    return floor(longest / unit * (1.0 + 1e-12)) * unit;
+    return floor(se3di_over(longest, unit) * (1.0 + 1e-12)) * unit;
 }
 
 static se3d_status fail(const se3di_equations *equations, const char *what, const char *name,

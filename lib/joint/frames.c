@@ -4,6 +4,7 @@
 
 #include "base/floats.h"
 #include "math/elementary.h"
+#include "math/over.h"
 #include "math/vec3.h"
 #include "primitive/primitive.h"
 
@@ -19,7 +20,7 @@ int se3di_joint_triad_build(const double axis[3], const double *ref, double ref_
 {
     if (ref) {
         double length = se3di_norm(ref);
-        se3di_scale(1.0 / length, ref, ref_out);
+        se3di_scale(se3di_over(1.0, length), ref, ref_out);
         se3di_add_scaled(-se3di_dot(axis, ref_out), axis, ref_out);
         double sine = se3di_norm(ref_out);
         if (!(sine > PARALLEL_TOLERANCE)) {

@@ -6,6 +6,7 @@
 #define SE3DI_DUAL_H
 
 #include "math/elementary.h"
+#include "math/over.h"
 #include "math/quick.h"
 
 #include <math.h>

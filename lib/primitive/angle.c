@@ -13,6 +13,7 @@
  * Removes one rotational degree of freedom, at every angle; degenerate only if a_j is parallel
  * to b_i (q = 0): all functions are NaN there.  docs/theory/angle.md */
 #include "math/elementary.h"
+#include "math/over.h"
 #include "primitive/dot.h"
 #include "primitive/table.h"
 
@@ -42,8 +43,8 @@ static inline angle_vectors vectors_of(const se3di_term *t, const se3di_frame *i
     const double q = cs[0] * cs[0] + cs[1] * cs[1];
     angle_vectors x;
     for (int k = 0; k < 3; ++k) {
-        x.m[k] = (cs[0] * g[k] - cs[1] * t->a_i[k]) / q;
-        x.n[k] = (cs[0] * t->a_i[k] + cs[1] * g[k]) / q;
+        x.m[k] = se3di_over(cs[0] * g[k] - cs[1] * t->a_i[k], q);
+        x.n[k] = se3di_over(cs[0] * t->a_i[k] + cs[1] * g[k], q);
     }
     return x;
 }

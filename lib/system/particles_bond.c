@@ -4,6 +4,7 @@
 
 #include "base/sized.h"
 #include "base/sort.h"
+#include "math/over.h"
 #include "math/vec3.h"
 #include "particles/clump.h"
 #include "particles/list.h"
@@ -84,11 +85,11 @@ static void find_stiffness(const se3d_bond_def *def, double r, double L, double 
     const double E = def->young, nu = def->poisson, G = E / (2.0 * (1.0 + nu));
     const double shape = 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu);
     const double Phi =
-        def->law == SE3D_BOND_LAW_BEAM ? 12.0 * E * I / (shape * G * A * L * L) : 0.0;
-    k[0] = E * A / L;
-    k[1] = 12.0 * E * I / (L * L * L * (1.0 + Phi));
-    k[2] = E * I / L;
-    k[3] = G * J / L;
+        def->law == SE3D_BOND_LAW_BEAM ? se3di_over(12.0 * E * I, shape * G * A * L * L) : 0.0;
+    k[0] = se3di_over(E * A, L);
+    k[1] = se3di_over(12.0 * E * I, L * L * L * (1.0 + Phi));
+    k[2] = se3di_over(E * I, L);
+    k[3] = se3di_over(G * J, L);
 }
 
 /* Of two masses; one that is 0 does not move. */

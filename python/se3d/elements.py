@@ -339,7 +339,6 @@ class Material(Element):
 
     kind = "se3d_material"
     __slots__ = ()
-    name = ""
 
 
 class Shape(Element):

@@ -46,9 +46,9 @@ static void rows_have_the_bits_they_always_had(void)
     static const struct {
         const char *text;
         uint64_t hash;
-    } rows[] = {{MODEL "monte_carlo\n", UINT64_C(0x1d716c0421a32e0c)},
-                {MODEL "latin_hypercube\n", UINT64_C(0x9f9251619abc7dc2)},
-                {MODEL "sobol\n", UINT64_C(0xd4c2a2e6652715c2)}};
+    } rows[] = {{MODEL "monte_carlo\n", UINT64_C(0xfe232184e8243215)},
+                {MODEL "latin_hypercube\n", UINT64_C(0x5f3953f57bd938ed)},
+                {MODEL "sobol\n", UINT64_C(0xa3aba43bd643db52)}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
         const uint64_t hash = hash_rows(rows[k].text);
         if (hash != rows[k].hash) {

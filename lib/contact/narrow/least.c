@@ -14,6 +14,7 @@
 #include "contact/narrow/bracket.h"
 #include "contact/narrow/internal.h"
 #include "math/elementary.h"
+#include "math/over.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -337,8 +338,8 @@ static void rim_step(const search *s, const double n[3], double step[3])
     const double least = mean - sqrt(half * half + cross * cross);
     const double raise = least > FLAT * s->size ? 0.0 : FLAT * s->size - least;
     const double det = (A[0][0] + raise) * (A[1][1] + raise) - cross * cross;
-    se3di_scale(((A[1][1] + raise) * f[0] - cross * f[1]) / det, u[0], step);
-    se3di_add_scaled(((A[0][0] + raise) * f[1] - cross * f[0]) / det, u[1], step);
+    se3di_scale(se3di_over((A[1][1] + raise) * f[0] - cross * f[1], det), u[0], step);
+    se3di_add_scaled(se3di_over((A[0][0] + raise) * f[1] - cross * f[0], det), u[1], step);
 }
 
 /* Newton's method, with steps that are shortened until the overlap is less. */
