@@ -94,8 +94,7 @@ class Function(Element):
     def __call__(self, *x: float) -> Array: ...
     def set_constant(self, value: float) -> None: ...
 
-class Material(Element):
-    name: str
+class Material(Element): ...
 
 class Shape(Element):
     @property

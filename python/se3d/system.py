@@ -355,6 +355,10 @@ class System:
         """Find a force element by its name."""
         return self._find(Force, name)
 
+    def find_material(self, name):
+        """Find a material by its name."""
+        return self._find(Material, name)
+
     def find_shape(self, name):
         """Find a shape by its name."""
         return self._find(Shape, name)

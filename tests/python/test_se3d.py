@@ -249,6 +249,9 @@ class State(unittest.TestCase):
         with se3d.System() as system:
             bar, pin = pendulum(system)
             self.assertEqual(system.find_body("bar"), bar)
+            sand = system.material(density=1000, stiffness=1e5, name="sand")
+            self.assertEqual(system.find_material("sand"), sand)
+            self.assertEqual(sand.name, "sand")
             self.assertEqual(system.bodies, [system.ground, bar])
             self.assertEqual(pin.bodies, [system.ground, bar])
             self.assertEqual([c.type for c in system.constraints], ["revolute"])
