@@ -61,10 +61,11 @@ static inline int check_is_long(void)
 }
 
 /* The library divides by no zero, as its hosts may trap that: no case leaves the processor's flag
- * of it, in its own thread. `ends`: of the case; else one begins. */
+ * of it, in its own thread. Clang divides before it has asked whether it may, so its flag says
+ * nothing. `ends`: of the case; else one begins. */
 static inline void check_divisions(int ends)
 {
-#if defined(FE_DIVBYZERO)
+#if defined(FE_DIVBYZERO) && !defined(__clang__)
     if (ends) {
         check_that(!fetestexcept(FE_DIVBYZERO), "no division by zero", __FILE__, __LINE__);
     }
