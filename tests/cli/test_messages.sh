@@ -59,7 +59,7 @@ done
 
 # A tolerance that the method does not reach.
 printf 'se3d: 1\nbodies: [%s]\njoints: [%s]\nanalysis: {type: dynamics, duration: 1e-3}\n' "$body" "$slide" >"$dir/fine.yaml"
-for row in 'bdf 1e-13 1e-11' 'dop853 1e-14 6.67e-12' 'auto 1e-14 6.67e-12'; do
+for row in 'bdf 1e-13 1e-11' 'dop853 1e-14 6.67e-12' 'auto 1e-14 6.67e-13' 'rk45 1e-14 6.67e-12'; do
     # shellcheck disable=SC2086
     set -- $row
     expect "$row" 0 "$program" run "$dir/fine.yaml" -o "$dir/o" --method "$1" --tolerance "$2"
