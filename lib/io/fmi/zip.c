@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "io/base/inflate.h"
+#include "io/base/little.h"
 
 enum { LOCAL_SIZE = 30, CENTRAL_SIZE = 46, END_SIZE = 22, FILES_MAX = 65534 };
 enum { VERSION = 20, UTF8 = 1 << 11, DATE = 1 << 5 | 1 };
@@ -34,11 +35,10 @@ typedef struct record {
     size_t used;
 } record;
 
-static void put(record *r, int size, uint32_t value)
+static void put(record *r, size_t size, uint32_t value)
 {
-    for (int k = 0; k < size; ++k) {
-        r->bytes[r->used++] = (unsigned char)(value >> (8 * k));
-    }
+    se3di_little_put(r->bytes + r->used, value, size);
+    r->used += size;
 }
 
 /* What both headers of a file have in common. */

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "io/base/little.h"
 #include "io/base/number.h"
 #include "io/base/pool.h"
 #include "io/model/mesh.h"
@@ -439,17 +440,10 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
     return glb->mesh_count++;
 }
 
-static void put_head(unsigned char *at, uint32_t value)
-{
-    for (int k = 0; k < 4; ++k) {
-        at[k] = (unsigned char)(value >> (8 * k));
-    }
-}
-
 static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
 {
     unsigned char head[8];
-    put_head(head, (uint32_t)bytes->count);
+    se3di_little_put(head, (uint32_t)bytes->count, 4);
     memcpy(head + 4, type, 4);
     fwrite(head, 1, 8, file);
     fwrite(bytes->data, 1, bytes->count, file);
@@ -458,8 +452,8 @@ static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
 static void write_file(FILE *file, const se3di_bytes *json, const se3di_bytes *binary)
 {
     unsigned char head[12] = {'g', 'l', 'T', 'F'};
-    put_head(head + 4, 2);
-    put_head(head + 8, (uint32_t)(28 + json->count + binary->count));
+    se3di_little_put(head + 4, 2, 4);
+    se3di_little_put(head + 8, (uint32_t)(28 + json->count + binary->count), 4);
     fwrite(head, 1, sizeof head, file);
     write_chunk(file, json, "JSON");
     write_chunk(file, binary, "BIN\0");

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "io/base/file.h"
+#include "io/base/little.h"
 
 #define NOWHERE UINT64_MAX
 
@@ -70,13 +71,6 @@ static void fail(se3di_hdf5 *h, int why)
 
 /* --- numbers as bytes --- */
 
-static void put_little(unsigned char *at, uint64_t bits, size_t size)
-{
-    for (size_t k = 0; k < size; ++k) {
-        at[k] = (unsigned char)(bits >> (8 * k));
-    }
-}
-
 static void add(se3di_hdf5 *h, bytes *b, const void *data, size_t size)
 {
     if (h->failure != 0 || size == 0) {
@@ -102,7 +96,7 @@ static void add(se3di_hdf5 *h, bytes *b, const void *data, size_t size)
 static void add_word(se3di_hdf5 *h, bytes *b, uint64_t bits, size_t size)
 {
     unsigned char word[8];
-    put_little(word, bits, size);
+    se3di_little_put(word, bits, size);
     add(h, b, word, size);
 }
 
@@ -120,17 +114,17 @@ void se3di_hdf5_put_value(unsigned char *at, se3di_hdf5_type type, double value)
     switch (type) {
     case SE3DI_HDF5_DOUBLE:
         memcpy(&bits, &value, sizeof bits);
-        put_little(at, bits, 8);
+        se3di_little_put(at, bits, 8);
         break;
     case SE3DI_HDF5_SINGLE:
         memcpy(&half, &single, sizeof half);
-        put_little(at, half, 4);
+        se3di_little_put(at, half, 4);
         break;
     case SE3DI_HDF5_INT64:
-        put_little(at, (uint64_t)(int64_t)value, 8);
+        se3di_little_put(at, (uint64_t)(int64_t)value, 8);
         break;
     case SE3DI_HDF5_INT32:
-        put_little(at, (uint32_t)(int32_t)value, 4);
+        se3di_little_put(at, (uint32_t)(int32_t)value, 4);
         break;
     default:
         *at = (unsigned char)value;
@@ -674,11 +668,11 @@ static void write_header(se3di_hdf5 *h, size_t node)
 static void write_superblock(se3di_hdf5 *h)
 {
     unsigned char block[SUPERBLOCK] = "\211HDF\r\n\032\n\2\10\10"; /* version 2, sizes of words */
-    put_little(block + 12, 0, 8);
-    put_little(block + 20, NOWHERE, 8);
-    put_little(block + 28, h->end, 8);
-    put_little(block + 36, h->nodes[0].header, 8);
-    put_little(block + 44, checksum(block, 44), 4);
+    se3di_little_put(block + 12, 0, 8);
+    se3di_little_put(block + 20, NOWHERE, 8);
+    se3di_little_put(block + 28, h->end, 8);
+    se3di_little_put(block + 36, h->nodes[0].header, 8);
+    se3di_little_put(block + 44, checksum(block, 44), 4);
     write_at(h, 0, block, sizeof block);
 }
 

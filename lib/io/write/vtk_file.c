@@ -10,6 +10,7 @@
 
 #include "io/base/deflate.h"
 #include "io/base/file.h"
+#include "io/base/little.h"
 #include "io/base/number.h"
 
 enum { BLOCK = 4096, COMPRESSED = 1 << 15 };
@@ -20,27 +21,15 @@ typedef struct packed {
     size_t size, capacity;
 } packed;
 
-static double value_of(const se3di_vtk_array *a, size_t k, size_t i)
-{
-    return a->values ? a->values[k * a->stride + i] : a->first + (double)k * a->step;
-}
-
-static void put_little(unsigned char *at, uint64_t bits, size_t size)
-{
-    for (size_t k = 0; k < size; ++k) {
-        at[k] = (unsigned char)(bits >> (8 * k));
-    }
-}
-
 /* Values [first, end) of an array, one by one, as bytes. */
 static void get_bytes(const se3di_vtk_array *a, size_t first, size_t end, unsigned char *to)
 {
     for (size_t n = first; n < end; ++n, to += 4) {
-        const double value = value_of(a, n / a->width, n % a->width);
+        const double value = se3di_vtk_value(a, n / a->width, n % a->width);
         const float single = (float)value;
         uint32_t bits = 0;
         memcpy(&bits, &single, sizeof bits);
-        put_little(to, a->whole ? (uint32_t)(int32_t)value : bits, 4);
+        se3di_little_put(to, a->whole ? (uint32_t)(int32_t)value : bits, 4);
     }
 }
 
@@ -48,7 +37,7 @@ static void put_data(FILE *file, const se3di_vtk_array *a)
 {
     unsigned char block[4 * BLOCK];
     const size_t count = a->count * a->width;
-    put_little(block, 4 * (uint64_t)count, 8);
+    se3di_little_put(block, 4 * (uint64_t)count, 8);
     fwrite(block, 1, 8, file);
     for (size_t first = 0; first < count; first += BLOCK) {
         const size_t end = count - first < BLOCK ? count : first + BLOCK;
@@ -86,7 +75,7 @@ static bool pack(se3di_deflate *d, const se3di_vtk_array *a, packed *p)
     const uint64_t head[3] = {blocks, COMPRESSED, count % each * 4};
     bool good = true;
     for (size_t k = 0; k < 3 + blocks && good; ++k) { /* sizes follow */
-        put_little(block, k < 3 ? head[k] : 0, 8);
+        se3di_little_put(block, k < 3 ? head[k] : 0, 8);
         good = append(d->pool, p, block, 8);
     }
     for (size_t k = 0; k < blocks && good; ++k) {
@@ -95,7 +84,7 @@ static bool pack(se3di_deflate *d, const se3di_vtk_array *a, packed *p)
         get_bytes(a, first, end, block);
         const unsigned char *data = se3di_deflate_block(d, block, 4 * (end - first), &made);
         good = data && append(d->pool, p, data, made);
-        put_little(p->data + 8 * (3 + k), made, 8);
+        se3di_little_put(p->data + 8 * (3 + k), made, 8);
     }
     return good;
 }

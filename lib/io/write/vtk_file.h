@@ -31,6 +31,12 @@ typedef struct se3di_vtk_array {
     bool whole; /* 32-bit integers, else 32-bit floats */
 } se3di_vtk_array;
 
+/* Component i of entry k. */
+static inline double se3di_vtk_value(const se3di_vtk_array *a, size_t k, size_t i)
+{
+    return a->values ? a->values[k * a->stride + i] : a->first + (double)k * a->step;
+}
+
 typedef struct se3di_vtk_grid {
     double origin[3], spacing[3];
     int32_t cells[3];

@@ -10,11 +10,6 @@
 
 enum { BLOCK = 4096, VERTEX = 1, LINE = 3, TRIANGLE = 5, QUAD = 9 };
 
-static double value_of(const se3di_vtk_array *a, size_t k, size_t i)
-{
-    return a->values ? a->values[k * a->stride + i] : a->first + (double)k * a->step;
-}
-
 /* Values first, first + 1, ... of an array; returns where the next ones go. */
 static uint64_t write_values(se3di_hdf5 *h, size_t node, uint64_t at, const se3di_vtk_array *a,
                              const se3di_hdf5_shape *shape, double offset)
@@ -24,7 +19,7 @@ static uint64_t write_values(se3di_hdf5 *h, size_t node, uint64_t at, const se3d
     size_t used = 0;
     for (size_t k = 0; k < a->count; ++k) {
         for (size_t i = 0; i < a->width; ++i) {
-            se3di_hdf5_put_value(block + used, shape->type, value_of(a, k, i) + offset);
+            se3di_hdf5_put_value(block + used, shape->type, se3di_vtk_value(a, k, i) + offset);
             used += size;
             if (used + size > sizeof block) {
                 se3di_hdf5_write(h, node, at, block, used);
