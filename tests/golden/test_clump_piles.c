@@ -3,6 +3,7 @@
  * behind a wall slumps when that goes, and leaves a slope. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/pile.h"
 
 #include <math.h>
 
@@ -92,30 +93,6 @@ static void open_bed(int clumps, uint64_t seed)
     CHECK(!se3d_particles_fill_lattice(b.particles, &fill, NULL));
 }
 
-/* Least squares over the highest of each slice. */
-static double slope_of_pile(size_t count)
-{
-    double top[100] = {0.0}, n = 0.0, sx = 0.0, sz = 0.0, sxx = 0.0, sxz = 0.0;
-    CHECK(!se3d_particles_get_all(b.particles, count, b.r, NULL, NULL));
-    for (size_t k = 0; k < count; ++k) {
-        const double slice = b.r[3 * k] / D;
-        if (slice >= 0.0 && slice < 100.0) {
-            double *height = &top[(size_t)slice];
-            *height = fmax(*height, b.r[3 * k + 2]);
-        }
-    }
-    for (int k = 1; k < 100 && top[k] > 1.2 * D; ++k) {
-        const double x = ((double)k + 0.5) * D;
-        n += 1.0;
-        sx += x;
-        sz += top[k];
-        sxx += x * x;
-        sxz += x * top[k];
-    }
-    CHECK(n >= 4.0);
-    return -atan((n * sxz - sx * sz) / (n * sxx - sx * sx)) * 180.0 / PI;
-}
-
 static double slump(int clumps, uint64_t seed)
 {
     se3d_shape gate;
@@ -128,7 +105,8 @@ static double slump(int clumps, uint64_t seed)
     CHECK(!se3d_shape_destroy(b.system, gate));
     run(1.0);
     CHECK(!se3d_particles_get_energy(b.particles, &energy));
-    const double angle = slope_of_pile(count);
+    CHECK(!se3d_particles_get_all(b.particles, count, b.r, NULL, NULL));
+    const double angle = pile_slope(b.r, count, D);
     printf("%s: %zu particles, %.1f degrees, %.1e J\n", clumps ? "clumps" : "spheres",
            clumps ? count / 3 : count, angle, energy.translation);
     se3d_system_destroy(b.system);

@@ -10,6 +10,7 @@
  * which the bed still covers it. */
 #include "check.h"
 #include "se3d/se3d.h"
+#include "support/pile.h"
 
 #include <math.h>
 #include <string.h>
@@ -162,24 +163,7 @@ static double slump(double friction, double rolling)
     add_box(-d, 100.0 * d, -d, 0.0, depth, &shape);
     fill(0.0, 10.0 * d, depth, 0.0, 14.0 * d, 0.5 * d);
     run(0.7);
-    double top[100] = {0.0}, n = 0.0, sx = 0.0, sz = 0.0, sxx = 0.0, sxz = 0.0;
-    for (size_t k = 0; k < b.count; ++k) {
-        double column = b.r[3 * k] / d;
-        if (column >= 0.0 && column < 100.0) {
-            double *height = &top[(size_t)column];
-            *height = fmax(*height, b.r[3 * k + 2]);
-        }
-    }
-    for (int k = 1; k < 100 && top[k] > 1.2 * d; ++k) {
-        double x = ((double)k + 0.5) * d;
-        n += 1.0;
-        sx += x;
-        sz += top[k];
-        sxx += x * x;
-        sxz += x * top[k];
-    }
-    CHECK(n >= 4.0);
-    double angle = -atan((n * sxz - sx * sz) / (n * sxx - sx * sx)) * 180.0 / PI;
+    const double angle = pile_slope(b.r, b.count, d);
     printf("friction %.2f, rolling friction %.2f: %.1f degrees\n", friction, rolling, angle);
     se3d_system_destroy(b.system);
     return angle;

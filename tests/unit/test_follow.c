@@ -3,6 +3,7 @@
  * its data differ; so derivatives of states are those of solutions, and derivatives of all kinds of
  * measures of a study those of its runs. docs/theory/sensitivities.md */
 #include "support/counting.h"
+#include "support/study_slopes.h"
 #include "support/text_model.h"
 
 #include "io/study/derive.h"
@@ -148,32 +149,6 @@ static const char time_tail[] =
     "  measures: {last: {final: rod.velocity.y}, lost: {final: energy.dissipated},\n"
     "    all: {integral: coil.force}}\n";
 
-/* The derivative of all measures by runs of the study beside the point, extrapolated. */
-static void differentiate(se3d_study *study, int which, double *slopes, size_t count)
-{
-    enum { LEVELS = 5, MEASURES = 10 };
-    double table[LEVELS][MEASURES];
-    double h = 0.02 * at[which];
-    for (int n = 0; n < LEVELS; ++n, h *= 0.5) {
-        double p[2][PARAMETERS], y[2][MEASURES];
-        for (int side = 0; side < 2; ++side) {
-            memcpy(p[side], at, sizeof at);
-            p[side][which] += side ? h : -h;
-            CHECK(se3d_study_eval(study, p[side], y[side], NULL) == SE3D_OK);
-        }
-        for (size_t k = 0; k < count; ++k) {
-            double slope = (y[1][k] - y[0][k]) / (p[1][which] - p[0][which]), weight = 1.0;
-            for (int i = 0; i < n; ++i) {
-                const double before = table[i][k];
-                table[i][k] = slope;
-                weight *= 4.0;
-                slope += (slope - before) / (weight - 1.0);
-            }
-            table[n][k] = slopes[k] = slope;
-        }
-    }
-}
-
 static void derivatives_are_those_of_runs(void)
 {
     static const int tails_of[] = {0, 2, 3, 5, 4};
@@ -198,7 +173,7 @@ static void derivatives_are_those_of_runs(void)
             double value, slopes[10], errors[10], wanted[10], y[10];
             CHECK(!se3d_study_eval_nominal(study, y, NULL));
             CHECK(!se3d_study_eval_sensitivity(study, (size_t)which, &value, slopes, errors, NULL));
-            differentiate(study, which, wanted, count);
+            study_slopes(study, at, PARAMETERS, (size_t)which, wanted, count);
             for (size_t k = 0; k < count; ++k) {
                 const double size = fabs(wanted[k]) + (1.0 + fabs(y[k])) / value;
                 if (getenv("SE3D_SHOW")) {

@@ -2,6 +2,7 @@
 /* Modes of one system in another one: eigenvalues to second order in what the systems differ by,
  * with symmetric and unsymmetric matrices; derivatives of studies by them, which are those of runs.
  * docs/theory/modes.md */
+#include "support/study_slopes.h"
 #include "support/text_model.h"
 
 #include "se3d/modes.h"
@@ -100,32 +101,6 @@ static void what_is_left_is_of_second_order(void)
     }
 }
 
-/* By runs of the study, extrapolated. */
-static void differentiate(se3d_study *study, int which, double *slopes)
-{
-    enum { LEVELS = 5 };
-    double table[LEVELS][MEASURES];
-    double h = 0.02 * at[which];
-    for (int n = 0; n < LEVELS; ++n, h *= 0.5) {
-        double p[2][PARAMETERS], y[2][MEASURES];
-        for (int side = 0; side < 2; ++side) {
-            memcpy(p[side], at, sizeof at);
-            p[side][which] += side ? h : -h;
-            CHECK(se3d_study_eval(study, p[side], y[side], NULL) == SE3D_OK);
-        }
-        for (size_t k = 0; k < MEASURES; ++k) {
-            double slope = (y[1][k] - y[0][k]) / (p[1][which] - p[0][which]), weight = 1.0;
-            for (int i = 0; i < n; ++i) {
-                const double before = table[i][k];
-                table[i][k] = slope;
-                weight *= 4.0;
-                slope += (slope - before) / (weight - 1.0);
-            }
-            table[n][k] = slopes[k] = slope;
-        }
-    }
-}
-
 static void derivatives_are_those_of_runs(void)
 {
     static const char *const firsts[] = {"equilibrium", "assembly"};
@@ -141,7 +116,7 @@ static void derivatives_are_those_of_runs(void)
         for (int which = 0; which < PARAMETERS; ++which) {
             double value, slopes[MEASURES], errors[MEASURES], wanted[MEASURES];
             CHECK(!se3d_study_eval_sensitivity(study, (size_t)which, &value, slopes, errors, NULL));
-            differentiate(study, which, wanted);
+            study_slopes(study, at, PARAMETERS, (size_t)which, wanted, MEASURES);
             for (size_t k = 0; k < MEASURES; ++k) {
                 const double size = fabs(wanted[k]) + fabs(y[k]) / value + 1e-12;
                 const double off = fabs(slopes[k] - wanted[k]) / size;
