@@ -52,6 +52,8 @@ typedef struct se3d_model_options {
     void *report_ctx;         /* of `report` */
     se3d_log_callback log;    /* of the model's system; NULL: silent */
     void *log_ctx;            /* of `log` */
+    const char *threads;      /* expression over the parameters, of particles: results do not depend
+                               * on it; without particles it changes nothing */
 } se3d_model_options;
 
 /* The largest number of mistakes that are reported of one model. @since 0.1 */

@@ -31,12 +31,12 @@ class Model:
     """A model file (YAML or JSON) that was read, with its system.
 
     Model("pendulum.yaml", parameters={"mass": 2}, method="radau"): parameters, analysis,
-    formulation, method, step, duration and tolerance replace those of the file; numbers or
+    formulation, method, step, duration, tolerance and threads replace those of the file; numbers or
     expressions. Model(text=...) reads a text.
     """
 
     def __init__(self, path=None, *, text=None, name="model", parameters=None, **values):
-        for key in ("step", "duration", "tolerance"):
+        for key in ("step", "duration", "tolerance", "threads"):
             values[key] = _optional(values.get(key))
         for key in ("analysis", "formulation", "method"):
             value = values.pop(key, None)

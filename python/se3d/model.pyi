@@ -34,7 +34,8 @@ class Model:
                  analysis: str | None = ..., formulation: str | None = ...,
                  method: str | None = ..., step: float | str | None = ...,
                  duration: float | str | None = ..., mass_optional: int | None = ...,
-                 tolerance: float | str | None = ...) -> None: ...
+                 tolerance: float | str | None = ...,
+                 threads: int | str | None = ...) -> None: ...
     @property
     def name(self) -> str: ...
     @property

@@ -81,7 +81,10 @@ expect 'threads' 0 "$program" run "$source/tests/mpi/column.yaml" -q --duration 
 expect 'threads' 0 "$program" run "$source/tests/mpi/column.yaml" -q --duration 0.01 --threads 2 -o "$dir/t2"
 holds 'other results' cmp "$dir/t1/column.csv" "$dir/t2/column.csv"
 expect 'no threads' 2 "$program" run "$source/tests/mpi/column.yaml" -q --threads 0 -o "$dir/t1"
-says 'contact.threads'
+says '--threads: is 0, must be a whole number from 1 to 1024'
+expect 'threads of no particles' 0 "$program" run "$models/pendulum.yaml" -q --duration 0.01 --threads 2 -o "$dir/t1"
+expect 'no threads of no particles' 2 "$program" run "$models/pendulum.yaml" -q --threads 1.5 -o "$dir/t1"
+says '--threads: is 1.5'
 expect 'the same bits on every run' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p3" -q
 is "$(cksum <"$dir/p/pendulum.csv")" "$(cksum <"$dir/p3/pendulum.csv")"
 expect 'json' 0 "$program" run "$models/pendulum.yaml" -o "$dir/p4" --json --duration=0.1 --formulation rp

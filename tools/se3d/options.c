@@ -65,7 +65,7 @@ static const char **value_target(options *o, const char *name)
                  {"--match", &o->match},       {"--kind", &o->kind},
                  {"--port", &o->port},         {"--title", &o->title},
                  {"--with", &o->with},         {"--hide", &o->hide},
-                 {"--print", &o->print}};
+                 {"--print", &o->print},       {"--threads", &o->threads}};
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         if (strcmp(table[k].name, name) == 0) {
             return table[k].target;
@@ -113,9 +113,7 @@ static int *flag_target(options *o, const char *name)
 /* What an option sets in the model; NULL: nothing. */
 static const char *place_of(const char *name)
 {
-    return strcmp(name, "--every") == 0     ? "output[0].every"
-           : strcmp(name, "--threads") == 0 ? "contact.threads"
-                                            : NULL;
+    return strcmp(name, "--every") == 0 ? "output[0].every" : NULL;
 }
 
 /* An option with a value: "--name VALUE" or "--name=VALUE". @return words used, 0: an error. */
@@ -299,5 +297,6 @@ se3d_model_options options_get_model(const options *o)
     how.step = o->step;
     how.tolerance = o->tolerance;
     how.duration = o->duration;
+    how.threads = o->threads;
     return how;
 }

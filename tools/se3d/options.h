@@ -19,6 +19,7 @@ typedef struct options {
     const char *method;
     const char *step;
     const char *tolerance;
+    const char *threads;
     const char *duration;
     const char *time;
     const char *speed;

@@ -768,7 +768,7 @@ const command_entry run_entry = {
             {"--analysis", NULL, "T", "instead of those of the model: {analyses}, modes"},
             COMMAND_OPTIONS_OF_SOLVERS,
             {"--every", NULL, "T", "time between rows of the first of `output` [s]"},
-            {"--threads", NULL, "N", "of particles, as contact.threads; results stay the same"},
+            {"--threads", NULL, "N", "threads of particles; results stay the same"},
             {"--print", NULL, "FILE",
              "print the rows of this file of `output` (-: of the first CSV file with channels) "
              "instead of the summary"},

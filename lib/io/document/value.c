@@ -277,17 +277,22 @@ bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, dou
     return true;
 }
 
+bool se3di_read_count(se3di_reader *reader, const se3di_node *node, double least, double largest,
+                      double *value)
+{
+    if (!se3di_read_number(reader, node, SE3DI_ANY, value)) {
+        return false;
+    }
+    return (*value >= least && *value <= largest && !(floor(*value) < *value)) ||
+           se3di_reader_fail(reader, node, "is %g, must be a whole number from %g to %g", *value,
+                             least, largest);
+}
+
 bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
                           double largest, double *value)
 {
-    if (!se3di_read_key_number(reader, map, key, SE3DI_NOT_NEGATIVE, value)) {
-        return false;
-    }
-    if (*value > largest || floor(*value) < *value) {
-        return se3di_reader_fail_key(reader, map, key, "is %g, must be a whole number from 0 to %g",
-                                     *value, largest);
-    }
-    return true;
+    const se3di_node *node = se3di_node_get(map, key);
+    return !node || se3di_read_count(reader, node, 0.0, largest, value);
 }
 
 /* A point or vector in one text: its name, or an expression. */

@@ -14,7 +14,10 @@ bool se3di_read_key_number(se3di_reader *reader, const se3di_node *map, const ch
                            se3di_range range, double *value);
 /* A coefficient of restitution, 0.01 to 1, left alone if there is none. */
 bool se3di_read_key_restitution(se3di_reader *reader, const se3di_node *map, double *value);
-/* The same for a whole number from 0 to `largest`. */
+/* A whole number from `least` to `largest`. */
+bool se3di_read_count(se3di_reader *reader, const se3di_node *node, double least, double largest,
+                      double *value);
+/* The same from 0 on under `key`, left alone if there is none. */
 bool se3di_read_key_count(se3di_reader *reader, const se3di_node *map, const char *key,
                           double largest, double *value);
 bool se3di_read_vector(se3di_reader *reader, const se3di_node *node, size_t size, double *value);

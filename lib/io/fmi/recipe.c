@@ -16,7 +16,8 @@ static const struct {
              {"method", offsetof(se3d_model_options, method)},
              {"step", offsetof(se3d_model_options, step)},
              {"duration", offsetof(se3d_model_options, duration)},
-             {"tolerance", offsetof(se3d_model_options, tolerance)}};
+             {"tolerance", offsetof(se3d_model_options, tolerance)},
+             {"threads", offsetof(se3d_model_options, threads)}};
 enum { WORDS = sizeof words / sizeof *words };
 
 static const char **text_of(se3d_model_options *options, size_t k)

@@ -170,16 +170,31 @@ static bool read_boundaries(se3di_reader *reader, const se3di_node *map, se3d_pa
     return se3di_read_fields(reader, map, &se3di_object_contact, NULL, "se3d_particles_def", def);
 }
 
-static bool create_set(se3di_reader *reader, const se3di_node *contact)
+/* Of the option --threads, else of the file. */
+static bool read_threads(se3di_reader *reader, const se3di_node *contact, int32_t *threads)
 {
-    se3d_particles_def def = se3d_particles_def_default();
-    double threads = 1.0;
-    if (contact &&
-        (!se3di_read_key(reader, contact, &se3di_object_contact, NULL, "threads", &threads) ||
-         !read_boundaries(reader, contact, &def))) {
+    const char *option = reader->options->threads;
+    const se3di_node *node = option ? se3di_node_of_text(reader->pool, "--threads", option)
+                                    : se3di_node_get(contact, "threads");
+    const double most = se3di_object_find(&se3di_object_contact, NULL, "threads")->most;
+    double count = 1.0;
+    if (option && !node) {
+        return se3di_reader_fail_memory(reader);
+    }
+    if (node && !se3di_read_count(reader, node, 1.0, most, &count)) {
         return false;
     }
-    def.threads = (int32_t)threads;
+    *threads = (int32_t)count;
+    return true;
+}
+
+static bool create_set(se3di_reader *reader, const se3di_node *contact, int32_t threads)
+{
+    se3d_particles_def def = se3d_particles_def_default();
+    if (contact && !read_boundaries(reader, contact, &def)) {
+        return false;
+    }
+    def.threads = threads;
     def.name = "particles";
     reader->model->particles->audit = def.audit != 0;
     for (int a = 0; a < 3; ++a) {
@@ -544,7 +559,8 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
         }
     }
     const se3di_node *list = lists[PARTICLES];
-    if (!list && !check_alone(reader, root)) {
+    int32_t threads = 1;
+    if (!read_threads(reader, contact, &threads) || (!list && !check_alone(reader, root))) {
         return false;
     }
     if (!list) {
@@ -556,7 +572,7 @@ bool se3di_read_particles(se3di_reader *reader, const se3di_node *root)
     }
     model->particles->moving_walls = model->moving_shapes;
     model->particles->set_count = 1; /* those without a name */
-    if (!create_set(reader, contact) || !se3di_read_clumps(reader, root) ||
+    if (!create_set(reader, contact, threads) || !se3di_read_clumps(reader, root) ||
         !read_sinks(reader, lists[SINKS])) {
         return false;
     }
