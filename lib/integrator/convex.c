@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* convex: order 1, for many contacts of bodies at steps of milliseconds. Forces of elements are
- * taken at the start of a step, contacts and constraints at its end: the velocities there are the
- * optimum of a convex problem (convex.h), and the bodies move by them,
+/* convex: for many contacts of bodies at steps of milliseconds. The velocities at the end of a
+ * step are the optimum of a convex problem (convex.h). If nothing touches, order 2: loads and
+ * constraints act in the middle of the step,
  *
- *     r_1 = r_0 + h v_1,   p_1 = p_0 exp(h w_1),
+ *     q_m = q_0 + h/2 v_0,    v_1 = v_0 + h a(q_m),    q_1 = q_m + h/2 v_1
  *
- * those that nothing touches by the mean of both ends. Then positions and velocities are projected
- * onto their constraints. The turning without loads keeps its energy: J (w - w_0) = h (n - w_m x J
- * w_m), w_m = (w_0 + w)/2.                                             docs/theory/convex.md */
+ * Else they act at its start, contacts at its end, and bodies move by v_1, those that nothing acts
+ * on by the mean of both ends. Then positions and velocities are projected onto their constraints.
+ *                                                                      docs/theory/convex.md */
 #include "integrator/convex.h"
 
 #include "assembly/energy.h"
@@ -36,7 +36,8 @@
 
 static size_t history_count(const se3di_assembly *assembly)
 {
-    return 1 + (size_t)assembly->body_count; /* length of the last step; how long each rests */
+    return 1 + 4 * (size_t)assembly->body_count; /* length of the last step; how long each rests;
+                                                     what constraints took from w at its end */
 }
 
 static size_t work_count(const se3di_assembly *assembly)
@@ -105,79 +106,93 @@ static se3d_status open_convex(se3di_integration *integration)
                : SE3D_OK;
 }
 
-/* J (w - w_0) + h w_m x J w_m = h n, for w. */
-static void turn_freely(const double J[9], const double w0[3], const double torque[3], double h,
-                        double w[3])
+/* The velocities at the start. */
+static void begin(const se3di_convex *c, const se3di_assembly *assembly)
 {
-    double wm[3];
-    se3di_copy(w0, wm);
-    for (int k = 0; k < 30; ++k) {
-        double L[3], gyro[3], f[3], D[9], W[9], tilde[9], WJ[9], dw[3], turn[3];
-        se3di_mul(J, wm, L);
-        se3di_cross(wm, L, gyro);
-        se3di_sub(wm, w0, turn);
-        se3di_mul(J, turn, f);
-        se3di_tilde(wm, W);
-        se3di_tilde(L, tilde);
-        se3di_mat_mul(W, J, WJ);
-        for (int e = 0; e < 9; ++e) {
-            D[e] = 2.0 * J[e] + h * (WJ[e] - tilde[e]);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        double *v0 = c->start + 6 * (size_t)k;
+        se3di_copy(frame->v, v0);
+        se3di_copy(frame->w, v0 + 3);
+        if (c->asleep[k]) {
+            memset(v0, 0, 6 * sizeof *v0);
         }
-        for (int e = 0; e < 3; ++e) {
-            f[e] = h * torque[e] - 2.0 * f[e] - h * gyro[e];
-        }
-        se3di_solve3(D, f, dw);
-        se3di_add(wm, dw, wm);
-        if (!(se3di_norm(dw) > 1e-15 * se3di_norm(wm))) {
-            break;
-        }
-    }
-    for (int e = 0; e < 3; ++e) {
-        w[e] = 2.0 * wm[e] - w0[e];
     }
 }
 
-/* The velocities at the start, and what loads make of them. */
-static se3d_status aim(se3di_convex *c, se3di_equations *equations)
+/* What loads make of them, as they are at the time t. */
+static se3d_status aim(se3di_convex *c, se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
-    SE3DI_TRY(se3di_assembly_eval_elements(assembly, model->time, equations->error));
-    SE3DI_TRY(se3di_gravity_eval(model, model->time, c->gravity, NULL));
+    SE3DI_TRY(se3di_assembly_eval_elements(assembly, t, equations->error));
+    SE3DI_TRY(se3di_gravity_eval(model, t, c->gravity, NULL));
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t body = assembly->free_body[k];
-        const se3di_frame *frame = &model->frames[body];
         const double *wrench = assembly->wrench + 6 * (size_t)body;
-        double *v0 = c->start + 6 * (size_t)k, *v = c->aim + 6 * (size_t)k, J[9];
-        se3di_copy(frame->v, v0);
-        se3di_copy(frame->w, v0 + 3);
-        se3di_copy(v0, v);
+        const double *v0 = c->start + 6 * (size_t)k;
+        double *v = c->aim + 6 * (size_t)k, J[9];
+        memcpy(v, v0, 6 * sizeof *v);
         if (c->asleep[k]) {
-            memset(v0, 0, 6 * sizeof *v0);
-            memset(v, 0, 6 * sizeof *v);
             continue;
         }
         se3di_add_scaled(c->h / model->bodies[body].mass, wrench, v);
         se3di_inertia_matrix(model->bodies[body].J, J);
-        turn_freely(J, v0 + 3, wrench + 3, c->h, v + 3);
+        se3di_convex_turn_freely(J, v0 + 3, wrench + 3, c->h, v + 3);
     }
     return SE3D_OK;
 }
 
-/* C at the start, and the rates that are prescribed at t1. */
-static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double t1)
+/* C, and what C v is to be at the end of the step. If nothing touches C is that in the middle,
+ * where the mean of v at both ends has the rates that are prescribed. Else it is that at the start,
+ * and v is the chord to the end, which is the rate in the middle: f_t + h/2 gamma. */
+static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     if (assembly->row_count == 0) {
         return SE3D_OK;
     }
-    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t1, equations->error));
+    SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     se3di_assembly_eval_mass(assembly);
-    se3di_assembly_eval_jacobian(assembly);
+    se3di_assembly_eval_rows(assembly, c->lambda);
+    if (c->drifts) {
+        se3di_assembly_mul(assembly, c->start, c->lambda);
+    }
     for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        c->aimed[k] = assembly->f[3 * (size_t)k + 1];
+        const double rate = assembly->f[3 * (size_t)k + 1];
+        c->aimed[k] = c->drifts ? 2.0 * rate - c->lambda[k] : rate + 0.5 * c->h * c->lambda[k];
     }
     return SE3D_OK;
+}
+
+/* A body by `share` of a step with velocity v, which it has then. */
+static void move_body(const se3di_convex *c, se3di_frame *frame, const double *v, double share)
+{
+    double turn[3], p[4];
+    se3di_add_scaled(share * c->h, v, frame->r);
+    se3di_scale(share * c->h, v + 3, turn);
+    memcpy(p, frame->p, sizeof p);
+    se3di_quat_rotate(p, turn, frame->p);
+    se3di_quat_normalize(frame->p, frame->p);
+    se3di_copy(v, frame->v);
+    se3di_copy(v + 3, frame->w);
+    se3di_frame_update(frame);
+    se3di_quat_rate(frame->p, frame->w, frame->pdot);
+}
+
+/* What nothing touches to where loads and constraints act in the middle of the step, with the
+ * velocities that are to be expected there. */
+static void drift(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        se3di_frame *frame = &assembly->model->frames[body];
+        const double *a = assembly->model->acceleration + 6 * (size_t)body;
+        move_body(c, frame, c->start + 6 * (size_t)k, 0.5);
+        se3di_add_scaled(0.5 * c->h, a, frame->v);
+        se3di_add_scaled(0.5 * c->h, a + 3, frame->w);
+        se3di_quat_rate(frame->p, frame->w, frame->pdot);
+    }
 }
 
 /* The bodies to the end of the step. */
@@ -186,22 +201,19 @@ static void move(const se3di_convex *c, const se3di_assembly *assembly)
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
-        const double part = c->touched[k] ? 1.0 : 0.5;
-        double turn[3], p[4];
         if (c->asleep[k]) {
             continue;
         }
-        se3di_scale(part * c->h, v + 3, turn);
-        se3di_add_scaled((1.0 - part) * c->h, v0 + 3, turn);
-        se3di_add_scaled(part * c->h, v, frame->r);
-        se3di_add_scaled((1.0 - part) * c->h, v0, frame->r);
-        memcpy(p, frame->p, sizeof p);
-        se3di_quat_rotate(p, turn, frame->p);
-        se3di_quat_normalize(frame->p, frame->p);
-        se3di_copy(v, frame->v);
-        se3di_copy(v + 3, frame->w);
-        se3di_frame_update(frame);
-        se3di_quat_rate(frame->p, frame->w, frame->pdot);
+        if (!c->drifts && !se3di_convex_leaps(c, k)) {
+            double mean[6];
+            for (int e = 0; e < 6; ++e) {
+                mean[e] = 0.5 * (v0[e] + v[e]);
+            }
+            move_body(c, frame, mean, 1.0);
+            move_body(c, frame, v, 0.0);
+        } else {
+            move_body(c, frame, v, c->drifts ? 0.5 : 1.0);
+        }
     }
 }
 
@@ -218,6 +230,20 @@ static se3d_status project(se3di_equations *equations, double t1)
         scale.spin = fmax(scale.spin, se3di_norm(frame->w));
     }
     return se3di_state_project(equations, t1, &scale, 1e-15, 0);
+}
+
+/* What is across the constraints in the chord of a step. */
+static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *chord = assembly->model->history + 1 + assembly->body_count;
+    for (uint32_t k = 0; k < assembly->body_count; ++k, chord += 3) {
+        if (c->drifts || !c->linked[k]) {
+            memset(chord, 0, 3 * sizeof *chord);
+        } else {
+            se3di_sub(c->v + 6 * (size_t)k + 3, assembly->model->frames[assembly->free_body[k]].w,
+                      chord);
+        }
+    }
 }
 
 /* Without constraints each body has its own equations; what sleeps has none. */
@@ -287,13 +313,21 @@ static void wait(const se3di_convex *c, se3di_model *model, double t1)
 static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double t1)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    SE3DI_TRY(aim(c, equations));
-    SE3DI_TRY(aim_rows(c, equations, t1));
+    const double t0 = assembly->model->time;
+    c->drifts = assembly->model->contacts.count == 0;
+    begin(c, assembly);
+    if (c->drifts) {
+        drift(c, assembly);
+    }
+    const double t = c->drifts ? 0.5 * (t0 + t1) : t0;
+    SE3DI_TRY(aim(c, equations, t));
+    SE3DI_TRY(aim_rows(c, equations, t));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
     se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
     move(c, assembly);
     SE3DI_TRY(project(equations, t1));
+    keep_chords(c, assembly);
     return conclude(c, equations, t1);
 }
 
@@ -392,7 +426,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 static void rouse(se3di_integration *integration)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
-    memset(assembly->model->history + 1, 0, assembly->body_count * sizeof(double));
+    memset(assembly->model->history + 1, 0, 4 * (size_t)assembly->body_count * sizeof(double));
 }
 
 /* What contacts do is counted by steps, not by powers. */

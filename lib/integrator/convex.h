@@ -27,17 +27,18 @@ enum {
 /* A point of contact in the step under way. */
 typedef struct se3di_convex_contact {
     const se3di_body_contact *record; /* of the state that the step begins with */
-    int32_t free[2];  /* its bodies, -1: fixed; while a step is solved their places */
-    int32_t coupling; /* of the two, -1: one is fixed */
-    int32_t way;      /* SE3DI_CONVEX_ */
-    double normal[3];
+    int32_t free[2];             /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling;            /* of the two, -1: one is fixed */
+    int32_t way;                 /* SE3DI_CONVEX_ */
+    double normal[3], arm[2][3]; /* from the bodies to the point, ground frame */
     double lever[2][9]; /* a turning of the body, in its frame, to the velocity of the point */
     double turn[2][9];  /* an impulse on the point to the turning of the body: J^-1 lever^T */
     double response[2]; /* of the velocity to an impulse: along the normal; at most across it */
     double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
     double rise, steepness;           /* p_n = rise - steepness v_n, if it is linear */
     double xi[3];                     /* stretch of the spring that sticks */
-    double drift[3];                  /* velocity of surface j on its body less that of i */
+    double drift[3];                  /* velocity of surface j on its body less that of i, */
+    double shift[3];                  /* and what the point will have moved to half a step on */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
     double tangential, drag;           /* k_t; -dy/dv_t */
@@ -93,19 +94,21 @@ typedef struct se3di_convex {
     int32_t *stirred; /* [free bodies], by places: the last sweep that changed its velocity */
     double *mobility; /* [10 * free bodies], by places: 1/m, J^-1 */
     double *own;      /* blocks of the mass, by places, 6 x 6 each */
+    double
+        *spin; /* [6 * free bodies], by places: the w that the step begins with, h w x J w in use */
     size_t place_capacity, root_capacity, number_capacity, order_capacity, mobility_capacity,
-        own_capacity, stirred_capacity;
+        own_capacity, spin_capacity, stirred_capacity;
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
-    uint8_t *bars;   /* [free bodies]: something acts on it that may change: it does not sleep, */
+    uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
     uint8_t *frozen; /* [bodies]: asleep or fixed */
     int32_t *nest;   /* [free bodies] */
     double *reach;   /* [free bodies]: of its shapes */
     size_t sleep_capacity, nest_capacity, reach_capacity;
     size_t asleep_count;
-    size_t changed; /* slopes of contacts since the preconditioner was made */
-    int32_t sleeps; /* it is wanted */
-    int32_t reserved;
+    size_t changed;    /* slopes of contacts since the preconditioner was made */
+    int32_t sleeps;    /* it is wanted */
+    int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
     double gravity[3]; /* at the start of the step */
     double h;
     uint64_t topology_version; /* that `kkt` was made for */
@@ -151,6 +154,16 @@ void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
  * from the bodies: no more than they held before and that. */
 void se3di_convex_store(const se3di_convex *c, se3di_model *model, double taken);
 
+/* convex_gyration.c: w that a torque [N m] makes of w0 in h, all in the frame of the body; */
+void se3di_convex_turn_freely(const double J[9], const double w0[3], const double torque[3],
+                              double h, double w[3]);
+/* the moments for v*; */
+void se3di_convex_gyrate_begin(se3di_convex *c, const se3di_assembly *assembly);
+/* they follow v, if they are not near already, and M (v - v*) with them; */
+void se3di_convex_gyrate(se3di_convex *c, const se3di_convex_island *island);
+/* what the moment takes from a free body in the step [J]. */
+double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body);
+
 /* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
 
@@ -163,6 +176,11 @@ void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island);
  * as they are with `impulse` and v; the cap of its friction there. Returns how much the impulse
  * would change. */
 double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3]);
+/* Whether a free body moves by the velocity at the end of a step in which something touches. */
+static inline int se3di_convex_leaps(const se3di_convex *c, size_t body)
+{
+    return c->touched[body] || c->linked[body];
+}
 /* contact by contact, as `c->order` says */
 static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_t k)
 {

@@ -15,12 +15,13 @@
 #include <math.h>
 #include <string.h>
 
-#define PI         3.1415926535897932384626433832795
-#define FEW_STEPS  32.0 /* the time of a contact that is an impact of one step */
-#define SETTLING   4.0  /* steps in which a resting contact comes to rest */
-#define RIGID      1e3  /* an impact of one step, over what moves its bodies as one */
-#define FAST_TIMES 2.0  /* an impact approaches so much faster than loads make it in a step */
-#define PASSED_ON  0.1 /* of what loads do across the normal: others may make it of them along it */
+#define PI          3.1415926535897932384626433832795
+#define FEW_STEPS   32.0 /* the time of a contact that is an impact of one step */
+#define SETTLING    4.0  /* steps in which a resting contact comes to rest */
+#define RIGID       1e3  /* an impact of one step, over what moves its bodies as one */
+#define FAST_TIMES  2.0  /* an impact approaches so much faster than loads make it in a step */
+#define WANDER_MOST 0.3  /* of its arm: what a point may move in a step on its way */
+#define PASSED_ON   0.1  /* of what loads do across the normal: others may make it so along it */
 
 void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3])
 {
@@ -40,6 +41,7 @@ void se3di_convex_slip(const se3di_convex_contact *contact, const double *v, dou
 {
     se3di_convex_velocity(contact, v, out);
     se3di_add(out, contact->drift, out);
+    se3di_add(out, contact->shift, out);
 }
 
 double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, double *slope)
@@ -196,6 +198,7 @@ static void set_geometry(se3di_convex_contact *c, const se3di_assembly *assembly
         double arm[3], tilde[9];
         c->free[k] = assembly->free_index[body];
         se3di_sub(r->point, frame->r, arm);
+        se3di_copy(arm, c->arm[k]);
         se3di_tilde(arm, tilde);
         se3di_mat_mul(tilde, frame->A, c->lever[k]);
         for (int e = 0; e < 9; ++e) {
@@ -263,8 +266,15 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     se3di_convex_set_law(c, model);
     set_drift(c, model, convex->h);
     se3di_convex_slip(c, convex->start, c->before);
+    if (record->kind == SE3DI_CONTACT_STEPPED) {
+        se3di_scale(0.5 * convex->h, record->roll, c->shift);
+    }
     choose_way(c, se3di_convex_materials(model, record), convex->h,
-               -se3di_dot(c->before, c->normal), loads_change(convex, c));
+               se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal),
+               loads_change(convex, c));
+    if (c->way == SE3DI_CONVEX_IMPACT) {
+        memset(c->shift, 0, sizeof c->shift);
+    }
     c->bound = convex->h * c->friction * fmax(0.0, se3di_dot(record->force, c->normal));
     for (int k = 0; k < 2; ++k) {
         if (c->free[k] >= 0) {
@@ -357,6 +367,24 @@ static void set_anchors(const se3di_model *model, se3di_body_contact *r, const d
     }
 }
 
+/* How the velocity of the two surfaces at the point changes as the point wanders on them, and turns
+ * with them: w x d(arm)/dt, of j less that of i. A point that jumps says nothing of it. */
+static void set_wander(const se3di_convex_contact *c, const se3di_model *model, double h,
+                       se3di_body_contact *r)
+{
+    for (int k = 0; k < 2; ++k) {
+        const se3di_frame *frame = &model->frames[model->shapes[k ? r->shape_j : r->shape_i].body];
+        double arm[3], w[3], moved[3], rate[3];
+        se3di_sub(r->point, frame->r, arm);
+        se3di_sub(arm, c->arm[k], moved);
+        if (se3di_norm(moved) < WANDER_MOST * se3di_norm(arm)) {
+            se3di_mul(frame->A, frame->w, w);
+            se3di_cross(w, moved, rate);
+            se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->roll);
+        }
+    }
+}
+
 /* A contact that acted in the step. */
 static void record_one(const se3di_convex *convex, const se3di_convex_contact *c,
                        const se3di_model *model, se3di_body_contact *r)
@@ -369,6 +397,9 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
     }
     set_anchors(model, r, xi);
+    if (c->way == SE3DI_CONVEX_SPRING) {
+        set_wander(c, model, convex->h, r);
+    }
 }
 
 static int is_same(const se3di_body_contact *a, const se3di_body_contact *b)

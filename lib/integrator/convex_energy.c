@@ -3,7 +3,7 @@
  * impulses,
  *
  *     h m g (v_1 - v_0)/2                 they move by v_1, gravity works on the mean of both ends
- *     h (w_1 - w*)/2 . (w_m x J w_m)      the moment of gyration is that without contacts
+ *     g (w_0 + w_1)/2                     the moment of gyration is known to 1e-9
  *
  * so that kinetic energy, potential and what was taken together stay the same to rounding. The
  * springs of a pair of shapes hold of it what they can, and what they gave back is no more than
@@ -11,7 +11,6 @@
  *                                                                     docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "math/inertia.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -19,7 +18,8 @@
 /* What the impulse takes from the bodies. */
 static double taken_by(const se3di_convex_contact *c)
 {
-    return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v));
+    return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v) -
+                   se3di_dot(c->impulse, c->shift));
 }
 
 /* What of it springs may hold: an impact lifts its bodies, too. */
@@ -31,23 +31,20 @@ static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
            (lifts ? 0.5 * lifted * convex->h * se3di_dot(c->impulse, convex->gravity) : 0.0);
 }
 
-/* What the step itself takes from a body that is touched. */
+/* What the step itself takes from a body. */
 static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, uint32_t k)
 {
-    const se3di_model *model = assembly->model;
-    const uint32_t body = assembly->free_body[k];
     const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
-    const double *aim = c->aim + 6 * (size_t)k;
-    double dv[3], wm[3], dw[3], J[9], L[3], gyro[3];
-    se3di_sub(v, v0, dv);
-    se3di_add(v0 + 3, aim + 3, wm);
-    se3di_scale(0.5, wm, wm);
-    se3di_sub(v + 3, aim + 3, dw);
-    se3di_inertia_matrix(model->bodies[body].J, J);
-    se3di_mul(J, wm, L);
-    se3di_cross(wm, L, gyro);
-    return 0.5 * c->h *
-           (model->bodies[body].mass * se3di_dot(c->gravity, dv) + se3di_dot(dw, gyro));
+    const double mass = assembly->model->bodies[assembly->free_body[k]].mass;
+    double sum = 0.0, dv[3];
+    if (!c->drifts && se3di_convex_leaps(c, k)) {
+        se3di_sub(v, v0, dv);
+        sum += 0.5 * c->h * mass * se3di_dot(c->gravity, dv);
+    }
+    if (c->touched[k] || assembly->row_count > 0) {
+        sum += se3di_convex_gyration_work(c, k);
+    }
+    return sum;
 }
 
 double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assembly)
@@ -57,7 +54,7 @@ double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assem
         sum += taken_by(&convex->contacts[k]);
     }
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
-        sum += convex->touched[k] && !convex->asleep[k] ? taken_from(convex, assembly, k) : 0.0;
+        sum += convex->asleep[k] ? 0.0 : taken_from(convex, assembly, k);
     }
     return sum;
 }

@@ -22,7 +22,8 @@ static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
                   {&c->stirred, &c->stirred_capacity, bodies + 1, sizeof *c->stirred},
                   {&c->pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs},
                   {&c->mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof *c->mobility},
-                  {&c->own, &c->own_capacity, 36 * bodies + 1, sizeof *c->own}};
+                  {&c->own, &c->own_capacity, 36 * bodies + 1, sizeof *c->own},
+                  {&c->spin, &c->spin_capacity, 6 * bodies + 1, sizeof *c->spin}};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k) {
         SE3DI_TRY(se3di_array_reserve_at(&assembly->model->allocator, arrays[k].place,
                                          arrays[k].capacity, arrays[k].count, arrays[k].size));

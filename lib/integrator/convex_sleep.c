@@ -25,25 +25,24 @@ static double *times_of(const se3di_assembly *assembly)
     return assembly->model->history + 1;
 }
 
-static void bar(const se3di_convex *c, const se3di_assembly *assembly, uint32_t body)
+static void link_body(const se3di_convex *c, const se3di_assembly *assembly, uint32_t body)
 {
     const int32_t free = assembly->free_index[body];
     if (free >= 0) {
-        c->bars[free] = 1;
+        c->linked[free] = 1;
     }
 }
 
-static void bar_all(const se3di_convex *c, const se3di_assembly *assembly)
+static void link_all(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    const int changes = se3di_model_gravity_varies(model) || model->state_count > 0;
-    memset(c->bars, changes, assembly->body_count);
+    memset(c->linked, 0, assembly->body_count);
     for (uint32_t k = 0; k < assembly->joint_body_count; ++k) {
-        c->bars[assembly->joint_body[k]] = 1;
+        c->linked[assembly->joint_body[k]] = 1;
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        bar(c, assembly, model->forces[k].body_i);
-        bar(c, assembly, model->forces[k].body_j);
+        link_body(c, assembly, model->forces[k].body_i);
+        link_body(c, assembly, model->forces[k].body_j);
     }
 }
 
@@ -76,12 +75,12 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
         se3di_array_reserve(allocator, &reach, &c->reach_capacity, bodies + 1, sizeof *c->reach);
     c->reach = reach;
     SE3DI_TRY(status);
-    c->bars = c->asleep + bodies;
-    c->frozen = c->bars + bodies;
+    c->linked = c->asleep + bodies;
+    c->frozen = c->linked + bodies;
     memset(c->asleep, 0, bodies);
     c->asleep_count = 0;
+    link_all(c, assembly);
     if (c->sleeps) {
-        bar_all(c, assembly);
         measure_reaches(c, assembly);
     }
     return SE3D_OK;
@@ -172,12 +171,15 @@ int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly)
 /* How long each body has been at rest. */
 static void count_times(const se3di_convex *c, const se3di_assembly *assembly)
 {
+    const se3di_model *model = assembly->model;
+    const int changes = se3di_model_gravity_varies(model) || model->state_count > 0;
     double *times = times_of(assembly);
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
-        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        const se3di_frame *frame = &model->frames[assembly->free_body[k]];
         const double turning =
             c->reach[k] < HUGE_VAL ? c->reach[k] * se3di_norm(frame->w) : HUGE_VAL;
-        const int rests = c->touched[k] && !c->bars[k] && se3di_norm(frame->v) + turning < SLOW;
+        const int stays = c->touched[k] && !c->linked[k] && !changes;
+        const int rests = stays && se3di_norm(frame->v) + turning < SLOW;
         if (!c->asleep[k]) {
             times[k] = rests ? times[k] + c->h : 0.0;
         }

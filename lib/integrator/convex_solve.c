@@ -48,6 +48,7 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->stirred, c->stirred_capacity, sizeof *c->stirred);
     se3di_free(allocator, c->mobility, c->mobility_capacity, sizeof *c->mobility);
     se3di_free(allocator, c->own, c->own_capacity, sizeof *c->own);
+    se3di_free(allocator, c->spin, c->spin_capacity, sizeof *c->spin);
     se3di_free(allocator, c->body, c->body_capacity, sizeof *c->body);
     se3di_free(allocator, c->coupling, c->coupling_capacity, sizeof *c->coupling);
     se3di_free(allocator, c->work, c->work_capacity, sizeof *c->work);
@@ -687,6 +688,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         const int waits = assembly->row_count == 0 && k > 0 && !(rest <= MAY_FOLLOW);
         if (k < FOLLOWING && !waits) {
             follow(c, island, k > 0 && rest <= GO_AHEAD);
+            se3di_convex_gyrate(c, island);
         }
         evaluate(c, island);
         const double before = rest;
@@ -719,6 +721,7 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
     SE3DI_TRY(prepare(c, equations));
     place(c, assembly, c->start, c->gradient);
     place(c, assembly, c->aim, c->carried);
+    se3di_convex_gyrate_begin(c, assembly);
     for (size_t k = 0; k < c->island_count; ++k) {
         SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
     }

@@ -226,7 +226,6 @@ static void a_stack_of_ten_stands_without_creep(void)
     scene_end(&s);
 }
 
-/* In a row; the first is pushed over. */
 /* Edges of equal boxes lie on each other: what touches must not change by turns of 1e-6. */
 static void a_pyramid_stands_without_creep(void)
 {
@@ -258,6 +257,7 @@ static void a_pyramid_stands_without_creep(void)
     scene_end(&s);
 }
 
+/* In a row; the first is pushed over. */
 static void set_up_dominoes(const scene *begun, int count, se3d_body *stones)
 {
     scene s = *begun;
@@ -543,7 +543,6 @@ static void the_audit_balances(void)
     CHECK(rest[0] < 1e-9 && rest[1] < 1e-8);
 }
 
-/* In a step of 5 ms a card of 1 mm falls 10 mm, onto a table or another card. */
 /* A ball wedges two boxes apart, which lean on walls: loads do not act along these normals, and
  * still the contacts are no impacts for ever, which have no spring. */
 static void what_is_pressed_across_gravity_rests_on_its_spring(void)
@@ -604,6 +603,119 @@ static void the_energy_of_a_rolling_disk_stays_a_number(void)
     scene_end(&s);
 }
 
+/* Euler's disk: the centre of a disk that leans by `tilt` rests while the disk rolls around on its
+ * rim, its axis about the vertical at the rate W. Then w = lam d, d from the centre to the point of
+ * contact, lam R = -W sin(tilt), and the torque of its weight makes the change W x L of its moment
+ * of momentum. */
+static double precession(double m, double R, double height, double tilt, double w[3])
+{
+    const double across = m * (3.0 * R * R + height * height) / 12.0, along = 0.5 * m * R * R;
+    const double s = sin(tilt), c = cos(tilt);
+    const double rate = -(s / R) * (c * across * R - s * along * 0.5 * height);
+    const double W = sqrt(m * G * (0.5 * height * s - R * c) / rate), lam = -W * s / R;
+    w[0] = lam * R;
+    w[1] = 0.0;
+    w[2] = -lam * 0.5 * height;
+    return W;
+}
+
+/* The angle by which its axis has turned about the vertical in a second, and its tilt. */
+static void roll_around(double R, double height, double tilt, double h, double result[3])
+{
+    enum { LOOKS = 50 };
+    const double m = 0.5, k = 1e6;
+    double w[3], last = 0.0, p[4];
+    const double W = precession(m, R, height, tilt, w);
+    const double r[3] = {0.0, 0.0, R * sin(tilt) + 0.5 * height * cos(tilt) - m * G / k};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.8, 0.3, k);
+    scene_floor(&s, 0.0);
+    const se3d_body disk = scene_disk(&s, m, R, height, r, tilt, w);
+    const double first = get_energy(&s);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, h, 0.0);
+    result[0] = -W;
+    for (int look = 1; look <= LOOKS && scene_run(&s, (double)look / LOOKS); ++look) {
+        CHECK(se3d_body_get_orientation(s.system, disk, p) == SE3D_OK);
+        const double x = p[1] * p[3] + p[0] * p[2], y = p[2] * p[3] - p[0] * p[1];
+        const double turn = remainder(atan2(y, x) - last, 2.0 * PI);
+        result[0] += turn;
+        last += turn;
+    }
+    result[1] = acos(1.0 - 2.0 * (p[1] * p[1] + p[2] * p[2])) - tilt;
+    result[2] = get_energy(&s) / first - 1.0;
+    scene_end(&s);
+}
+
+static void a_disk_rolls_around_on_its_rim_as_fast_as_euler_says(void)
+{
+    static const double tilt[3] = {0.15, 0.3, 0.6}, height[3] = {0.004, 0.004, 0.02};
+    for (int k = 0; k < 3; ++k) {
+        double at_2_ms[3], at_1_ms[3];
+        roll_around(0.1, height[k], tilt[k], 2e-3, at_2_ms);
+        roll_around(0.1, height[k], tilt[k], 1e-3, at_1_ms);
+        CHECK(fabs(at_1_ms[0]) < 0.02 && fabs(at_2_ms[0]) < 0.02); /* of 27 to 51 */
+        CHECK(fabs(at_1_ms[1]) < 1.5e-3 && fabs(at_1_ms[1]) < 0.7 * fabs(at_2_ms[1]));
+        CHECK(fabs(at_1_ms[2]) < 2e-4 && fabs(at_2_ms[2]) < 1.5e-3);
+    }
+}
+
+/* What joints and springs hold keeps its energy, whether something touches elsewhere or not. */
+static double energy_error(int has_spring, int has_contact, double h)
+{
+    const double start[3] = {has_spring ? 1.1 : 0.0, has_spring ? 0.0 : 0.2 * sin(0.3),
+                             has_spring ? 0.0 : 0.2 * cos(0.3)};
+    const double J[3] = {0.002, 0.002, 0.003}, spin[3] = {0.0, 0.0, 100.0};
+    const double about_x[3] = {1.0, 0.0, 0.0}, far[3] = {5.0, 5.0, 0.05 - 0.5 * G / 1e5};
+    double worst = 0.0;
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+    const se3d_body body = scene_body(&s, 1.0, J, start, scene_zero);
+    if (has_spring) {
+        se3d_tsda_def def = se3d_tsda_def_default();
+        se3d_force spring;
+        def.body_i = scene_ground(&s);
+        def.body_j = body;
+        def.k = 1e4;
+        def.l0 = 1.0;
+        CHECK(se3d_force_create_tsda(s.system, &def, &spring) == SE3D_OK);
+        CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
+    } else {
+        se3d_joint_def def = se3d_joint_def_default();
+        se3d_constraint joint;
+        def.body_i = scene_ground(&s);
+        def.body_j = body;
+        def.point_j[2] = -0.2;
+        scene_turn(&s, body, about_x, -0.3);
+        CHECK(se3d_body_set_angular_velocity(s.system, body, spin) == SE3D_OK);
+        CHECK(se3d_joint_create_spherical(s.system, &def, &joint) == SE3D_OK);
+    }
+    if (has_contact) {
+        scene_floor(&s, 0.0);
+        (void)scene_ball(&s, 0.05, 0.5, far, scene_zero);
+    }
+    const double first = get_energy(&s);
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, h, 0.0);
+    for (int k = 1; k <= 170 && scene_run(&s, 6e-3 * k); ++k) {
+        worst = fmax(worst, fabs(get_energy(&s) - first));
+    }
+    scene_end(&s);
+    return worst / (has_spring ? 50.0 : 15.0); /* of the spring; of the spin */
+}
+
+/* A top of 100 rad/s on a ball joint; a spring of 100 rad/s, which steps of the first order would
+ * make swing 1 / (1 - h w) times as far in each step. */
+static void tops_and_springs_keep_their_energy(void)
+{
+    static const double most[2][2] = {{5e-5, 2e-3}, {4e-3, 6e-2}};
+    for (int spring = 0; spring < 2; ++spring) {
+        for (int touches = 0; touches < 2; ++touches) {
+            const double coarse = energy_error(spring, touches, 2e-3);
+            const double fine = energy_error(spring, touches, 1e-3);
+            CHECK(fine < most[spring][touches]);
+            CHECK(fine < (touches ? 0.7 : 0.3) * coarse);
+        }
+    }
+}
+
+/* In a step of 5 ms a card of 1 mm falls 10 mm, onto a table or another card. */
 static void thin_cards_that_fall_fast_land(void)
 {
     const double size[3] = {0.09, 0.06, 0.001}, low[3] = {0.0, 0.0, 0.0005};
@@ -667,6 +779,8 @@ int main(void)
     RUN(the_audit_balances);
     RUN(what_is_pressed_across_gravity_rests_on_its_spring);
     RUN(the_energy_of_a_rolling_disk_stays_a_number);
+    RUN(a_disk_rolls_around_on_its_rim_as_fast_as_euler_says);
+    RUN(tops_and_springs_keep_their_energy);
     RUN(thin_cards_that_fall_fast_land);
     RUN(what_it_does_not_know_is_refused);
     return check_finish();
