@@ -63,6 +63,10 @@ $root/AMD/Source/amd_postorder.c $root/AMD/Source/amd_post_tree.c"
 cross() {
     needs "$1-gcc" "gcc-$3"
     needs "qemu-$2-static" qemu-user-static
+    echo '#include <stdint.h>' | "$1-gcc" -E - >/dev/null 2>&1 || {
+        echo "MISSING: headers of libc for $1 (package libc6-dev-*-cross)" >&2
+        exit 3
+    }
     compile="$1-gcc -O2 -static ${4:-}"
     run=qemu-$2-static
     unpack_amd
