@@ -54,6 +54,13 @@ static inline int check_finish(void)
     return check_failures > 0 || check_count == 0;
 }
 
+/* A folder of this test's own, for files; without ctest one that all share. */
+static inline const char *check_scratch(void)
+{
+    const char *folder = getenv("SE3D_SCRATCH_DIR");
+    return folder ? folder : "/tmp";
+}
+
 /* Whether all rows of long tables are wanted (SE3D_LONG in the environment), not a part of them. */
 static inline int check_is_long(void)
 {

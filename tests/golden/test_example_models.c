@@ -23,13 +23,12 @@ static example run_by(const char *name, const char *setting, const char *value,
     se3d_model_options options = se3d_model_options_default();
     se3d_run_options how = se3d_run_options_default();
     const char *source = getenv("SE3D_SOURCE_DIR");
-    const char *build = getenv("SE3D_BUILD_DIR");
     options.settings = settings;
     options.setting_count = setting ? 1 : 0;
     options.formulation = formulation;
     options.method = method;
     snprintf(path, sizeof path, "%s/examples/models/%s.yaml", source ? source : ".", name);
-    snprintf(folder, sizeof folder, "%s/golden/%s", build ? build : "/tmp", name);
+    snprintf(folder, sizeof folder, "%s/golden/%s", check_scratch(), name);
     how.directory = folder;
     e.status = se3d_model_read_file(path, &options, &e.model, &error);
     if (e.status >= 0) {

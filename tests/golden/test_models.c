@@ -150,10 +150,8 @@ static int run_model(const model_row *row, const char *formulation, char *path, 
     char folder[800];
     char name[800];
     const char *source = getenv("SE3D_SOURCE_DIR");
-    const char *build = getenv("SE3D_BUILD_DIR");
     snprintf(name, sizeof name, "%s/examples/models/%s.yaml", source ? source : ".", row->model);
-    snprintf(folder, sizeof folder, "%s/golden/%s/%s", build ? build : "/tmp", row->model,
-             formulation);
+    snprintf(folder, sizeof folder, "%s/golden/%s/%s", check_scratch(), row->model, formulation);
     options.analysis = row->analysis;
     options.formulation = formulation;
     options.method = row->method;

@@ -28,8 +28,7 @@ static world open_world(void)
 {
     world w = {NULL, NULL, NULL, ""};
     se3d_run_options how = se3d_run_options_default();
-    const char *build = getenv("SE3D_BUILD_DIR");
-    snprintf(w.folder, sizeof w.folder, "%s/misuse", build ? build : "/tmp");
+    snprintf(w.folder, sizeof w.folder, "%s/misuse", check_scratch());
     how.directory = w.folder;
     CHECK(se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &w.model, NULL) == SE3D_OK);
     CHECK(se3d_scene_create(w.model, &w.scene) == SE3D_OK);
@@ -106,9 +105,8 @@ static void a_model_keeps_its_system(void)
     se3d_system *copy = NULL;
     se3d_particles *own = NULL;
     se3d_run *run = NULL;
-    const char *build = getenv("SE3D_BUILD_DIR");
     char folder[800];
-    snprintf(folder, sizeof folder, "%s/misuse", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/misuse", check_scratch());
     IS(se3d_model_read_text(particle_text, strlen(particle_text), "g.yaml", NULL, &model, &error),
        SE3D_OK);
     fprintf(stderr, "%s", error.message);

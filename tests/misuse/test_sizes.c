@@ -145,11 +145,10 @@ static void open_import(place *p)
 
 static void open_place(place *p)
 {
-    const char *build = getenv("SE3D_BUILD_DIR");
     char folder[800];
     se3d_model_error error;
     se3d_run_options how = se3d_run_options_default();
-    snprintf(folder, sizeof folder, "%s/sizes", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/sizes", check_scratch());
     how.directory = folder;
     memset(p, 0, sizeof *p);
     open_pair(p);

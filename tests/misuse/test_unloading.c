@@ -42,13 +42,12 @@ static void load_run_and_close(const char *library, const char *path, const char
 
 static void threads_outlive_the_library(void)
 {
-    const char *build = getenv("SE3D_BUILD_DIR");
     char path[900];
-    snprintf(path, sizeof path, "%s/unloading.yaml", build ? build : ".");
+    snprintf(path, sizeof path, "%s/unloading.yaml", check_scratch());
     FILE *file = fopen(path, "wb");
     CHECK(file && fputs(heap, file) >= 0 && fclose(file) == 0);
     for (int k = 0; k < 3; ++k) {
-        load_run_and_close(SE3D_IO_FILE, path, build ? build : ".");
+        load_run_and_close(SE3D_IO_FILE, path, check_scratch());
     }
     remove(path);
 }

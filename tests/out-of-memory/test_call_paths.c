@@ -171,8 +171,7 @@ static const se3d_allocator allocator = {refusing_alloc, refusing_realloc, count
 static const char *results(void)
 {
     static char folder[800];
-    const char *build = getenv("SE3D_BUILD_DIR");
-    snprintf(folder, sizeof folder, "%s/out-of-memory", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/out-of-memory", check_scratch());
     return folder;
 }
 

@@ -6,9 +6,10 @@
 #include "check.h"
 #include "se3d/io.h"
 #include "support/counting.h"
+#include "support/scratch.h"
 
-#define MESH  "/tmp/se3d_test_model_run.obj"
-#define TABLE "/tmp/se3d_test_model_run.csv"
+#define MESH  "solid.obj"
+#define TABLE "stiffness.csv"
 #define HEAD                                                                                       \
     "se3d: 1\n"                                                                                    \
     "gravity: [0, \"0*t\", -9.81]\n"                                                               \
@@ -128,9 +129,7 @@ static se3d_status draw(se3d_model *model, const char *folder, se3d_scene **scen
 
 static attempt try_with(const char *text, support_counting counting)
 {
-    static const char *fallback = "/tmp";
     const se3d_allocator allocator = support_counting_allocator(&counting);
-    const char *build = getenv("SE3D_BUILD_DIR");
     char folder[800];
     se3d_model *model = NULL;
     se3d_scene *scene = NULL;
@@ -138,12 +137,13 @@ static attempt try_with(const char *text, support_counting counting)
     se3d_model_error error = {0, 0, ""};
     se3d_model_options options = se3d_model_options_default();
     se3d_run_options how = se3d_run_options_default();
-    snprintf(folder, sizeof folder, "%s/out-of-memory", build ? build : fallback);
+    snprintf(folder, sizeof folder, "%s/out-of-memory", check_scratch());
     options.allocator = &allocator;
     how.directory = folder;
     how.estimate = 1;
     attempt a = {SE3D_OK, 0, 0};
-    a.status = se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+    a.status =
+        se3d_model_read_text(text, strlen(text), scratch_path("m.yaml"), &options, &model, &error);
     if (a.status >= 0) {
         a.status = se3d_model_run(model, &how, &run, &error);
         a.files = se3d_run_count_files(run);
@@ -193,10 +193,10 @@ static void survive_failures_by_chance(const char *text, size_t files)
 
 static void reading_and_running_survives_every_failed_allocation(void)
 {
-    FILE *table = fopen(TABLE, "wb");
+    FILE *table = fopen(scratch_path(TABLE), "wb");
     CHECK(table && fputs("x,force\n-1,-9\n1,9\n", table) >= 0);
     CHECK(!table || fclose(table) == 0);
-    FILE *mesh = fopen(MESH, "wb");
+    FILE *mesh = fopen(scratch_path(MESH), "wb");
     CHECK(mesh && fputs("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
                         mesh) >= 0);
     if (mesh) {
@@ -218,8 +218,8 @@ static void reading_and_running_survives_every_failed_allocation(void)
         }
         survive_failures_by_chance(texts[m], whole.files);
     }
-    remove(MESH);
-    remove(TABLE);
+    scratch_remove(MESH);
+    scratch_remove(TABLE);
 }
 
 static const char swing[] =
@@ -247,7 +247,6 @@ static attempt resume_once(size_t k, int resume, int rows)
 {
     support_counting counting = {.fail_at = 0};
     const se3d_allocator allocator = support_counting_allocator(&counting);
-    const char *build = getenv("SE3D_BUILD_DIR");
     char folder[800];
     se3d_model *model = NULL;
     se3d_run *run = NULL;
@@ -256,7 +255,7 @@ static attempt resume_once(size_t k, int resume, int rows)
     se3d_model_options options = se3d_model_options_default();
     se3d_run_options how = se3d_run_options_default();
     stop s = {rows, 0};
-    snprintf(folder, sizeof folder, "%s/out-of-memory-resume", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/out-of-memory-resume", check_scratch());
     options.allocator = &allocator;
     how.directory = folder;
     how.checkpoint = 1e-9;
@@ -321,8 +320,8 @@ static void mistakes_are_reported_with_any_memory(void)
         options.allocator = &allocator;
         options.report = count_mistake;
         options.report_ctx = &count;
-        const se3d_status status =
-            se3d_model_read_text(text, strlen(text), "m.yaml", &options, &model, &error);
+        const se3d_status status = se3d_model_read_text(text, strlen(text), scratch_path("m.yaml"),
+                                                        &options, &model, &error);
         CHECK(status == SE3D_ERR_NO_MEMORY || (status == SE3D_ERR_MODEL && count > 0));
         CHECK(model == NULL && counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
         failed = counting.failed > 0;

@@ -60,7 +60,6 @@ static se3d_status use_table(se3d_study *study, const char *path, const char *ro
 static se3d_status use_study(se3d_study *study, char *rows, se3d_model_error *error)
 {
     static const char request[] = "{\"id\": \"a\", \"parameters\": {\"m\": 3}}";
-    const char *build = getenv("SE3D_BUILD_DIR");
     const char *row = "";
     const char *reply = "";
     char path[800];
@@ -73,7 +72,7 @@ static se3d_status use_study(se3d_study *study, char *rows, se3d_model_error *er
     if (status >= 0) {
         CHECK_CONTAINS(reply, "{\"id\": \"a\", \"measures\": {\"z\": ");
         snprintf(rows + strlen(rows), 600 - strlen(rows), "%s", reply);
-        snprintf(path, sizeof path, "%s/out-of-memory-study.csv", build ? build : "/tmp");
+        snprintf(path, sizeof path, "%s/out-of-memory-study.csv", check_scratch());
         char kept[300];
         snprintf(kept, sizeof kept, "%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
         status = use_table(study, path, kept, error);

@@ -181,8 +181,7 @@ static void check_refusals(void)
 
 int main(void)
 {
-    const char *folder = getenv("SE3D_BUILD_DIR");
-    snprintf(path, sizeof path, "%s/tests/playground_model.yaml", folder ? folder : ".");
+    snprintf(path, sizeof path, "%s/playground_model.yaml", check_scratch());
     check_opening();
     check_orders();
     check_saving();

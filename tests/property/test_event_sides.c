@@ -151,14 +151,13 @@ static void channels_at_rounding_do_not_fire_and_others_do(void)
                                  "rattle", "verlet"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; ++k) {
         char text[1000], folder[800];
-        const char *build = getenv("SE3D_BUILD_DIR");
         se3d_model *model = NULL;
         se3d_run *run = NULL;
         se3d_run_options how = se3d_run_options_default();
         snprintf(text, sizeof text,
                  "%sanalysis: {type: dynamics, duration: 3, step: 0.01, method: %s}\n", pendulum,
                  names[k]);
-        snprintf(folder, sizeof folder, "%s/event_sides", build ? build : "/tmp");
+        snprintf(folder, sizeof folder, "%s/event_sides", check_scratch());
         how.directory = folder;
         CHECK(se3d_model_read_text(text, strlen(text), "a.yaml", NULL, &model, NULL) == SE3D_OK);
         CHECK(se3d_model_run(model, &how, &run, NULL) >= 0);

@@ -6,13 +6,17 @@
 #include "check.h"
 #include "se3d/io.h"
 
-#define SCRATCH_FOLDER "/tmp/"
+/* @return the path, valid until the next call */
+static inline const char *scratch_path(const char *name)
+{
+    static char path[1000];
+    snprintf(path, sizeof path, "%s/%s", check_scratch(), name);
+    return path;
+}
 
 static inline void scratch_write(const char *name, const void *bytes, size_t size)
 {
-    char path[200];
-    snprintf(path, sizeof path, SCRATCH_FOLDER "%s", name);
-    FILE *file = fopen(path, "wb");
+    FILE *file = fopen(scratch_path(name), "wb");
     CHECK(file && fwrite(bytes, 1, size, file) == size);
     if (file) {
         fclose(file);
@@ -21,9 +25,7 @@ static inline void scratch_write(const char *name, const void *bytes, size_t siz
 
 static inline void scratch_remove(const char *name)
 {
-    char path[200];
-    snprintf(path, sizeof path, SCRATCH_FOLDER "%s", name);
-    remove(path);
+    remove(scratch_path(name));
 }
 
 /* A model as if it lay in the folder. @return NULL after a failure, with its message */
@@ -31,7 +33,7 @@ static inline se3d_model *scratch_read_model(const char *text, se3d_model_error 
 {
     se3d_model *model = NULL;
     const se3d_status status = se3d_model_read_text(
-        text, strlen(text), SCRATCH_FOLDER "se3d_test.yaml", NULL, &model, error);
+        text, strlen(text), scratch_path("se3d_test.yaml"), NULL, &model, error);
     CHECK((status == SE3D_OK) == (model != NULL));
     return model;
 }

@@ -38,7 +38,7 @@ static void many_pieces_have_a_tree(void)
 {
     char path[512];
     se3di_hdf5 h;
-    snprintf(path, sizeof path, "%s", kept ? kept : SCRATCH_FOLDER "se3d_pieces.h5");
+    snprintf(path, sizeof path, "%s", kept ? kept : scratch_path("se3d_pieces.h5"));
     if (!se3di_deflate_is_there()) {
         CHECK(!se3di_hdf5_open(&h, NULL, path, 6) && errno == ENOTSUP);
         return;
@@ -69,7 +69,7 @@ static void values_come_in_their_order(void)
     for (int way = 0; way < (se3di_deflate_is_there() ? 12 : 6); ++way) {
         const int k = way % 6 < 5 ? way % 6 : 0, gap = way % 6 == 5;
         se3di_hdf5 h;
-        CHECK(se3di_hdf5_open(&h, NULL, SCRATCH_FOLDER "se3d_order.h5", way / 6));
+        CHECK(se3di_hdf5_open(&h, NULL, scratch_path("se3d_order.h5"), way / 6));
         const size_t array = se3di_hdf5_add_array(&h, 0, "a", &shape);
         se3di_hdf5_write(&h, array, 0, bytes, parts[k][0]);
         se3di_hdf5_write(&h, array, parts[k][0] + (size_t)gap, bytes, parts[k][1] - (size_t)gap);
@@ -77,7 +77,7 @@ static void values_come_in_their_order(void)
         CHECK(se3di_hdf5_close(&h) == is_good);
         CHECK(is_good || errno == EIO);
     }
-    se3di_file_remove(SCRATCH_FOLDER "se3d_order.h5");
+    se3di_file_remove(scratch_path("se3d_order.h5"));
 }
 
 int main(int argc, char **argv)

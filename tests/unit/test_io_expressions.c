@@ -75,8 +75,7 @@ static void summaries_are_those_of_the_motion(void)
     se3d_run *run = NULL;
     se3d_run_options how = se3d_run_options_default();
     se3d_run_summary s[4];
-    const char *build = getenv("SE3D_BUILD_DIR");
-    snprintf(folder, sizeof folder, "%s/expressions", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/expressions", check_scratch());
     how.directory = folder;
     se3d_model *model = read_text(
         BALL "events:\n  - {name: level, channel: \"ball.position.z + ball.position.x\", value: "

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Mirrored parts with the joints, forces and shapes that know left and right: they move as
  * a mirror shows the given ones, without contacts to the last bit. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <sys/stat.h>
+
 #include "check.h"
 #include "se3d/io.h"
 #include "support/scratch.h"
@@ -261,9 +265,9 @@ static void what_a_mirror_or_a_limit_forbids_is_told(void)
          "include: [{file: se3d_zoo.yaml, mirror: y}]", "zoo.yaml:4:47: forces[0].value[2]"},
         {"bodies: [{name: ound, fixed: true}]\n", "include: [{file: se3d_zoo.yaml, prefix: gr}]",
          "is that of the ground"},
-        {"include: [{file: ../tmp/se3d_zoo.yaml}]\n", "include: [{file: se3d_zoo.yaml}]",
+        {"include: [{file: se3d_zoo/../se3d_zoo.yaml}]\n", "include: [{file: se3d_zoo.yaml}]",
          "17 levels deep, at most 16"},
-        {"include: [{file: ../tmp/se3d_zoo.yaml}, {file: ./se3d_zoo.yaml}]\n",
+        {"include: [{file: se3d_zoo/../se3d_zoo.yaml}, {file: ./se3d_zoo.yaml}]\n",
          "include: [{file: se3d_zoo.yaml}]", "more than 1000 files"},
         {"", "parts: {p: {}}\ninstances: [{part: p, repeat: 1e5}, {part: p}]",
          "instances[1]: makes more than 100000 parts"},
@@ -272,6 +276,7 @@ static void what_a_mirror_or_a_limit_forbids_is_told(void)
          "instances: [{part: p, repeat: 9e4}]",
          "makes more than 100000 parts"},
     };
+    (void)mkdir(scratch_path("se3d_zoo"), 0700);
     for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
         char text[800];
         se3d_model_error error = {0};
@@ -293,6 +298,7 @@ int main(void)
     RUN(a_part_has_the_units_of_its_own_file);
     RUN(what_a_mirror_or_a_limit_forbids_is_told);
     scratch_remove("se3d_zoo.yaml");
+    scratch_remove("se3d_zoo");
     scratch_remove("se3d_tet.obj");
     scratch_remove("se3d_tetc.obj");
     return check_finish();

@@ -33,8 +33,7 @@ static se3d_model *run_model(const char *text, const char *folder, se3d_status *
 static const char *results_folder(void)
 {
     static char folder[800];
-    const char *build = getenv("SE3D_BUILD_DIR");
-    snprintf(folder, sizeof folder, "%s/io-particles", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/io-particles", check_scratch());
     return folder;
 }
 

@@ -52,12 +52,11 @@ static void set_law(se3d_model *model)
 static size_t run(const char *head, const char *output, void (*prepare)(se3d_model *))
 {
     char text[4000], folder[800];
-    const char *build = getenv("SE3D_BUILD_DIR");
     se3d_model *model = NULL;
     se3d_run *done = NULL;
     se3d_model_error error;
     se3d_run_options how = se3d_run_options_default();
-    snprintf(folder, sizeof folder, "%s/io-rows", build ? build : "/tmp");
+    snprintf(folder, sizeof folder, "%s/io-rows", check_scratch());
     snprintf(text, sizeof text, "%s%s", head, output);
     how.directory = folder;
     se3d_status status = se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error);

@@ -36,8 +36,8 @@ static se3d_model *open(const char *tir, const char *text, heard *h, se3d_model_
     options.log_ctx = h;
     h->text[0] = '\0';
     scratch_write(FILE_NAME, tir, strlen(tir));
-    (void)se3d_model_read_text(text, strlen(text), SCRATCH_FOLDER "se3d_test.yaml", &options,
-                               &model, error);
+    (void)se3d_model_read_text(text, strlen(text), scratch_path("se3d_test.yaml"), &options, &model,
+                               error);
     scratch_remove(FILE_NAME);
     return model;
 }

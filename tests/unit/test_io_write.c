@@ -19,8 +19,7 @@ static const char *source_folder(void)
 
 static const char *file_of(const char *name, char *path, size_t size)
 {
-    const char *build = getenv("SE3D_BUILD_DIR");
-    snprintf(path, size, "%s/%s", build ? build : "/tmp", name);
+    snprintf(path, size, "%s/%s", check_scratch(), name);
     return path;
 }
 

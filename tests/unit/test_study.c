@@ -530,9 +530,8 @@ static void tables_have_a_row_for_each_sample(void)
                 {"h,v\n1,nan\n", ":2: v is `nan`, must be a finite number"},
                 {"h,v\n1,1e999\n", ":2: v is `1e999`"},
                 {"h,v\n1,\n", ":2: v is ``"}};
-    const char *build = getenv("SE3D_BUILD_DIR");
     char path[800], text[2000];
-    snprintf(path, sizeof path, "%s/study_table.csv", build ? build : "/tmp");
+    snprintf(path, sizeof path, "%s/study_table.csv", check_scratch());
     snprintf(text, sizeof text,
              "%sstudy: {table: %s, measures: {z: {initial: block.position.z}}}\n", BLOCK, path);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
