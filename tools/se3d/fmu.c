@@ -35,14 +35,12 @@ static int find_object(char *path, size_t size)
 #else
     static const char *const places[] = {SE3D_FMU_PLACE, "../lib"};
     char program[PATH_SIZE];
-    char self[PATH_SIZE];
     const char *given = getenv("SE3D_FMU_OBJECT");
     if (given) {
         snprintf(path, size, "%s", given);
         return 1;
     }
-    if (!path_get_absolute("/proc/self/exe", self, sizeof self) ||
-        !path_get_folder(self, program, sizeof program)) {
+    if (!process_get_own_folder(program, sizeof program)) {
         return 0;
     }
     for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {

@@ -11,6 +11,7 @@
 #include "io/document/guess.h"
 #include "options.h"
 #include "outcome.h"
+#include "process.h"
 
 int command_report_unknown(const char *name)
 {
@@ -104,6 +105,9 @@ int main(int argc, char **argv)
 {
     hold_closed_streams();
     survive_limits();
+    if (argc > 0) {
+        process_set_own_name(argv[0]);
+    }
     if (argc < 2) {
         command_print_overview(stderr);
         return EXIT_USAGE;

@@ -40,15 +40,13 @@ static int find_viewer(char *folder, size_t size)
     static const char *const places[] = {"../share/se3d/viewer", "../../../tools/viewer",
                                          "../../tools/viewer"};
     char program[PAGE_PATH];
-    char self[PAGE_PATH];
     char file[PAGE_PATH + 64];
     const char *given = getenv("SE3D_VIEWER");
     if (given) {
         snprintf(folder, size, "%s", given);
         return 1;
     }
-    if (!path_get_absolute("/proc/self/exe", self, sizeof self) ||
-        !path_get_folder(self, program, sizeof program)) {
+    if (!process_get_own_folder(program, sizeof program)) {
         return 0;
     }
     for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {

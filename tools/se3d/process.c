@@ -97,7 +97,8 @@ static int is_separator(char c)
 #endif
 }
 
-int process_is_found(const char *name)
+/* Where a program is: `name` itself if it is a path, else on the PATH. @return false: nowhere. */
+static int find_program(const char *name, char *path, size_t size)
 {
 #if defined(_WIN32)
     const char *between = ";";
@@ -105,20 +106,43 @@ int process_is_found(const char *name)
     const char *between = ":";
 #endif
     const char *at = getenv("PATH");
-    char path[PATH_SIZE];
     if (strchr(name, '/')) {
-        return is_executable(name);
+        const int used = snprintf(path, size, "%s", name);
+        return used > 0 && (size_t)used < size && is_executable(path);
     }
     while (at && *at) {
         const size_t length = strcspn(at, between);
-        const int used = snprintf(path, sizeof path, "%.*s/%s", (int)length, at, name);
-        if (used > 0 && (size_t)used < sizeof path && is_executable(path)) {
+        const int used = snprintf(path, size, "%.*s/%s", (int)length, at, name);
+        if (used > 0 && (size_t)used < size && is_executable(path)) {
             return 1;
         }
         at += length;
         at += *at ? 1 : 0;
     }
     return 0;
+}
+
+int process_is_found(const char *name)
+{
+    char path[PATH_SIZE];
+    return find_program(name, path, sizeof path);
+}
+
+static const char *own_name = ""; /* by which this program was called */
+
+void process_set_own_name(const char *name)
+{
+    own_name = name;
+}
+
+int process_get_own_folder(char *folder, size_t size)
+{
+    char path[PATH_SIZE];
+    char real[PATH_SIZE];
+    const int is_known = path_get_absolute("/proc/self/exe", real, sizeof real) ||
+                         (own_name[0] && find_program(own_name, path, sizeof path) &&
+                          path_get_absolute(path, real, sizeof real));
+    return is_known && path_get_folder(real, folder, size);
 }
 
 int process_report_missing(const char *command, const char *name, const char *package)

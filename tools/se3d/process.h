@@ -12,6 +12,13 @@ int process_is_found(const char *name);
  * code, -1 if it could not be run. */
 int process_run(const char *folder, const char *const *words);
 
+/* argv[0], kept as it is. */
+void process_set_own_name(const char *name);
+
+/* The folder of this program: by /proc, or by the name that it was called by. @return false: it is
+ * not known. */
+int process_get_own_folder(char *folder, size_t size);
+
 /* Say that a program is missing and how to get it. @return EXIT_FAILED. */
 int process_report_missing(const char *command, const char *name, const char *package);
 
