@@ -122,7 +122,7 @@ class Live:
         return self.next()
 
     def cpu(self):
-        """Ticks; 0 where nothing tells them."""
+        """Ticks; 0 if the system does not tell them."""
         if not os.path.exists("/proc/self/stat"):
             return 0
         with open(f"/proc/{self.process.pid}/stat") as file:
