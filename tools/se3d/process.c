@@ -97,7 +97,7 @@ static int is_separator(char c)
 #endif
 }
 
-/* The place of a program: `name` itself if it is a path, else on the PATH. @return false: nowhere. */
+/* The place of a program: `name` if it is a path, else on the PATH. @return false: nowhere. */
 static int find_program(const char *name, char *path, size_t size)
 {
 #if defined(_WIN32)
