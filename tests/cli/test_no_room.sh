@@ -7,6 +7,7 @@
 cd "$dir" || exit 1
 case $source in /*) ;; *) source=$OLDPWD/$source ;; esac
 models=$source/examples/models
+export SE3D_CACHE="${SE3D_BUILD_DIR:-$dir}/viewer"
 
 cat >m.yaml <<'END'
 se3d: 1
@@ -93,9 +94,14 @@ refused() {
     fi
 }
 
-commands='run study report sketch view import write new fmt fmu'
-if [ ! -e "${SE3D_BUILD_DIR:-.}/fmi" ] && ! "$program" fmu m.yaml -o x.fmu -q 2>/dev/null; then
-    commands='run study report sketch view import write new fmt'
+commands='run study report sketch import write new fmt'
+if [ -e "${SE3D_BUILD_DIR:-.}/fmi" ] || "$program" fmu m.yaml -o x.fmu -q 2>/dev/null; then
+    commands="$commands fmu"
+fi
+if [ -f "$SE3D_CACHE/three.js" ] || command -v npm >/dev/null 2>&1; then
+    commands="$commands view"
+else
+    echo 'SKIPPED: no three.js and no npm: pages were not tried' >&2
 fi
 mkdir whole got
 for command in $commands; do
