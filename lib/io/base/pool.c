@@ -124,6 +124,28 @@ void *se3di_iopool_grow(se3di_iopool *pool, void *array, size_t count, size_t *c
     return grown;
 }
 
+bool se3di_iobytes_put(se3di_iobytes *bytes, se3di_iopool *pool, const void *data, size_t size)
+{
+    if (size == 0) {
+        return true;
+    }
+    if (size > bytes->capacity - bytes->count) {
+        const size_t capacity = 2 * (bytes->count + size) + 64;
+        unsigned char *grown = se3di_iopool_alloc(pool, capacity);
+        if (!grown) {
+            return false;
+        }
+        if (bytes->count > 0) {
+            memcpy(grown, bytes->data, bytes->count);
+        }
+        bytes->data = grown;
+        bytes->capacity = capacity;
+    }
+    memcpy(bytes->data + bytes->count, data, size);
+    bytes->count += size;
+    return true;
+}
+
 bool se3di_iotext_put(se3di_iotext *t, se3di_iopool *pool, const char *text)
 {
     const size_t length = strlen(text);

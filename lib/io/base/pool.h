@@ -44,6 +44,15 @@ typedef struct se3di_iotext {
 /* @return false: no memory, nothing changed. */
 bool se3di_iotext_put(se3di_iotext *t, se3di_iopool *pool, const char *text);
 
+/* Bytes that grow in a pool. */
+typedef struct se3di_iobytes {
+    unsigned char *data;
+    size_t count, capacity;
+} se3di_iobytes;
+
+/* Append bytes. @return false: no memory, nothing changed. */
+bool se3di_iobytes_put(se3di_iobytes *bytes, se3di_iopool *pool, const void *data, size_t size);
+
 /* Names to indices: open addressing over texts that the caller keeps. */
 typedef struct se3di_ionames {
     struct se3di_ionames_entry {

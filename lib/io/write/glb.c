@@ -27,29 +27,12 @@ void se3di_glb_init(se3di_glb *glb, se3di_iopool *pool)
     }
 }
 
-void se3di_glb_put_bytes(se3di_glb *glb, se3di_bytes *bytes, const void *data, size_t size)
+void se3di_glb_put_bytes(se3di_glb *glb, se3di_iobytes *bytes, const void *data, size_t size)
 {
-    size_t capacity = bytes->capacity ? bytes->capacity : 1024;
-    while (capacity < bytes->count + size) {
-        capacity *= 2;
-    }
-    if (capacity != bytes->capacity) {
-        char *grown = se3di_iopool_alloc(glb->pool, capacity);
-        if (!grown) {
-            glb->failed = true;
-            return;
-        }
-        if (bytes->count > 0) {
-            memcpy(grown, bytes->data, bytes->count);
-        }
-        bytes->data = grown;
-        bytes->capacity = capacity;
-    }
-    memcpy(bytes->data + bytes->count, data, size);
-    bytes->count += size;
+    glb->failed = glb->failed || !se3di_iobytes_put(bytes, glb->pool, data, size);
 }
 
-void se3di_glb_put(se3di_glb *glb, se3di_bytes *bytes, const char *format, ...)
+void se3di_glb_put(se3di_glb *glb, se3di_iobytes *bytes, const char *format, ...)
 {
     char text[1024];
     va_list list;
@@ -62,7 +45,7 @@ void se3di_glb_put(se3di_glb *glb, se3di_bytes *bytes, const char *format, ...)
     }
 }
 
-void se3di_glb_put_text(se3di_glb *glb, se3di_bytes *bytes, const char *text)
+void se3di_glb_put_text(se3di_glb *glb, se3di_iobytes *bytes, const char *text)
 {
     se3di_glb_put_bytes(glb, bytes, "\"", 1);
     while (*text) { /* valid UTF-8 whatever the bytes are */
@@ -81,7 +64,7 @@ void se3di_glb_put_text(se3di_glb *glb, se3di_bytes *bytes, const char *text)
     se3di_glb_put_bytes(glb, bytes, "\"", 1);
 }
 
-void se3di_glb_put_number(se3di_glb *glb, se3di_bytes *bytes, double value)
+void se3di_glb_put_number(se3di_glb *glb, se3di_iobytes *bytes, double value)
 {
     char text[48];
     const size_t length = se3di_number_format(isfinite(value) ? (double)(float)value : 0.0, text);
@@ -95,12 +78,16 @@ static void put_little(se3di_glb *glb, uint32_t value, size_t size)
     se3di_glb_put_bytes(glb, &glb->binary, bytes, size);
 }
 
+/* Up to a multiple of four bytes. */
+static void pad(se3di_glb *glb, se3di_iobytes *bytes, const char *with)
+{
+    se3di_glb_put_bytes(glb, bytes, with, (4 - bytes->count % 4) % 4);
+}
+
 static long begin(se3di_glb *glb, size_t size, int target)
 {
     const bool first = glb->accessor_count == 0;
-    while (glb->binary.count % 4 != 0) {
-        put_little(glb, 0, 1);
-    }
+    pad(glb, &glb->binary, "\0\0\0");
     se3di_glb_put(glb, &glb->views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu",
                   first ? "" : ",", glb->binary.count, size);
     if (target != 0) {
@@ -440,7 +427,7 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part)
     return glb->mesh_count++;
 }
 
-static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
+static void write_chunk(FILE *file, const se3di_iobytes *bytes, const char *type)
 {
     unsigned char head[8];
     se3di_little_put(head, (uint32_t)bytes->count, 4);
@@ -449,7 +436,7 @@ static void write_chunk(FILE *file, const se3di_bytes *bytes, const char *type)
     fwrite(bytes->data, 1, bytes->count, file);
 }
 
-static void write_file(FILE *file, const se3di_bytes *json, const se3di_bytes *binary)
+static void write_file(FILE *file, const se3di_iobytes *json, const se3di_iobytes *binary)
 {
     unsigned char head[12] = {'g', 'l', 'T', 'F'};
     se3di_little_put(head + 4, 2, 4);
@@ -459,30 +446,26 @@ static void write_file(FILE *file, const se3di_bytes *json, const se3di_bytes *b
     write_chunk(file, binary, "BIN\0");
 }
 
-bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, FILE *file)
+bool se3di_glb_write(se3di_glb *glb, const se3di_iobytes *rest, FILE *file)
 {
     static const char *const names[] = {",\"bufferViews\":[", "],\"accessors\":[", "],\"meshes\":[",
                                         "],\"materials\":["};
-    const se3di_bytes *const parts[] = {&glb->views, &glb->accessors, &glb->meshes,
-                                        &glb->materials};
-    se3di_bytes json = {NULL, 0, 0};
-    while (glb->binary.count % 4 != 0) {
-        put_little(glb, 0, 1);
-    }
+    const se3di_iobytes *const parts[] = {&glb->views, &glb->accessors, &glb->meshes,
+                                          &glb->materials};
+    se3di_iobytes json = {NULL, 0, 0};
+    pad(glb, &glb->binary, "\0\0\0");
     se3di_glb_put(glb, &json,
                   "{\"asset\":{\"version\":\"2.0\",\"generator\":\"libse3d %s\"},"
                   "\"buffers\":[{\"byteLength\":%zu}]",
                   se3d_version_get_text(), glb->binary.count);
     for (size_t k = 0; k < 4; ++k) {
         se3di_glb_put(glb, &json, "%s", names[k]);
-        se3di_glb_put_bytes(glb, &json, parts[k]->data ? parts[k]->data : "", parts[k]->count);
+        se3di_glb_put_bytes(glb, &json, parts[k]->data, parts[k]->count);
     }
     se3di_glb_put(glb, &json, "]");
     se3di_glb_put_bytes(glb, &json, rest->data, rest->count);
     se3di_glb_put(glb, &json, "}");
-    while (json.count % 4 != 0) {
-        se3di_glb_put(glb, &json, " ");
-    }
+    pad(glb, &json, "   ");
     if (glb->failed) {
         errno = ENOMEM;
         return false;

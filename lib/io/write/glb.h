@@ -8,12 +8,6 @@
 #include "io/base/pool.h"
 #include "io/write/drawing.h"
 
-typedef struct se3di_bytes {
-    char *data;
-    size_t count;
-    size_t capacity;
-} se3di_bytes;
-
 typedef enum se3di_glb_type {
     SE3DI_GLB_SCALAR = 1,
     SE3DI_GLB_VEC3 = 3,
@@ -22,11 +16,11 @@ typedef enum se3di_glb_type {
 
 typedef struct se3di_glb {
     se3di_iopool *pool;
-    se3di_bytes binary;
-    se3di_bytes views;
-    se3di_bytes accessors;
-    se3di_bytes meshes;
-    se3di_bytes materials;
+    se3di_iobytes binary;
+    se3di_iobytes views;
+    se3di_iobytes accessors;
+    se3di_iobytes meshes;
+    se3di_iobytes materials;
     size_t accessor_count;
     size_t mesh_count;
     /* accessors of the unit meshes: positions, normals, indices; -1: not made yet or none */
@@ -47,13 +41,13 @@ typedef struct se3di_glb {
 
 void se3di_glb_init(se3di_glb *glb, se3di_iopool *pool);
 /* Append formatted text. */
-void se3di_glb_put(se3di_glb *glb, se3di_bytes *bytes, const char *format, ...)
+void se3di_glb_put(se3di_glb *glb, se3di_iobytes *bytes, const char *format, ...)
     SE3DI_IO_FORMAT(3, 4);
-void se3di_glb_put_bytes(se3di_glb *glb, se3di_bytes *bytes, const void *data, size_t size);
+void se3di_glb_put_bytes(se3di_glb *glb, se3di_iobytes *bytes, const void *data, size_t size);
 /* Append a text as a JSON string. */
-void se3di_glb_put_text(se3di_glb *glb, se3di_bytes *bytes, const char *text);
+void se3di_glb_put_text(se3di_glb *glb, se3di_iobytes *bytes, const char *text);
 /* Append a number with a point in every locale. */
-void se3di_glb_put_number(se3di_glb *glb, se3di_bytes *bytes, double value);
+void se3di_glb_put_number(se3di_glb *glb, se3di_iobytes *bytes, double value);
 
 /* Add values as floats; `target` is the buffer's use: 34962 vertices, 0 other. @return accessor. */
 long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se3di_glb_type type,
@@ -65,6 +59,6 @@ size_t se3di_glb_add_mesh(se3di_glb *glb, const se3di_part *part);
 
 /* Write all to a file that is open: `rest` is the JSON besides buffers, meshes and materials,
  * beginning with a comma. @return false: errno says why, unless the file does (ferror). */
-bool se3di_glb_write(se3di_glb *glb, const se3di_bytes *rest, FILE *file);
+bool se3di_glb_write(se3di_glb *glb, const se3di_iobytes *rest, FILE *file);
 
 #endif

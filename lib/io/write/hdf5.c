@@ -37,11 +37,6 @@ enum {
     TREE_ENTRIES = 64 /* of a node: the format's own number */
 };
 
-typedef struct bytes {
-    unsigned char *data;
-    size_t count, capacity;
-} bytes;
-
 /* A piece of an array; or a node of its tree, by the first piece below it. */
 typedef struct piece {
     uint64_t address, first;
@@ -53,14 +48,14 @@ struct se3di_hdf5_node {
     size_t parent;
     bool is_group;
     se3di_hdf5_shape shape;
-    uint64_t data, size; /* of an array */
-    uint64_t header;     /* where it is, once written */
-    uint64_t written;    /* bytes of values so far */
-    uint64_t piece_size; /* of an array in pieces, [bytes]; 0: it is in one */
-    bytes waiting;       /* for a piece to be complete */
+    uint64_t data, size;   /* of an array */
+    uint64_t header;       /* where it is, once written */
+    uint64_t written;      /* bytes of values so far */
+    uint64_t piece_size;   /* of an array in pieces, [bytes]; 0: it is in one */
+    se3di_iobytes waiting; /* for a piece to be complete */
     piece *pieces;
     size_t piece_count, piece_capacity;
-    bytes attributes; /* their messages */
+    se3di_iobytes attributes; /* their messages */
     uint64_t children;
 };
 
@@ -71,29 +66,14 @@ static void fail(se3di_hdf5 *h, int why)
 
 /* --- numbers as bytes --- */
 
-static void add(se3di_hdf5 *h, bytes *b, const void *data, size_t size)
+static void add(se3di_hdf5 *h, se3di_iobytes *b, const void *data, size_t size)
 {
-    if (h->failure != 0 || size == 0) {
-        return;
+    if (h->failure == 0 && !se3di_iobytes_put(b, &h->pool, data, size)) {
+        fail(h, ENOMEM);
     }
-    if (b->count + size > b->capacity) {
-        const size_t capacity = 2 * (b->count + size) + 64;
-        unsigned char *grown = se3di_iopool_alloc(&h->pool, capacity);
-        if (!grown) {
-            fail(h, ENOMEM);
-            return;
-        }
-        if (b->count > 0) {
-            memcpy(grown, b->data, b->count);
-        }
-        b->data = grown;
-        b->capacity = capacity;
-    }
-    memcpy(b->data + b->count, data, size);
-    b->count += size;
 }
 
-static void add_word(se3di_hdf5 *h, bytes *b, uint64_t bits, size_t size)
+static void add_word(se3di_hdf5 *h, se3di_iobytes *b, uint64_t bits, size_t size)
 {
     unsigned char word[8];
     se3di_little_put(word, bits, size);
@@ -183,7 +163,7 @@ static uint32_t checksum(const unsigned char *data, size_t size)
 
 /* --- messages --- */
 
-static void add_message(se3di_hdf5 *h, bytes *to, int type, const bytes *body)
+static void add_message(se3di_hdf5 *h, se3di_iobytes *to, int type, const se3di_iobytes *body)
 {
     if (body->count > MESSAGE_MOST) {
         fail(h, EOVERFLOW);
@@ -194,7 +174,7 @@ static void add_message(se3di_hdf5 *h, bytes *to, int type, const bytes *body)
     add(h, to, body->data, body->count);
 }
 
-static void add_dataspace(se3di_hdf5 *h, bytes *b, const se3di_hdf5_shape *shape)
+static void add_dataspace(se3di_hdf5 *h, se3di_iobytes *b, const se3di_hdf5_shape *shape)
 {
     const unsigned char head[4] = {2, (unsigned char)shape->rank, 0, shape->rank > 0 ? 1 : 0};
     add(h, b, head, sizeof head);
@@ -203,7 +183,7 @@ static void add_dataspace(se3di_hdf5 *h, bytes *b, const se3di_hdf5_shape *shape
     }
 }
 
-static void add_datatype(se3di_hdf5 *h, bytes *b, const se3di_hdf5_shape *shape)
+static void add_datatype(se3di_hdf5 *h, se3di_iobytes *b, const se3di_hdf5_shape *shape)
 {
     const size_t size = se3di_hdf5_size_of(shape);
     if (shape->type == SE3DI_HDF5_TEXT) { /* class 3: filled with zeros, UTF-8 */
@@ -244,7 +224,7 @@ void se3di_hdf5_add_attribute(se3di_hdf5 *h, size_t node, const char *name,
                               const se3di_hdf5_shape *shape, const void *values)
 {
     const size_t length = strlen(name) + 1;
-    bytes body = {NULL, 0, 0}, type = {NULL, 0, 0}, space = {NULL, 0, 0};
+    se3di_iobytes body = {NULL, 0, 0}, type = {NULL, 0, 0}, space = {NULL, 0, 0};
     add_datatype(h, &type, shape);
     add_dataspace(h, &space, shape);
     add_word(h, &body, 3, 1);
@@ -321,7 +301,7 @@ static void choose_piece(se3di_hdf5 *h, struct se3di_hdf5_node *n)
 }
 
 /* First bytes of all values, then second ones, ...: they are alike. */
-static const unsigned char *shuffle(se3di_hdf5 *h, const bytes *b, size_t width)
+static const unsigned char *shuffle(se3di_hdf5 *h, const se3di_iobytes *b, size_t width)
 {
     if (width == 1) {
         return b->data;
@@ -389,8 +369,8 @@ static void complete_pieces(se3di_hdf5 *h, struct se3di_hdf5_node *n)
 }
 
 /* The beginning of piece `first`, and how long it is. */
-static void add_key(se3di_hdf5 *h, bytes *b, const struct se3di_hdf5_node *n, uint64_t first,
-                    uint32_t size)
+static void add_key(se3di_hdf5 *h, se3di_iobytes *b, const struct se3di_hdf5_node *n,
+                    uint64_t first, uint32_t size)
 {
     add_word(h, b, size, 4);
     add_word(h, b, 0, 4); /* all filters were used */
@@ -401,12 +381,12 @@ static void add_key(se3di_hdf5 *h, bytes *b, const struct se3di_hdf5_node *n, ui
 }
 
 /* One node of the tree at h->end, of `count` entries; the next one begins with piece `next`. */
-static void write_node(se3di_hdf5 *h, const struct se3di_hdf5_node *n, const bytes *head,
+static void write_node(se3di_hdf5 *h, const struct se3di_hdf5_node *n, const se3di_iobytes *head,
                        const piece *entries, size_t count, uint64_t next)
 {
     const size_t key = 8 + 8 * ((size_t)n->shape.rank + 1);
     const size_t size = TREE_HEAD + TREE_ENTRIES * 8 + (TREE_ENTRIES + 1) * key;
-    bytes b = {NULL, 0, 0};
+    se3di_iobytes b = {NULL, 0, 0};
     add(h, &b, head->data, head->count);
     for (size_t k = 0; k < count; ++k) {
         add_key(h, &b, n, entries[k].first, entries[k].size);
@@ -434,7 +414,7 @@ static size_t write_level(se3di_hdf5 *h, const struct se3di_hdf5_node *n, int le
         const uint64_t address = h->end;
         const size_t key = 8 + 8 * ((size_t)n->shape.rank + 1);
         const uint64_t size = TREE_HEAD + TREE_ENTRIES * 8 + (TREE_ENTRIES + 1) * key;
-        bytes head = {NULL, 0, 0};
+        se3di_iobytes head = {NULL, 0, 0};
         add(h, &head, "TREE\1", 5); /* of pieces */
         add_word(h, &head, (uint64_t)level, 1);
         add_word(h, &head, here, 2);
@@ -552,7 +532,7 @@ static void check_written(se3di_hdf5 *h)
 
 /* --- headers --- */
 
-static void add_filter(se3di_hdf5 *h, bytes *b, int id, uint64_t value)
+static void add_filter(se3di_hdf5 *h, se3di_iobytes *b, int id, uint64_t value)
 {
     add_word(h, b, (uint64_t)id, 2);
     add_word(h, b, 0, 2); /* it must be there */
@@ -560,10 +540,10 @@ static void add_filter(se3di_hdf5 *h, bytes *b, int id, uint64_t value)
     add_word(h, b, value, 4);
 }
 
-static void put_filters(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
+static void put_filters(se3di_hdf5 *h, se3di_iobytes *to, const struct se3di_hdf5_node *n)
 {
     const size_t width = se3di_hdf5_size_of(&n->shape);
-    bytes filters = {NULL, 0, 0};
+    se3di_iobytes filters = {NULL, 0, 0};
     add_word(h, &filters, 2, 1); /* version */
     add_word(h, &filters, width > 1 ? 2 : 1, 1);
     if (width > 1) {
@@ -573,9 +553,9 @@ static void put_filters(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *
     add_message(h, to, MESSAGE_FILTERS, &filters);
 }
 
-static void put_layout(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
+static void put_layout(se3di_hdf5 *h, se3di_iobytes *to, const struct se3di_hdf5_node *n)
 {
-    bytes layout = {NULL, 0, 0};
+    se3di_iobytes layout = {NULL, 0, 0};
     add_word(h, &layout, 3, 1); /* version */
     if (n->piece_size == 0) {
         add_word(h, &layout, 1, 1); /* in one piece */
@@ -593,9 +573,9 @@ static void put_layout(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n
     add_message(h, to, MESSAGE_LAYOUT, &layout);
 }
 
-static void put_array(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
+static void put_array(se3di_hdf5 *h, se3di_iobytes *to, const struct se3di_hdf5_node *n)
 {
-    bytes space = {NULL, 0, 0}, type = {NULL, 0, 0}, fill = {NULL, 0, 0};
+    se3di_iobytes space = {NULL, 0, 0}, type = {NULL, 0, 0}, fill = {NULL, 0, 0};
     add_dataspace(h, &space, &n->shape);
     add_datatype(h, &type, &n->shape);
     add_word(h, &fill, 3, 1);                               /* version */
@@ -610,9 +590,10 @@ static void put_array(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *n)
 }
 
 /* A child of a group: the order of creation is kept. */
-static void put_link(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *child, uint64_t order)
+static void put_link(se3di_hdf5 *h, se3di_iobytes *to, const struct se3di_hdf5_node *child,
+                     uint64_t order)
 {
-    bytes link = {NULL, 0, 0};
+    se3di_iobytes link = {NULL, 0, 0};
     const size_t length = strlen(child->name);
     add_word(h, &link, 1, 1);    /* version */
     add_word(h, &link, 0x15, 1); /* 2 bytes for the length, order and character set are there */
@@ -624,9 +605,9 @@ static void put_link(se3di_hdf5 *h, bytes *to, const struct se3di_hdf5_node *chi
     add_message(h, to, MESSAGE_LINK, &link);
 }
 
-static void put_group(se3di_hdf5 *h, bytes *to, size_t group)
+static void put_group(se3di_hdf5 *h, se3di_iobytes *to, size_t group)
 {
-    bytes info = {NULL, 0, 0}, nothing = {NULL, 0, 0};
+    se3di_iobytes info = {NULL, 0, 0}, nothing = {NULL, 0, 0};
     uint64_t order = 0;
     add_word(h, &info, 0, 1); /* version */
     add_word(h, &info, 1, 1); /* the order is kept */
@@ -646,7 +627,7 @@ static void put_group(se3di_hdf5 *h, bytes *to, size_t group)
 static void write_header(se3di_hdf5 *h, size_t node)
 {
     struct se3di_hdf5_node *n = &h->nodes[node];
-    bytes messages = {NULL, 0, 0}, all = {NULL, 0, 0};
+    se3di_iobytes messages = {NULL, 0, 0}, all = {NULL, 0, 0};
     if (n->is_group) {
         put_group(h, &messages, node);
     } else {

@@ -33,10 +33,10 @@ struct se3d_scene {
 typedef struct drawing {
     se3d_scene *scene;
     se3di_glb glb;
-    se3di_bytes nodes;
-    se3di_bytes channels;
-    se3di_bytes samplers;
-    se3di_bytes rest;
+    se3di_iobytes nodes;
+    se3di_iobytes channels;
+    se3di_iobytes samplers;
+    se3di_iobytes rest;
     size_t node_count;
     size_t sampler_count;
     se3di_sizes sizes;
@@ -175,7 +175,7 @@ static size_t add_part(drawing *d, const se3di_part *part)
     return node;
 }
 
-static void add_child(drawing *d, se3di_bytes *children, size_t node)
+static void add_child(drawing *d, se3di_iobytes *children, size_t node)
 {
     se3di_glb_put(&d->glb, children, children->count > 0 ? ",%zu" : "%zu", node);
 }
@@ -255,7 +255,7 @@ static void animate_part(drawing *d, const se3di_part *part, size_t node)
 }
 
 /* The children of a body: its parts and markers. */
-static void add_children(drawing *d, size_t k, se3di_bytes *children)
+static void add_children(drawing *d, size_t k, se3di_iobytes *children)
 {
     static const double identity[4] = {1.0, 0.0, 0.0, 0.0};
     const se3d_model *model = d->scene->model;
@@ -279,7 +279,7 @@ static void add_children(drawing *d, size_t k, se3di_bytes *children)
     }
 }
 
-static void put_children(drawing *d, const se3di_bytes *children)
+static void put_children(drawing *d, const se3di_iobytes *children)
 {
     if (children->count > 0) {
         se3di_glb_put(&d->glb, &d->nodes, ",\"children\":[");
@@ -288,11 +288,11 @@ static void put_children(drawing *d, const se3di_bytes *children)
     }
 }
 
-static void add_body(drawing *d, size_t k, se3di_bytes *roots)
+static void add_body(drawing *d, size_t k, se3di_iobytes *roots)
 {
     const se3d_model *model = d->scene->model;
     const double *pose = pose_of(d->scene, 0, k);
-    se3di_bytes children = {NULL, 0, 0};
+    se3di_iobytes children = {NULL, 0, 0};
     double mass = 0.0;
     int32_t fixed = 0;
     add_children(d, k, &children);
@@ -313,7 +313,7 @@ static void add_body(drawing *d, size_t k, se3di_bytes *roots)
 }
 
 /* What an element has between two bodies: it moves and stretches. */
-static void add_between(drawing *d, size_t element, size_t which, se3di_bytes *roots)
+static void add_between(drawing *d, size_t element, size_t which, se3di_iobytes *roots)
 {
     const se3d_scene *scene = d->scene;
     track t;
@@ -335,7 +335,7 @@ static void add_between(drawing *d, size_t element, size_t which, se3di_bytes *r
                 se3di_glb_add_floats(&d->glb, t.scale, scene->poses.count, SE3DI_GLB_VEC3, 0));
 }
 
-static void add_grid(drawing *d, se3di_bytes *roots)
+static void add_grid(drawing *d, se3di_iobytes *roots)
 {
     const double height = d->sizes.floor;
     const double least = d->sizes.extent / 5.0;
@@ -443,7 +443,7 @@ static void draw(drawing *d)
     static const double upright[4] = {0.70710678118654752, -0.70710678118654752, 0.0, 0.0};
     const se3d_scene *scene = d->scene;
     const se3d_model *model = scene->model;
-    se3di_bytes roots = {NULL, 0, 0};
+    se3di_iobytes roots = {NULL, 0, 0};
     se3di_drawing_measure(model, &scene->poses, &d->sizes);
     if (scene->poses.count > 1) {
         se3di_glb_add_floats(&d->glb, scene->times, scene->poses.count, SE3DI_GLB_SCALAR, 0);

@@ -12,14 +12,9 @@
 #include "io/base/file.h"
 #include "io/base/little.h"
 #include "io/base/number.h"
+#include "io/base/pool.h"
 
 enum { BLOCK = 4096, COMPRESSED = 1 << 15 };
-
-/* An array as the file has it, in memory. */
-typedef struct packed {
-    unsigned char *data;
-    size_t size, capacity;
-} packed;
 
 /* Values [first, end) of an array, one by one, as bytes. */
 static void get_bytes(const se3di_vtk_array *a, size_t first, size_t end, unsigned char *to)
@@ -46,28 +41,15 @@ static void put_data(FILE *file, const se3di_vtk_array *a)
     }
 }
 
-static bool append(se3di_iopool *pool, packed *p, const void *data, size_t size)
+static bool append(se3di_iopool *pool, se3di_iobytes *p, const void *data, size_t size)
 {
-    if (p->size + size > p->capacity) {
-        const size_t capacity = 2 * (p->size + size);
-        unsigned char *grown = se3di_iopool_alloc(pool, capacity);
-        if (!grown) {
-            errno = ENOMEM;
-            return false;
-        }
-        if (p->size > 0) {
-            memcpy(grown, p->data, p->size);
-        }
-        p->data = grown;
-        p->capacity = capacity;
-    }
-    memcpy(p->data + p->size, data, size);
-    p->size += size;
-    return true;
+    const bool good = se3di_iobytes_put(p, pool, data, size);
+    errno = good ? errno : ENOMEM;
+    return good;
 }
 
 /* @return false: errno says why */
-static bool pack(se3di_deflate *d, const se3di_vtk_array *a, packed *p)
+static bool pack(se3di_deflate *d, const se3di_vtk_array *a, se3di_iobytes *p)
 {
     unsigned char block[COMPRESSED];
     const size_t each = COMPRESSED / 4, count = a->count * a->width;
@@ -129,7 +111,7 @@ static void put_piece(FILE *file, const se3di_vtk_file *f)
 }
 
 /* `data`: of the arrays, compressed; NULL: they are not. */
-static void put_head(FILE *file, const se3di_vtk_file *f, const packed *data)
+static void put_head(FILE *file, const se3di_vtk_file *f, const se3di_iobytes *data)
 {
     static const char *const names[] = {"PointData", "CellData", "Points",
                                         "Verts",     "Lines",    "Polys"};
@@ -149,14 +131,14 @@ static void put_head(FILE *file, const se3di_vtk_file *f, const packed *data)
                     "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%zu\" "
                     "format=\"appended\" offset=\"%zu\"/>\n",
                     a->whole ? "Int32" : "Float32", a->name, a->width, offset);
-            offset += data ? data[k].size : 8 + 4 * a->count * a->width;
+            offset += data ? data[k].count : 8 + 4 * a->count * a->width;
         }
         fprintf(file, "</%s>\n", names[s]);
     }
     fprintf(file, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type_of(f));
 }
 
-static bool write_file(const se3di_vtk_file *f, const char *path, const packed *data)
+static bool write_file(const se3di_vtk_file *f, const char *path, const se3di_iobytes *data)
 {
     FILE *file = se3di_partial_open(path);
     if (!file) {
@@ -165,7 +147,7 @@ static bool write_file(const se3di_vtk_file *f, const char *path, const packed *
     put_head(file, f, data);
     for (size_t k = 0; k < f->array_count; ++k) {
         if (data) {
-            fwrite(data[k].data, 1, data[k].size, file);
+            fwrite(data[k].data, 1, data[k].count, file);
         } else {
             put_data(file, &f->arrays[k]);
         }
@@ -180,7 +162,7 @@ static bool write_packed(const se3di_vtk_file *f, const se3di_vtk_target *to)
     se3di_iopool pool;
     se3di_deflate d;
     se3di_iopool_init(&pool, to->allocator);
-    packed *data = se3di_iopool_array(&pool, f->array_count, sizeof *data);
+    se3di_iobytes *data = se3di_iopool_array(&pool, f->array_count, sizeof *data);
     errno = ENOMEM; /* unless something else fails */
     bool good = data && se3di_deflate_open(&d, &pool, to->compression);
     if (good) {
