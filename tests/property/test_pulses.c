@@ -60,7 +60,9 @@ static void a_driver_that_moves_for_a_moment_is_not_stepped_over(void)
         }
         m = text_model_open(text, run / 2, run % 2, 0.0);
         CHECK(text_model_run(&m, 6.0));
-        CHECK_NEAR(text_model_get(&m, 0, 0), v, 2e-3 * fabs(v));
+        /* steps of convex are equal: of 1 ms, and their error is not estimated */
+        CHECK_NEAR(text_model_get(&m, 0, 0), v,
+                   (run / 2 == SE3D_METHOD_CONVEX ? 5e-3 : 2e-3) * fabs(v));
         text_model_close(&m);
     }
 }
