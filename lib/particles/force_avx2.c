@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX2 and FMA, chosen at run time.  docs/theory/particles.md */
+#include "contact/shape/mesh_tree.h"
 #include "particles/clump.h"
+#include "particles/sift.h"
 #include "particles/wall.h"
 
 #include "base/target.h"
@@ -31,6 +33,7 @@ typedef __m256d M;
 #define V_PICK(m, a, b)   _mm256_blendv_pd(b, a, m)
 #define V_KEEP(m, a)      _mm256_and_pd(m, a)
 #define M_ANY(m)          (_mm256_movemask_pd(m) != 0)
+#define M_BITS(m)         ((unsigned)_mm256_movemask_pd(m))
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount((unsigned)_mm256_movemask_pd(m)))
 
 V_INLINE double sum_lanes(const double *v)
@@ -80,6 +83,18 @@ V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i,
     }
     transpose(low, out);
     transpose(high, out + 4);
+}
+
+/* Also what is behind the 15 numbers. */
+V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V out[16])
+{
+    for (int part = 0; part < 16; part += 4) {
+        V rows[4];
+        for (int k = 0; k < 4; ++k) {
+            rows[k] = _mm256_loadu_pd((const double *)(const void *)&facets[at[k]] + part);
+        }
+        transpose(rows, out + part);
+    }
 }
 
 V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
@@ -147,8 +162,9 @@ V_INLINE void add_held(se3di_load *load, const se3di_load *held)
 }
 
 #include "particles/force.inc"
+#include "particles/sift.inc"
 
-static const se3di_kernels core_table = {"avx2", pairs, walls};
+static const se3di_kernels core_table = {"avx2", pairs, walls, sift};
 
 SE3DI_TARGET_END
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
+#include "contact/shape/mesh_tree.h"
 #include "particles/clump.h"
+#include "particles/sift.h"
 #include "particles/wall.h"
 
 #include "base/target.h"
@@ -35,6 +37,7 @@ typedef __mmask8 M;
 #define V_PICK(m, a, b)   _mm512_mask_blend_pd(m, b, a)
 #define V_KEEP(m, a)      _mm512_maskz_mov_pd(m, a)
 #define M_ANY(m)          ((m) != 0)
+#define M_BITS(m)         ((unsigned)(m))
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount(m))
 
 V_INLINE double sum_lanes(const double *v)
@@ -92,6 +95,18 @@ V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i,
     transpose(rows, out);
 }
 
+/* Also what is behind the 15 numbers. */
+V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V out[16])
+{
+    for (int part = 0; part < 16; part += 8) {
+        V rows[8];
+        for (int k = 0; k < 8; ++k) {
+            rows[k] = _mm512_loadu_pd((const double *)(const void *)&facets[at[k]] + part);
+        }
+        transpose(rows, out + part);
+    }
+}
+
 /* Halves of two rows side by side make one transposition of four do for eight. */
 V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
 {
@@ -145,8 +160,9 @@ V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *
 }
 
 #include "particles/force.inc"
+#include "particles/sift.inc"
 
-static const se3di_kernels core_table = {"avx512", pairs, walls};
+static const se3di_kernels core_table = {"avx512", pairs, walls, sift};
 
 SE3DI_TARGET_END
 

@@ -579,6 +579,8 @@ typedef struct se3di_force_task {
     se3di_law_failure failure; /* out: the first one */
 } se3di_force_task;
 
+struct se3di_sift; /* sift.h */
+
 /* `kicks` half kicks (0, 1 or 2) of h/2 from the loads and gravity, then a drift. */
 typedef struct se3di_particle_motion {
     int kicks;
@@ -590,6 +592,8 @@ struct se3di_kernels {
     const char *name;
     void (*pairs)(se3di_force_task *task);
     void (*walls)(se3di_force_task *task);
+    /* Which of the first `count` pairs of spheres and triangles of a mesh touch. */
+    void (*sift)(const se3di_wall *wall, size_t count, struct se3di_sift *pairs);
 };
 
 /* For a user-defined law. */

@@ -23,16 +23,11 @@
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
 #define FLAT            1e-9  /* of the size: a vertex is in the plane of a face */
 #define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
+#define SLENDER         1e-6  /* twice the area over the square of a long side */
 #define NEARLY_COPLANAR 0.999 /* cosine of the angle of normals that are one contact */
 
 typedef se3di_mesh_node mesh_node;
-
-/* A triangle a, b, c as the foot of a perpendicular needs it, behind the nodes in shape->tree. */
-typedef struct facet {
-    double a[3], normal[3];  /* of unit length */
-    double to_b[3], to_c[3]; /* dot products with x - a: parts of b - a and c - a in its foot */
-    uint8_t edges[8];        /* bits: at this edge the next triangle leads 1 below, 2 above it */
-} facet;
+typedef se3di_mesh_facet facet;
 
 typedef struct builder {
     const double *vertices;
@@ -134,10 +129,18 @@ static int has_area(const double *vertices, const uint32_t *triangle)
     return se3di_dot(n, n) > 0.0;
 }
 
-static facet *facets_of(const se3di_shape *s)
+/* Its heights, the inverse lengths of what measures the parts in it; not of a triangle so slender
+ * that those directions are uncertain. */
+static void fill_heights(const double ab[3], const double ac[3], facet *f)
 {
-    char *end = (char *)s->tree + s->tree_bytes;
-    return (facet *)(void *)end - s->triangle_count;
+    double to_a[3], doubled[3];
+    se3di_add(f->to_b, f->to_c, to_a);
+    se3di_cross(ab, ac, doubled);
+    const double longest = fmax(se3di_dot(ab, ab), se3di_dot(ac, ac));
+    const int slender = se3di_norm(doubled) < SLENDER * longest;
+    f->heights[0] = slender ? 0.0 : 1.0 / se3di_norm(f->to_b);
+    f->heights[1] = slender ? 0.0 : 1.0 / se3di_norm(f->to_c);
+    f->heights[2] = slender ? 0.0 : 1.0 / se3di_norm(to_a);
 }
 
 static void fill_facets(se3di_shape *s)
@@ -145,7 +148,7 @@ static void fill_facets(se3di_shape *s)
     for (size_t k = 0; k < s->triangle_count; ++k) {
         const double *corner[3];
         double ab[3], ac[3], normal[3];
-        facet *f = facets_of(s) + k;
+        facet *f = se3di_mesh_facets(s) + k;
         se3di_triangle_corners(s, k, corner);
         se3di_copy(corner[0], f->a);
         se3di_sub(corner[1], corner[0], ab);
@@ -157,6 +160,7 @@ static void fill_facets(se3di_shape *s)
         se3di_cross(normal, ab, f->to_c);
         se3di_scale(1.0 / square, f->to_b, f->to_b);
         se3di_scale(1.0 / square, f->to_c, f->to_c);
+        fill_heights(ab, ac, f);
         memset(f->edges, 3, sizeof f->edges); /* not known */
     }
 }
@@ -164,13 +168,13 @@ static void fill_facets(se3di_shape *s)
 int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t side)
 {
     const int outside = shape->closed > 0 ? 1 : shape->closed < 0 ? 2 : 3;
-    return shape->rows > 0 || (facets_of(shape)[triangle].edges[side] & outside) != 0;
+    return shape->rows > 0 || (se3di_mesh_facets(shape)[triangle].edges[side] & outside) != 0;
 }
 
 /* Which way the triangle beyond an edge leads. */
 static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t beyond)
 {
-    facet *f = facets_of(s) + triangle;
+    facet *f = se3di_mesh_facets(s) + triangle;
     double least = 0.0, most = 0.0, size = 0.0;
     for (size_t k = 0; k < 3; ++k) {
         double d[3];
@@ -297,7 +301,7 @@ static int reaches(const se3di_shape *s, uint32_t triangle, const double p[3], d
     if (s->rows > 0) {
         return cell_reaches(s, triangle, p, reach, point, square);
     }
-    const facet *f = facets_of(s) + triangle;
+    const facet *f = se3di_mesh_facets(s) + triangle;
     double d[3];
     se3di_sub(p, f->a, d);
     const double height = se3di_dot(d, f->normal);
@@ -356,7 +360,7 @@ int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double 
 static int is_plane_farther(const se3di_shape *s, uint32_t triangle, const double p[3],
                             double square)
 {
-    const facet *f = facets_of(s) + triangle;
+    const facet *f = se3di_mesh_facets(s) + triangle;
     double d[3];
     se3di_sub(p, f->a, d);
     const double height = se3di_dot(d, f->normal);
@@ -514,7 +518,7 @@ static int meets_box(const mesh_node *node, const segment *s)
 /* Both ends are on one side of its plane, by more than rounding; not of a heightfield. */
 static int is_passed_by(const se3di_shape *s, uint32_t triangle, const segment *way)
 {
-    const facet *f = facets_of(s) + triangle;
+    const facet *f = se3di_mesh_facets(s) + triangle;
     double from[3], to[3];
     se3di_sub(way->from, f->a, from);
     se3di_sub(way->to, f->a, to);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The boxes around triangles that searches go through: shape->tree begins with them. */
+/* The boxes around triangles that searches go through: shape->tree begins with them; behind them
+ * those of a mesh, but not of a heightfield, have their facets. */
 #ifndef SE3DI_CONTACT_MESH_TREE_H
 #define SE3DI_CONTACT_MESH_TREE_H
 
@@ -12,5 +13,19 @@ typedef struct se3di_mesh_node {
     uint32_t begin, count; /* triangles of a leaf; count 0: its children are the next node and */
     uint32_t right, reserved;
 } se3di_mesh_node;
+
+/* A triangle a, b, c as the foot of a perpendicular needs it: 16 numbers, but for the last. */
+typedef struct se3di_mesh_facet {
+    double a[3], normal[3];  /* of unit length */
+    double to_b[3], to_c[3]; /* dot products with x - a: parts of b - a and c - a in its foot */
+    double heights[3];       /* of b, c and a over the sides opposite; 0: not told, of slivers */
+    uint8_t edges[8];        /* bits: at this edge the next triangle leads 1 below, 2 above it */
+} se3di_mesh_facet;
+
+static inline se3di_mesh_facet *se3di_mesh_facets(const se3di_shape *shape)
+{
+    char *end = (char *)shape->tree + shape->tree_bytes;
+    return (se3di_mesh_facet *)(void *)end - shape->triangle_count;
+}
 
 #endif
