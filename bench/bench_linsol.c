@@ -110,7 +110,7 @@ static void measure(const char *name, int32_t links, int32_t rows, int32_t n, bo
     s.pattern.level = level;
     se3d_allocator allocator = se3di_alloc_default();
     se3di_kkt *kkt;
-    if (SE3D_FAILED(se3di_kkt_create(&allocator, &s.pattern, SE3DI_KKT_STRUCTURED, &kkt))) {
+    if (SE3D_FAILED(se3di_kkt_create(&allocator, &s.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt))) {
         exit(1);
     }
     double best[2] = {1e300, 1e300};

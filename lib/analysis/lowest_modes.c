@@ -523,7 +523,8 @@ static se3d_status create_kkt(lanczos *z)
         .symmetric = true,
         .body_kind = SE3DI_KKT_BODY_FULL,
     };
-    SE3DI_TRY(se3di_kkt_create(z->allocator, &pattern, SE3DI_KKT_STRUCTURED, &z->kkt));
+    SE3DI_TRY(se3di_kkt_create(z->allocator, &pattern, SE3DI_KKT_STRUCTURED, assembly->model->shelf,
+                               &z->kkt));
     se3di_kkt_settings settings = se3di_kkt_get_settings(z->kkt);
     settings.any_multipliers = true;
     settings.always_check = true;

@@ -92,7 +92,8 @@ static se3d_status create_kkt(const se3di_static_newton *newton, bool symmetric,
         .symmetric = symmetric,
         .body_kind = SE3DI_KKT_BODY_FULL,
     };
-    SE3DI_TRY(se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED, kkt));
+    SE3DI_TRY(se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
+                               assembly->model->shelf, kkt));
     se3di_kkt_settings settings = se3di_kkt_get_settings(*kkt);
     settings.any_multipliers = true;
     se3di_kkt_set_settings(*kkt, &settings);

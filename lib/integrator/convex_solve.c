@@ -99,7 +99,7 @@ static se3d_status suit_solver(se3di_convex *c, const se3di_assembly *assembly)
     se3di_kkt_destroy(c->kkt);
     c->kkt = NULL;
     SE3DI_TRY(reserve_pairs(allocator, &c->kkt_pairs, &c->kkt_pair_capacity, c->pair_count));
-    SE3DI_TRY(se3di_kkt_create(allocator, &pattern, SE3DI_KKT_STRUCTURED, &c->kkt));
+    SE3DI_TRY(se3di_kkt_create(allocator, &pattern, SE3DI_KKT_STRUCTURED, NULL, &c->kkt));
     se3di_kkt_settings settings = se3di_kkt_get_settings(c->kkt);
     settings.iterated = true;
     se3di_kkt_set_settings(c->kkt, &settings);

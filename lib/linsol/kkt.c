@@ -251,24 +251,96 @@ static void choose_level(se3di_kkt *kkt)
     }
 }
 
-static se3d_status build(se3di_kkt *kkt, const se3di_kkt_pattern *pattern)
+static se3d_status build_structure(se3di_kkt *kkt, const se3di_kkt_pattern *pattern)
 {
     SE3DI_TRY(copy_pattern(kkt, pattern));
     build_layout(kkt);
     SE3DI_TRY(find_loops(kkt));
-    SE3DI_TRY(take_vectors(kkt));
     choose_level(kkt);
     SE3DI_TRY(build_nodes(kkt));
     if (kkt->kind == SE3DI_KKT_DENSE) {
-        return se3di_kkt_dense_create(kkt);
+        return SE3D_OK;
     }
     SE3DI_TRY(build_graph(kkt));
     SE3DI_TRY(se3di_kkt_order_choose(kkt));
     return se3di_kkt_symbolic_build(kkt);
 }
 
+/* ---- what solvers of one pattern share -------------------------------------------------------*/
+
+static void destroy_structure(se3di_shelf_item *item)
+{
+    se3di_kkt_structure *structure = (se3di_kkt_structure *)(void *)item;
+    const se3d_allocator allocator = structure->kkt.allocator;
+    se3di_kkt_give_back(&structure->kkt);
+    se3di_free(&allocator, structure, 1, sizeof *structure);
+}
+
+typedef struct wanted_structure {
+    const se3di_kkt_pattern *pattern;
+    se3di_kkt_kind kind;
+} wanted_structure;
+
+static bool ints_are(const int32_t *a, const int32_t *b, size_t count)
+{
+    return count == 0 || memcmp(a, b, count * sizeof *a) == 0;
+}
+
+static int is_structure(const se3di_shelf_item *item, const void *wanted)
+{
+    const se3di_kkt_structure *structure = (const se3di_kkt_structure *)(const void *)item;
+    const wanted_structure *w = wanted;
+    const se3di_kkt_pattern *a = &structure->kkt.pattern, *b = w->pattern;
+    const size_t joints = b->joint_count;
+    return structure->kkt.kind == w->kind && a->body_count == b->body_count &&
+           a->joint_count == joints && a->coupling_count == b->coupling_count &&
+           a->body_size == b->body_size && a->symmetric == b->symmetric &&
+           a->body_kind == b->body_kind && a->level == b->level &&
+           ints_are(a->joint_rows, b->joint_rows, joints) &&
+           (joints == 0 ||
+            (ints_are(a->joint_begin, b->joint_begin, joints + 1) &&
+             ints_are(a->joint_body, b->joint_body, (size_t)b->joint_begin[joints]))) &&
+           ints_are(a->coupling, b->coupling, 2 * b->coupling_count);
+}
+
+static se3d_status make_structure(const se3d_allocator *allocator, const wanted_structure *w,
+                                  se3di_kkt_structure **made)
+{
+    se3di_kkt_structure *structure = se3di_alloc(allocator, 1, sizeof *structure);
+    if (!structure) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3di_shelf_item_init(&structure->item, destroy_structure);
+    structure->kkt.allocator = *allocator;
+    structure->kkt.kind = w->kind;
+    structure->kkt.settings = (se3di_kkt_settings){.eps = 1e-10,
+                                                   .eps_min = 1e-14,
+                                                   .tolerance = 1e-15,
+                                                   .max_refinements = 10,
+                                                   .regularise = SE3DI_KKT_REGULARISE_AUTO,
+                                                   .always_check = false};
+    const se3d_status status = build_structure(&structure->kkt, w->pattern);
+    if (status < 0) {
+        destroy_structure(&structure->item);
+        return status;
+    }
+    *made = structure;
+    return SE3D_OK;
+}
+
+static se3d_status get_structure(const se3d_allocator *allocator, const wanted_structure *w,
+                                 se3di_shelf *shelf, se3di_kkt_structure **structure)
+{
+    *structure = (se3di_kkt_structure *)(void *)se3di_shelf_find(shelf, is_structure, w);
+    if (!*structure) {
+        SE3DI_TRY(make_structure(allocator, w, structure));
+        se3di_shelf_put(shelf, &(*structure)->item);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3di_kkt_create(const se3d_allocator *allocator, const se3di_kkt_pattern *pattern,
-                             se3di_kkt_kind kind, se3di_kkt **kkt)
+                             se3di_kkt_kind kind, se3di_shelf *shelf, se3di_kkt **kkt)
 {
     *kkt = NULL;
     if (!pattern_is_valid(pattern)) {
@@ -278,15 +350,22 @@ se3d_status se3di_kkt_create(const se3d_allocator *allocator, const se3di_kkt_pa
     if (!made) {
         return SE3D_ERR_NO_MEMORY;
     }
+    const wanted_structure wanted = {pattern, kind};
+    se3di_kkt_structure *structure;
+    se3d_status status = get_structure(allocator, &wanted, shelf, &structure);
+    if (status < 0) {
+        se3di_free(allocator, made, 1, sizeof *made);
+        return status;
+    }
+    *made = structure->kkt;
     made->allocator = *allocator;
-    made->kind = kind;
-    made->settings = (se3di_kkt_settings){.eps = 1e-10,
-                                          .eps_min = 1e-14,
-                                          .tolerance = 1e-15,
-                                          .max_refinements = 10,
-                                          .regularise = SE3DI_KKT_REGULARISE_AUTO,
-                                          .always_check = false};
-    se3d_status status = build(made, pattern);
+    made->structure = structure;
+    made->array_count = 0;
+    status = take_vectors(made);
+    if (status == SE3D_OK) {
+        status =
+            kind == SE3DI_KKT_DENSE ? se3di_kkt_dense_create(made) : se3di_kkt_symbolic_take(made);
+    }
     if (status < 0) {
         se3di_kkt_destroy(made);
         return status;

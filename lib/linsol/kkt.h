@@ -13,13 +13,15 @@
  * against the unregularised system removes E from the answer. E = 0 if the graph has no loop.
  *
  * Everything is allocated by se3di_kkt_create; factor and solve allocate nothing. One kkt object is
- * used by one thread at a time.                                              docs/theory/kkt.md */
+ * used by one thread at a time; what follows from the pattern alone is made once and shared by all
+ * that have the same one.                                              docs/theory/kkt.md */
 #ifndef SE3DI_LINSOL_KKT_H
 #define SE3DI_LINSOL_KKT_H
 
 #include <stdbool.h>
 
 #include "base/alloc.h"
+#include "base/shelf.h"
 
 /* Limits of a pattern. */
 #define SE3DI_KKT_MAX_BODY_SIZE  8
@@ -129,10 +131,11 @@ typedef struct se3di_kkt_solve_info {
 
 typedef struct se3di_kkt se3di_kkt;
 
-/* Analyse `pattern` (which is copied) and allocate everything. On failure *kkt is NULL.
+/* Analyse `pattern` (which is copied) and allocate everything. What follows from the pattern is
+ * taken from `shelf` if it is there, else put there; NULL: no shelf. On failure *kkt is NULL.
  * @return SE3D_OK, SE3D_ERR_INVALID_ARGUMENT (pattern), SE3D_ERR_NO_MEMORY */
 se3d_status se3di_kkt_create(const se3d_allocator *allocator, const se3di_kkt_pattern *pattern,
-                             se3di_kkt_kind kind, se3di_kkt **kkt);
+                             se3di_kkt_kind kind, se3di_shelf *shelf, se3di_kkt **kkt);
 void se3di_kkt_destroy(se3di_kkt *kkt); /* NULL is fine */
 
 se3di_kkt_settings se3di_kkt_get_settings(const se3di_kkt *kkt);

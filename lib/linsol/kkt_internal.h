@@ -65,9 +65,11 @@ typedef struct se3di_kkt_block_list {
 
 #define KKT_MAX_ARRAYS 64
 
+/* Also what solvers of one pattern share: then all but the numbers is there. */
 struct se3di_kkt {
     se3d_allocator allocator;
-    se3di_kkt_block_list arrays[KKT_MAX_ARRAYS];
+    struct se3di_kkt_structure *structure;       /* of which arrays are used; NULL: this is it */
+    se3di_kkt_block_list arrays[KKT_MAX_ARRAYS]; /* its own */
     size_t array_count;
     bool out_of_memory;
 
@@ -156,6 +158,12 @@ struct se3di_kkt {
     int32_t *rank_pivot;
 };
 
+/* What follows from a pattern: the same for every solver of it, and never changed. */
+typedef struct se3di_kkt_structure {
+    se3di_shelf_item item;
+    se3di_kkt kkt;
+} se3di_kkt_structure;
+
 /* Zeroed array that se3di_kkt_destroy frees; on failure kkt->out_of_memory is set. */
 void *se3di_kkt_take(se3di_kkt *kkt, size_t count, size_t size);
 /* The same, aligned to 64 bytes. */
@@ -186,6 +194,10 @@ se3d_status se3di_kkt_greedy_order(const se3di_kkt *kkt, int32_t *node_at);
 
 /* kkt_symbolic.c: everything that follows from the order. */
 se3d_status se3di_kkt_symbolic_build(se3di_kkt *kkt);
+/* Room for the numbers of such a structure. */
+se3d_status se3di_kkt_symbolic_take(se3di_kkt *kkt);
+/* Give back all of its own arrays. */
+void se3di_kkt_give_back(se3di_kkt *kkt);
 
 /* kkt_dense.c */
 se3d_status se3di_kkt_dense_create(se3di_kkt *kkt);

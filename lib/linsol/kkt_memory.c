@@ -26,13 +26,20 @@ double *se3di_kkt_take_aligned(se3di_kkt *kkt, size_t count)
     return (double *)(void *)(memory + (past > 0 ? 64 - past : 0));
 }
 
+void se3di_kkt_give_back(se3di_kkt *kkt)
+{
+    for (size_t k = 0; k < kkt->array_count; ++k) {
+        const se3di_kkt_block_list *array = &kkt->arrays[k];
+        se3di_free(&kkt->allocator, array->memory, array->count, array->size);
+    }
+    kkt->array_count = 0;
+}
+
 void se3di_kkt_destroy(se3di_kkt *kkt)
 {
     if (kkt) {
-        for (size_t k = 0; k < kkt->array_count; ++k) {
-            const se3di_kkt_block_list *array = &kkt->arrays[k];
-            se3di_free(&kkt->allocator, array->memory, array->count, array->size);
-        }
+        se3di_kkt_give_back(kkt);
+        se3di_shelf_item_drop(kkt->structure ? &kkt->structure->item : NULL);
         se3d_allocator allocator = kkt->allocator;
         se3di_free(&allocator, kkt, 1, sizeof *kkt);
     }

@@ -246,7 +246,7 @@ static se3d_status build_sources(se3di_kkt *kkt)
     return kkt->source ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
-static se3d_status take_numbers(se3di_kkt *kkt)
+se3d_status se3di_kkt_symbolic_take(se3di_kkt *kkt)
 {
     size_t n = (size_t)kkt->node_count, total = kkt->panel[n];
     kkt->upper = se3di_kkt_take_aligned(kkt, total);
@@ -269,6 +269,5 @@ se3d_status se3di_kkt_symbolic_build(se3di_kkt *kkt)
     SE3DI_TRY(status);
     SE3DI_TRY(build_updates(kkt));
     SE3DI_TRY(build_loads(kkt));
-    SE3DI_TRY(build_sources(kkt));
-    return take_numbers(kkt);
+    return build_sources(kkt);
 }

@@ -2,6 +2,7 @@
 /* Life of a model: empty, destroyed, copied. */
 #include "model/model.h"
 
+#include "base/shelf.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "model/function.h"
@@ -62,12 +63,14 @@ se3d_status se3di_model_init(se3di_model *model, const se3d_allocator *allocator
         se3di_slots_init(slots_of(model, k), salt);
     }
     model->contact.overlap_limit = 0.2;
+    model->shelf = se3di_shelf_create(allocator);
     char name[] = "ground";
     se3di_body ground = {.name = name, .fixed = 1};
     se3di_frame frame = {.p = {1.0, 0.0, 0.0, 0.0}};
     se3di_frame_update(&frame);
     se3di_handle handle;
-    se3d_status status = se3di_model_add_body(model, &ground, &frame, &handle);
+    se3d_status status =
+        model->shelf ? se3di_model_add_body(model, &ground, &frame, &handle) : SE3D_ERR_NO_MEMORY;
     if (status < 0) {
         se3di_model_destroy(model);
     }
@@ -160,6 +163,7 @@ void se3di_model_destroy(se3di_model *model)
         se3di_free(allocator, *arrays[k].data, *arrays[k].capacity, arrays[k].size);
     }
     destroy_slots(model);
+    se3di_shelf_drop(model->shelf);
     se3d_allocator kept = model->allocator;
     memset(model, 0, sizeof *model);
     model->allocator = kept;
@@ -179,6 +183,7 @@ static void disown(se3di_model *copy)
     }
     copy->sets = NULL;
     copy->pending = NULL;
+    se3di_shelf_keep(copy->shelf);
     copy->row_count = copy->term_count = copy->angle_count = copy->history_count = 0;
     copy->contacts.count = copy->contacts.pair_count = 0;
     copy->contacts.version = 0;

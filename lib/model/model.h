@@ -329,6 +329,7 @@ typedef struct se3di_model {
     struct se3di_busy *busy;       /* of the system, see base/busy.h; NULL: no system */
     struct se3di_pending *pending; /* the same, see base/pending.h: accelerations, multipliers,
                                       powers and what the history has of them */
+    struct se3di_shelf *shelf;     /* of the system and its clones, see base/shelf.h */
 } se3di_model;
 
 /* Of the present state, or of the one before it was changed. */

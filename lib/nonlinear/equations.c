@@ -31,7 +31,7 @@ static se3d_status create_kkt(se3di_equations *equations)
         .body_kind = se3di_assembly_is_plain(assembly) ? SE3DI_KKT_BODY_MASS : SE3DI_KKT_BODY_FULL,
     };
     return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
-                            &equations->kkt);
+                            assembly->model->shelf, &equations->kkt);
 }
 
 /* Whether some body is so light beside others that the regularisation would outweigh what heavy

@@ -22,7 +22,7 @@ static se3d_status create_kkt(se3di_newton *newton)
         .body_kind = SE3DI_KKT_BODY_FULL,
     };
     return se3di_kkt_create(&assembly->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
-                            &newton->kkt);
+                            assembly->model->shelf, &newton->kkt);
 }
 
 static se3d_status build(se3di_newton *newton)

@@ -172,7 +172,7 @@ static se3d_status create_kkt(se3di_tree_loops *loops)
         .body_kind = SE3DI_KKT_BODY_FULL,
     };
     SE3DI_TRY(se3di_kkt_create(&loops->tree->model->allocator, &pattern, SE3DI_KKT_STRUCTURED,
-                               &loops->kkt));
+                               loops->tree->model->shelf, &loops->kkt));
     for (uint32_t k = 0; k < loops->count; ++k) {
         if (loops->kept_count[k] > loops->member_begin[k + 1] - loops->member_begin[k]) {
             se3di_kkt_settings settings = se3di_kkt_get_settings(loops->kkt);

@@ -303,7 +303,7 @@ typedef struct outcome {
 static se3di_kkt *create(mechanism *s, se3di_kkt_kind kind)
 {
     se3di_kkt *kkt = NULL;
-    CHECK(se3di_kkt_create(&memory, &s->pattern, kind, &kkt) == SE3D_OK);
+    CHECK(se3di_kkt_create(&memory, &s->pattern, kind, NULL, &kkt) == SE3D_OK);
     return kkt;
 }
 
@@ -684,23 +684,23 @@ static void bad_patterns_are_refused(void)
 {
     se3di_kkt *kkt = NULL;
     start(&m, 2, 9, true, 1);
-    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) ==
           SE3D_ERR_INVALID_ARGUMENT);
     start(&m, 2, 6, true, 1);
     add_joint(&m, 5, 0, 2);
-    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) ==
           SE3D_ERR_INVALID_ARGUMENT);
     start(&m, 2, 6, true, 1);
     add_joint(&m, 5, 1, 1);
-    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) ==
           SE3D_ERR_INVALID_ARGUMENT);
     start(&m, 2, 6, true, 1);
     add_joint(&m, 65, 0, 1);
-    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) ==
           SE3D_ERR_INVALID_ARGUMENT);
     start(&m, 2, 6, true, 1);
     add_coupling(&m, 1, 0);
-    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, &kkt) ==
+    CHECK(se3di_kkt_create(&memory, &m.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) ==
           SE3D_ERR_INVALID_ARGUMENT);
     CHECK(kkt == NULL);
     CHECK(memory_counter.bytes == 0);
@@ -718,10 +718,13 @@ static void a_failing_allocation_leaves_nothing_behind(void)
         for (; status < 0 && at < 10000; ++at) {
             se3di_kkt *kkt = NULL;
             memory_counter.calls = 0;
-            memory_counter.fail_at = at;
-            status = se3di_kkt_create(&memory, &m.pattern, (se3di_kkt_kind)kind, &kkt);
+            memory_counter.fail_at = SIZE_MAX;
+            se3di_shelf *shelf = se3di_shelf_create(&memory);
+            memory_counter.fail_at = at + 1;
+            status = se3di_kkt_create(&memory, &m.pattern, (se3di_kkt_kind)kind, shelf, &kkt);
             CHECK(status == SE3D_OK || (status == SE3D_ERR_NO_MEMORY && !kkt));
             se3di_kkt_destroy(kkt);
+            se3di_shelf_drop(shelf);
             CHECK(memory_counter.bytes == 0);
         }
         memory_counter.fail_at = SIZE_MAX;

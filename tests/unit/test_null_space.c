@@ -271,7 +271,7 @@ static void kkt_pivots_count_freedoms_of_negative_curvature(void)
                                            .joint_body = m.body,
                                            .body_size = 6,
                                            .symmetric = true};
-        CHECK(se3di_kkt_create(&heap, &pattern, SE3DI_KKT_STRUCTURED, &kkt) == SE3D_OK);
+        CHECK(se3di_kkt_create(&heap, &pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt) == SE3D_OK);
         const se3di_kkt_values values = {.body = H, .joint = m.C};
         CHECK(se3di_kkt_factor(kkt, &values, &info) >= 0);
         double *Z = find(&m, &freedoms, &dependent);
