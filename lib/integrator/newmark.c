@@ -22,6 +22,7 @@
 #define SPAN_LEAST  0.5  /* from a_n to a, over the step */
 #define FIRST_STEP  0.3  /* of the root of the tolerance, over the rates */
 #define PART_LEAST  0.01 /* of an equal step that does not converge */
+#define SHIFT_MAX   0.1  /* of the motion of an equal step, by z */
 #define JUMP_ERROR  360. /* over the tolerance, if the acceleration jumps: 30 a radian */
 
 /* memcpy if count may be zero and the pointers NULL. */
@@ -392,6 +393,19 @@ static se3d_status review(se3di_newmark_step *step, double most, se3di_memory_en
     return step->settles ? settle(step, tolerance, end) : SE3D_OK;
 }
 
+/* A step of given length that leaves the branch of the motion at a singular position. */
+static se3d_status check_branch(const se3di_newmark_step *step)
+{
+    if (se3di_newmark_measure_shift(step) <= SHIFT_MAX) {
+        return SE3D_OK;
+    }
+    return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                           "t = %g s: a step of %g s leaves the motion: bodies meet their joints "
+                           "elsewhere than their velocities lead (a singular position, or the step "
+                           "is too long); try a smaller one",
+                           step->t, step->h);
+}
+
 /* One step of h to t from the accepted state; on failure that is the model's. With an error, as
  * estimated, above `most` (0: any) it fails with STEP_SIZE. */
 static se3d_status step_to(se3di_integration *integration, double h, double t, double most)
@@ -410,7 +424,11 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     integration->error = HUGE_VAL;
     integration->fraction = 0.0;
     if (status >= 0) {
-        status = se3di_newmark_estimate(&step, most, &integration->error);
+        status = most > 0.0 ? se3di_newmark_estimate(&step, most, &integration->error)
+                            : check_branch(&step);
+    }
+    if (status >= 0 && !(most > 0.0)) {
+        integration->error = 0.0;
     }
     if (status >= 0) {
         status = review(&step, most, &end);
@@ -429,6 +447,34 @@ static se3d_status step_to(se3di_integration *integration, double h, double t, d
     return status;
 }
 
+/* What a shorter step may get over: it ends elsewhere. */
+static int may_be_divided(se3d_status status)
+{
+    return status == SE3D_ERR_NO_CONVERGENCE || status == SE3D_ERR_SINGULAR ||
+           status == SE3D_ERR_NOT_FINITE;
+}
+
+/* To t, in one step of h if that can be; on failure the state is that after the last part. */
+static se3d_status step_in_parts(se3di_integration *integration, double h, double t)
+{
+    const se3di_newmark_header *header = header_of(integration);
+    double part = h;
+    for (;;) {
+        const double rest = t - header->end;
+        const int is_last = rest <= (1.0 + SE3DI_NEWMARK_SAME_TIME) * part;
+        const double length = is_last ? (part == h ? h : rest) : part;
+        const se3d_status status =
+            step_to(integration, length, is_last ? t : header->end + part, 0.0);
+        if (status >= 0 && is_last) {
+            return SE3D_OK;
+        }
+        if (status < 0 && (!may_be_divided(status) || part <= PART_LEAST * h)) {
+            return status;
+        }
+        part = status < 0 ? 0.5 * part : part;
+    }
+}
+
 se3d_status se3di_newmark_make_step(se3di_integration *integration, double h)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
@@ -441,7 +487,7 @@ se3d_status se3di_newmark_make_step(se3di_integration *integration, double h)
     } else {
         SE3DI_TRY(adopt(integration, h));
     }
-    SE3DI_TRY(step_to(integration, h, t0 + h, 0.0));
+    SE3DI_TRY(step_in_parts(integration, h, t0 + h));
     header->equal = 0.0; /* steps of a run begin anew */
     return se3di_newmark_publish(integration, t0 + h);
 }
@@ -476,7 +522,7 @@ static se3d_status advance_equally(se3di_integration *integration, double longes
         if (status >= 0) {
             *count += part;
         }
-        if (status != SE3D_ERR_NO_CONVERGENCE || part <= PART_LEAST) {
+        if (!may_be_divided(status) || part <= PART_LEAST) {
             return status;
         }
     }

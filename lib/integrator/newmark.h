@@ -88,6 +88,10 @@ se3d_status se3di_newmark_factor(se3di_newmark_step *step);
 /* The largest velocities of the model's state, or what its accelerations make on the way of its
  * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
 void se3di_newmark_find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2]);
+
+/* The displacement z over the motion of the step: of the size h^2, but large if a step has met its
+ * constraints on another branch of the motion, near a singular position. NaN if z is. */
+double se3di_newmark_measure_shift(const se3di_newmark_step *step);
 /* *error of the solved step, relative to the tolerance; 0 if any is accepted (`most` 0). */
 se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double *error);
 

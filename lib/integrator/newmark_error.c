@@ -20,8 +20,10 @@
 #include <math.h>
 #include <string.h>
 
-#define PHASE 12.0 /* rad of the motion over which local errors add up */
-#define STAYS 0.81 /* error after which the next step is as long: vibrations grow with the step */
+#define PHASE          12.0 /* rad of the motion over which local errors add up */
+#define STAYS          0.81 /* error after which the next step is as long: vibrations grow */
+#define SHIFT_WEIGHT   0.1  /* of z beside j, which sees the same where all is well */
+#define SHIFT_ROUNDING 1e-9 /* of the size, or of a turn of 1 rad: z of rounding */
 
 /* The largest velocities of the model's state, or what its accelerations make on the way of its
  * length and a turn of 1 rad: [0] of translation, [1] of rotation. */
@@ -85,6 +87,22 @@ static double measure(const se3di_newmark_step *step, const se3di_newmark_header
            fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
 }
 
+double se3di_newmark_measure_shift(const se3di_newmark_step *step)
+{
+    const se3di_newmark_header *header = se3di_newmark_get_history(step->assembly).header;
+    const double sizes[2] = {header->scale.length, 1.0};
+    const double scale[2] = {header->scale.speed, header->scale.spin};
+    double worst = 0.0;
+    for (size_t k = 0; k < step->assembly->unknown_count; k += 3) {
+        const size_t kind = k % 6 / 3;
+        const double shift = se3di_norm(step->z + k) - SHIFT_ROUNDING * sizes[kind];
+        if (!se3di_state_is_carrier(step->assembly, k / 6)) {
+            worst = se3di_larger(worst, shift / scale[kind]);
+        }
+    }
+    return worst / step->h;
+}
+
 /* j' into equations->x: at the end of the step, as forces that are out of balance on the way there
  * would add stiffness. */
 static se3d_status filter(se3di_newmark_step *step, const double *jerk)
@@ -116,5 +134,8 @@ se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double
         SE3DI_TRY(filter(step, jerk));
         *error = fmin(*error, se3di_larger(STAYS, measure(step, past.header, step->equations->x)));
     }
+    const double shift = PHASE * SHIFT_WEIGHT * se3di_newmark_measure_shift(step) /
+                         fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
+    *error = se3di_larger(*error, shift);
     return SE3D_OK;
 }
