@@ -70,8 +70,9 @@ class Bench:
     def __init__(self, build, tests, folder):
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.commands = {entry["file"]: entry for entry in json.load(file)}
-        self.build, self.folder = build, folder
-        self.environment = {**os.environ, "SE3D_SOURCE_DIR": os.getcwd(), "SE3D_BUILD_DIR": build}
+        self.build, self.folder, self.checked = build, folder, set()
+        self.environment = {**os.environ, "SE3D_SOURCE_DIR": os.getcwd(), "SE3D_BUILD_DIR": build,
+                            "SE3D_SCRATCH_DIR": folder}
         times = {test: self.time(test) for test in tests}
         self.tests = sorted(tests, key=times.get)  # quick ones kill most
         self.longest = {test: max(60.0, 10.0 * times[test]) for test in tests}
@@ -96,6 +97,17 @@ class Bench:
         words[words.index("-c") + 1] = source
         words += ["-w", "-iquote", os.path.dirname(os.path.abspath(path))]
         return subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False).returncode == 0
+
+    def check(self, path, text):
+        """Once a file. Objects of tests may be older than the library: what is not changed must be linked and pass."""
+        if path in self.checked:
+            return
+        self.checked.add(path)
+        if not self.compile(path, text):
+            sys.exit(f"{path} is not compiled without any change")
+        for test in self.tests:
+            if self.dies(test):
+                sys.exit(f"{test} fails without any change: build it again")
 
     def dies(self, test):
         place = os.path.join(self.build, "tests")
@@ -135,6 +147,7 @@ def main():
         for path, lines, (number, changed, what) in every:
             if killed + passed == options.count or time.monotonic() - begun > options.seconds:
                 break
+            bench.check(path, "\n".join(lines))
             if not bench.compile(path, "\n".join(lines[:number] + [changed] + lines[number + 1:])):
                 continue
             if any(bench.dies(test) for test in bench.tests):
