@@ -59,9 +59,14 @@ bool se3di_read_fields(se3di_reader *reader, const se3di_node *map, const se3di_
                        const char *type, const char *structure, void *target)
 {
     for (const se3di_key *row = object->keys; row->key; ++row) {
-        if (row->structure && strcmp(row->structure, structure) == 0 &&
-            se3di_key_is_of(row, type) &&
-            !read_row(reader, map, row, (char *)target + row->offset)) {
+        if (!row->structure || strcmp(row->structure, structure) != 0 ||
+            !se3di_key_is_of(row, type)) {
+            continue;
+        }
+        if (row->required && !se3di_node_get(map, row->key)) {
+            return se3di_reader_fail_key(reader, map, row->key, "is missing: %s", row->text);
+        }
+        if (!read_row(reader, map, row, (char *)target + row->offset)) {
             return false;
         }
     }

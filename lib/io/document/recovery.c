@@ -69,7 +69,8 @@ static bool note_names(se3di_recovery *recovery, const se3di_node *node)
     if (node->key && node->text && strcmp(node->key, "name") == 0) {
         return add_lost(recovery, node->text);
     }
-    if (parent->key && se3di_keys_contain(" parameters points point_table ", parent->key)) {
+    if (node->key && parent->key &&
+        se3di_keys_contain(" parameters points point_table ", parent->key)) {
         return add_lost(recovery, node->key);
     }
     if (!name && parent->kind == SE3DI_NODE_LIST && parent->key) { /* joint1 of `joints` */
