@@ -12,7 +12,7 @@
 #include "se3d/se3d.h"
 #include "support/examples.h"
 
-enum { TEXT_MAX = 1 << 17, MODELS_MAX = 64, VALUES_MAX = 4000, TRIES = 600 };
+enum { TEXT_MAX = 1 << 17, MODELS_MAX = 72, VALUES_MAX = 4000, TRIES = 600 };
 
 typedef struct example {
     char path[900];
@@ -293,9 +293,114 @@ static void each_value_of_each_example_is_refused_in_its_line(void)
     CHECK(refused > tried - tried / 10 && there > refused - refused / 10);
 }
 
+/* The end of a value of flow style that begins at `at`. */
+static size_t end_of_value(const char *text, size_t at)
+{
+    size_t depth = 0;
+    for (char quote = '\0'; text[at]; ++at) {
+        const char c = text[at];
+        if (quote) {
+            quote = c == quote ? '\0' : quote;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (strchr("[{", c)) {
+            ++depth;
+        } else if (depth > 0 && strchr("]}", c)) {
+            --depth;
+        } else if (depth == 0 && strchr(",]}\n", c)) {
+            break;
+        }
+    }
+    return at;
+}
+
+/* The end of the lines that are deeper than a key at `column`. */
+static size_t end_of_block(const char *text, size_t at, size_t column)
+{
+    while (text[at] == '\n' && text[at + 1]) {
+        const size_t indent = strspn(text + at + 1, " ");
+        const char first = text[at + 1 + indent];
+        if (first != '\n' && indent <= column && !(indent == column && first == '-')) {
+            break;
+        }
+        at += 1 + strcspn(text + at + 1, "\n");
+    }
+    return at;
+}
+
+/* The key that begins at `at`, with its value and a comma. @return its end, `at`: there is none. */
+static size_t end_of_entry(const char *text, size_t at)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    const size_t length = strspn(text + at, letters);
+    size_t line = at;
+    if (length == 0 || (at > 0 && !strchr("\n {", text[at - 1])) || text[at + length] != ':' ||
+        !strchr(" \n", text[at + length + 1])) {
+        return at;
+    }
+    while (line > 0 && text[line - 1] != '\n') {
+        --line;
+    }
+    const size_t value = at + length + 1 + strspn(text + at + length + 1, " ");
+    const size_t end =
+        text[value] == '\n' ? end_of_block(text, value, at - line) : end_of_value(text, value);
+    return end + (text[end] == ',' ? 1 + strspn(text + end + 1, " ") : 0);
+}
+
+static void count_mistakes(void *ctx, const se3d_model_error *error)
+{
+    *(size_t *)ctx += error->message[0] != '\0';
+}
+
+/* Each key of a model with its value taken away; all mistakes are looked for. @return how many */
+static size_t take_away(const example *e)
+{
+    static char text[TEXT_MAX];
+    size_t tried = 0;
+    for (size_t at = 0; at < e->length; ++at) {
+        const size_t end = end_of_entry(e->text, at);
+        if (end > at) {
+            se3d_model *model = NULL;
+            se3d_model_error error;
+            size_t mistakes = 0;
+            se3d_model_options options = se3d_model_options_default();
+            options.report = count_mistakes;
+            options.report_ctx = &mistakes;
+            memcpy(text, e->text, at);
+            memcpy(text + at, e->text + end, e->length - end);
+            const se3d_status status = se3d_model_read_text(text, e->length - (end - at), e->path,
+                                                            &options, &model, &error);
+            CHECK(status == SE3D_OK ? mistakes == 0
+                                    : status == SE3D_ERR_MODEL && mistakes > 0 &&
+                                          is_message(error.message, e->path));
+            se3d_model_destroy(model);
+            ++tried;
+        }
+    }
+    return tried;
+}
+
+static void no_key_is_missed(void)
+{
+    static const char *const seeds[] = {"contact", "forces",         "guests", "joints",
+                                        "states",  "study_optimize", "study"};
+    const char *root = getenv("SE3D_SOURCE_DIR");
+    char path[900];
+    size_t tried = 0;
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; ++k) {
+        snprintf(path, sizeof path, "%.500s/fuzz/seeds/model/%s.yaml", root ? root : ".", seeds[k]);
+        read_example(path, seeds[k]);
+    }
+    for (size_t n = 0; n < example_count; ++n) {
+        tried += take_away(&examples[n]);
+    }
+    CHECK(tried > 4000);
+}
+
 int main(void)
 {
     RUN(hostile_values_are_refused_or_harmless);
     RUN(each_value_of_each_example_is_refused_in_its_line);
+    RUN(no_key_is_missed);
     return check_finish();
 }
