@@ -2,6 +2,7 @@
 #include "analysis/crowd.h"
 
 #include "contact/bodies/crowd.h"
+#include "force/driver_rate.h"
 
 static int is_known(const se3di_pair *pair)
 {
@@ -9,15 +10,9 @@ static int is_known(const se3di_pair *pair)
            !(pair->pull_off > 0.0);
 }
 
-/* A step of convex takes gravity as it is at its start. */
-int se3di_crowd_suits(const se3di_model *model)
+static int are_known(const se3di_model *model)
 {
     const size_t materials = model->material_slots.count;
-    if (se3di_model_gravity_varies(model) || model->sets || model->constraint_slots.count > 0 ||
-        model->force_slots.count > 0 || model->state_count > 0 ||
-        model->contact.law == SE3DI_LAW_CALLBACK) {
-        return 0;
-    }
     for (size_t k = 0; k < materials * materials; ++k) {
         if (!is_known(&model->pairs[k])) {
             return 0;
@@ -26,9 +21,36 @@ int se3di_crowd_suits(const se3di_model *model)
     return 1;
 }
 
+/* Elements that convex refuses or that are contacts of their own. */
+static int has_other_elements(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const int32_t type = model->forces[k].type;
+        if (type == SE3DI_FORCE_FRICTION || type == SE3DI_FORCE_ARMATURE ||
+            type == SE3DI_FORCE_STOP || type == SE3DI_FORCE_TYRE) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int se3di_crowd_may_touch(const se3di_model *model)
+{
+    return model->shape_slots.count > 0 && !se3di_model_gravity_varies(model) && !model->sets &&
+           model->state_count == 0 && model->contact.law != SE3DI_LAW_CALLBACK &&
+           se3di_find_driver_rate(model) == SE3DI_NO_INDEX && !has_other_elements(model) &&
+           are_known(model);
+}
+
+int se3di_crowd_suits(const se3di_model *model)
+{
+    return model->constraint_slots.count == 0 && model->force_slots.count == 0 &&
+           se3di_crowd_may_touch(model);
+}
+
 /* Shapes follow each other body by body, or a body counts once more; what no group and mask lets
  * touch anything does not count. */
-int se3di_crowd_is_large(const se3di_model *model)
+int se3di_crowd_has(const se3di_model *model, size_t least)
 {
     uint32_t last = UINT32_MAX, groups = 0, masks = 0;
     size_t count = 0;
@@ -37,7 +59,7 @@ int se3di_crowd_is_large(const se3di_model *model)
         groups |= shape->material >= 0 ? shape->group : 0;
         masks |= shape->material >= 0 ? shape->mask : 0;
     }
-    for (size_t k = 0; k < model->shape_slots.count && count < SE3DI_CROWD; ++k) {
+    for (size_t k = 0; k < model->shape_slots.count && count < least; ++k) {
         const se3di_shape *shape = &model->shapes[k];
         const se3di_body *body = &model->bodies[shape->body];
         const int meets = shape->material >= 0 && (shape->mask & groups) && (shape->group & masks);
@@ -46,5 +68,5 @@ int se3di_crowd_is_large(const se3di_model *model)
             ++count;
         }
     }
-    return count >= SE3DI_CROWD;
+    return count >= least;
 }

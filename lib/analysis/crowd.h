@@ -5,10 +5,12 @@
 
 #include "model/model.h"
 
-/* Method convex knows the contacts of the model, and there is nothing else that it would be less
- * exact for: constraints, force elements, states, gravity that changes. */
+/* Method convex knows all that the model has, and is as exact for it as for its contacts: no
+ * states, no gravity that changes, no elements that are contacts themselves. */
+int se3di_crowd_may_touch(const se3di_model *model);
+/* There is nothing beside contacts that it would be less exact for: no constraints and elements. */
 int se3di_crowd_suits(const se3di_model *model);
-/* So many free bodies have shapes that may touch that following each contact takes long. */
-int se3di_crowd_is_large(const se3di_model *model);
+/* At least so many free bodies have shapes that may touch. */
+int se3di_crowd_has(const se3di_model *model, size_t least);
 
 #endif

@@ -7,6 +7,8 @@
 #include "contact/bodies/crowd.h"
 #include "nonlinear/ranks.h"
 
+#include <stdio.h>
+
 #define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
 
 /* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
@@ -52,18 +54,23 @@ void se3di_run_tell_step(se3di_run *run)
 void se3di_run_tell_crowd(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
+    const int is_crowd = se3di_crowd_has(run->model, SE3DI_CROWD) && se3di_crowd_suits(run->model);
+    char why[64] = "bodies that touch have long held the steps short";
     if (run->told_crowd == method) {
         return;
     }
     if (method == &se3di_integrator_convex && run->automatic) {
         run->told_crowd = method;
+        if (is_crowd) {
+            snprintf(why, sizeof why, "%d free bodies or more are at each other", SE3DI_CROWD);
+        }
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
-                        "t = %g s: %d free bodies or more are at each other: %s takes them, of "
-                        "order 1; with a tolerance, each contact is followed",
-                        run->model->time, SE3DI_CROWD, method->name);
+                        "t = %g s: %s: %s takes them, of order 1; with a tolerance, each contact "
+                        "is followed",
+                        run->model->time, why, method->name);
     }
-    if (method != &se3di_integrator_convex && !run->integration.settings.leaves_crowd &&
-        se3di_crowd_is_large(run->model) && se3di_crowd_suits(run->model)) {
+    if (method != &se3di_integrator_convex && is_crowd &&
+        run->integration.settings.leaves_crowd == SE3DI_CROWD_NONE) {
         run->told_crowd = method;
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                         "t = %g s: %s follows each contact of the many bodies that may touch; "

@@ -11,6 +11,7 @@
 #include "contact/bodies/crowd.h"
 #include "force/driver_rate.h"
 #include "integrator/convex.h"
+#include "integrator/explicit_point.h"
 #include "integrator/explicit_step.h"
 #include "integrator/gauss_lanes.h"
 #include "nonlinear/against.h"
@@ -156,19 +157,32 @@ void se3di_run_choose_for_call(se3di_run *run, int is_step)
 
 #define STEP_CROWD 5e-3 /* s: a longest step for other methods would be too long for convex */
 
-/* No tolerance is asked for, and many bodies may touch. */
-static int may_crowd(const se3di_run *run)
+/* No tolerance is asked for, and bodies may touch that convex would step: SE3DI_CROWD_ */
+static int32_t may_crowd(const se3di_run *run)
 {
-    return run->automatic && run->analysis == SE3D_ANALYSIS_DYNAMICS && !run->has_tolerance &&
-           run->integration.settings.step <= STEP_CROWD && se3di_crowd_is_large(run->model) &&
-           se3di_crowd_suits(run->model);
+    const se3di_model *model = run->model;
+    if (!run->automatic || run->analysis != SE3D_ANALYSIS_DYNAMICS || run->has_tolerance ||
+        !(run->integration.settings.step <= STEP_CROWD) || !se3di_crowd_may_touch(model) ||
+        !se3di_crowd_has(model, SE3DI_CROWD_HELD)) {
+        return SE3DI_CROWD_NONE;
+    }
+    return se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model) ? SE3DI_CROWD_NEAR
+                                                                           : SE3DI_CROWD_SLOW;
 }
 
 int se3di_run_is_crowded(const se3di_run *run)
 {
     const se3di_model *model = run->model;
-    return may_crowd(run) && !is_history_of(model, SE3D_METHOD_RADAU) &&
-           (is_history_of(model, SE3D_METHOD_CONVEX) || se3di_bodies_crowd(model));
+    const int32_t crowd = may_crowd(run);
+    if (crowd == SE3DI_CROWD_NONE || is_history_of(model, SE3D_METHOD_RADAU)) {
+        return 0;
+    }
+    if (is_history_of(model, SE3D_METHOD_CONVEX)) {
+        return 1;
+    }
+    return crowd == SE3DI_CROWD_NEAR
+               ? se3di_bodies_crowd(model)
+               : is_history_of(model, SE3D_METHOD_DOP853) && se3di_explicit_leaves_crowd(model);
 }
 
 /* A function of time or the user's code is among the rows. */
@@ -388,7 +402,7 @@ se3d_status se3di_run_prepare(se3di_run *run)
         SE3DI_TRY(enter_crowd(run));
     }
     run->integration.settings.leaves_crowd =
-        run->integration.method->tag == SE3D_METHOD_DOP853 && may_crowd(run);
+        run->integration.method->tag == SE3D_METHOD_DOP853 ? may_crowd(run) : SE3DI_CROWD_NONE;
     se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
     if (run->values_version != run->model->values_version) {
         se3di_assembly_take_values(&run->equations.assembly);

@@ -7,17 +7,44 @@
 
 #include <math.h>
 
+#define COUNTED 256.0 /* steps */
+#define SHORT   5e-5  /* s, shorter than this on the average: convex makes one of 20 or more */
+
 int se3di_explicit_is_held(const se3di_integration *integration)
 {
     const double held = se3di_explicit_past_of(integration->equations->assembly.model)->held;
     return held >= SE3DI_HELD_MIN || (integration->settings.leaves_crowd && held < 0.0);
 }
 
+/* The last COUNTED steps were short, and something touches at their end. */
+static int is_slow(const se3di_explicit *m)
+{
+    se3di_explicit_past *past = m->past;
+    const double t = past->at.time;
+    past->counted += 1.0;
+    if (past->counted < COUNTED) {
+        return 0;
+    }
+    const int is_slow =
+        t - past->counts < SHORT * COUNTED && se3di_bodies_touch(m->assembly->model);
+    past->counted = 0.0;
+    past->counts = t;
+    return is_slow;
+}
+
 void se3di_explicit_watch_crowd(se3di_explicit *m)
 {
-    if (m->step.integration->settings.leaves_crowd) {
-        m->past->held = se3di_bodies_crowd(m->assembly->model) ? -1.0 : fmax(m->past->held, 0.0);
+    const int32_t crowd = m->step.integration->settings.leaves_crowd;
+    if (crowd != SE3DI_CROWD_NONE) {
+        const int meets =
+            crowd == SE3DI_CROWD_SLOW ? is_slow(m) : se3di_bodies_crowd(m->assembly->model);
+        m->past->held = meets ? -1.0 : fmax(m->past->held, 0.0);
     }
+}
+
+int se3di_explicit_leaves_crowd(const se3di_model *model)
+{
+    return se3di_explicit_past_of(model)->held < 0.0;
 }
 
 void se3di_explicit_count_sign(se3di_explicit *m, int is_held)

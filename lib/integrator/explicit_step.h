@@ -29,14 +29,20 @@ typedef struct se3di_explicit_past {
     double held;         /* signs in a row that stability limits the steps */
     double free;         /* signs against it since */
     double since;        /* steps since the last look */
-    double stages;       /* gauss: of the last step, which the next one continues; 0: none */
-    double contraction;  /* gauss: of the iterations of the last step */
-    double lost;         /* gauss: 1: rows were dependent at its end that are not all along */
-    double length;       /* Runge-Kutta: of the last step, as its stages were made */
-    double unscaled;     /* 1: steps without error control have not grown the scale */
-    double gap;          /* what the interpolation violates constraints by, < 0: not measured */
-    double wide;         /* 1: redundant rows are so by geometry alone (linsol/kkt.h) */
-    double narrow;       /* how often it was tried whether they are, in vain */
+    union {
+        double stages;  /* gauss: of the last step, which the next one continues; 0: none */
+        double counted; /* Runge-Kutta: steps */
+    };
+    union {
+        double contraction; /* gauss: of the iterations of the last step */
+        double counts;      /* Runge-Kutta: since when */
+    };
+    double lost;     /* gauss: 1: rows were dependent at its end that are not all along */
+    double length;   /* Runge-Kutta: of the last step, as its stages were made */
+    double unscaled; /* 1: steps without error control have not grown the scale */
+    double gap;      /* what the interpolation violates constraints by, < 0: not measured */
+    double wide;     /* 1: redundant rows are so by geometry alone (linsol/kkt.h) */
+    double narrow;   /* how often it was tried whether they are, in vain */
 } se3di_explicit_past;
 _Static_assert(sizeof(se3di_explicit_past) == 27 * sizeof(double),
                "it is an array of double in the model");

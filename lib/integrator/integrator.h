@@ -23,7 +23,7 @@ typedef struct se3di_integrator_settings {
     int32_t iterations_max;
     int32_t order;
     int32_t leaves_stiff; /* a run ends if the method is held by stability, */
-    int32_t leaves_crowd; /* or where many bodies are at each other */
+    int32_t leaves_crowd; /* or where bodies are at each other: SE3DI_CROWD_ */
     int32_t sleeps;       /* convex: islands at rest sleep */
 } se3di_integrator_settings;
 

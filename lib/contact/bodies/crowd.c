@@ -10,7 +10,7 @@
 
 typedef struct crowd {
     const se3di_model *model;
-    uint32_t bodies[SE3DI_CROWD];
+    uint32_t bodies[SE3DI_CROWD]; /* free ones, each once */
     size_t count;
 } crowd;
 
@@ -43,4 +43,16 @@ int se3di_bodies_crowd(const se3di_model *model)
     crowd c = {.model = model};
     (void)se3di_broad_visit(model, add_if_near, &c);
     return c.count >= SE3DI_CROWD;
+}
+
+int se3di_bodies_touch(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *contact = &model->contacts.list[k];
+        if (model->shapes[contact->shape_i].kind != SE3DI_SHAPE_SPHERE ||
+            model->shapes[contact->shape_j].kind != SE3DI_SHAPE_SPHERE) {
+            return 1;
+        }
+    }
+    return 0;
 }

@@ -5,10 +5,21 @@
 
 #include "model/model.h"
 
-#define SE3DI_CROWD 10 /* free bodies */
+#define SE3DI_CROWD      10 /* free bodies */
+#define SE3DI_CROWD_HELD 3  /* if following contacts holds steps short */
+
+/* What a method is left for. */
+enum {
+    SE3DI_CROWD_NONE = 0,
+    SE3DI_CROWD_NEAR = 1, /* as soon as SE3DI_CROWD free bodies are at each other */
+    SE3DI_CROWD_SLOW = 2  /* when contacts, of SE3DI_CROWD_HELD or more, make it slow */
+};
 
 /* So many free bodies touch something, or are a small part of their size from doing so while bounds
  * overlap: those of balls do only if they touch. */
 int se3di_bodies_crowd(const se3di_model *model);
+/* Anything touches at the accepted state; balls that touch balls do not count, as they may pass
+ * impacts on to each other (Newton's cradle). */
+int se3di_bodies_touch(const se3di_model *model);
 
 #endif
