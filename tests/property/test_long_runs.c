@@ -65,8 +65,7 @@ static double drift_allowed(int32_t method, double seconds)
     case SE3D_METHOD_VERLET:
     case SE3D_METHOD_GAUSS: /* keep it for ever */
         return 1e-5;
-    case SE3D_METHOD_CONVEX: /* of order 1 */
-        return 2e-2 * seconds;
+    case SE3D_METHOD_CONVEX: /* of order 2, like the next */
     case SE3D_METHOD_GENERALIZED_ALPHA:
     case SE3D_METHOD_HHT: /* damp high frequencies */
         return 1e-4 * seconds + 1e-5;
