@@ -35,9 +35,7 @@ for shards in 1 3 7; do
         done
         shard=$((shard + 1))
     done
-    if [ $shards -gt 1 ]; then
-        expect "merge $shards" 0 study -o "$folder" --merge
-    fi
+    expect "merge $shards" 0 study -o "$folder" --merge
     is "$(cksum <"$folder/study.csv")" "$whole"
 done
 
@@ -79,8 +77,43 @@ says 'is there already: --resume goes on with it'
 expect 'all of it is there' 0 study -o "$dir/one" --resume -q
 is "$(cksum <"$dir/one/study.csv")" "$whole"
 expect 'other parameters are another study' 1 study -o "$dir/one" --resume --set m=3
-expect 'no shards' 1 study -o "$dir/one" --merge
+# A part that is all of it.
+expect 'nothing to merge' 0 study -o "$dir/one" --merge
+has "$dir/out" "wrote $dir/one/study.csv: 70 samples, 0 failed"
+is "$(cksum <"$dir/one/study.csv")" "$whole"
+mkdir "$dir/piece"
+head -c 700 "$dir/one/study.csv" >"$dir/piece/study.csv"
+for how in -q --partial; do
+    expect "a piece of it, $how" 1 study -o "$dir/piece" --merge $how
+    says 'samples 3 to 69 are missing'
+    says 'not whole; --resume goes on with it'
+    is "$(wc -c <"$dir/piece/study.csv")" 700
+done
+expect 'the rest of it' 0 study -o "$dir/piece" --shard 1/1 --resume -q
+is "$(cksum <"$dir/piece/study.csv")" "$whole"
+mkdir "$dir/empty"
+expect 'no shards' 1 study -o "$dir/empty" --merge
 says 'has no shards'
+
+# The lock of a process that was killed lives as long as it does: it is waited for, not for ever.
+hold() {
+    python3 -c "import fcntl, time
+f = open('$dir/held/study.csv', 'r+b')
+fcntl.lockf(f, fcntl.LOCK_EX)
+open('$dir/held/now', 'w').close()
+time.sleep($1)" &
+    until [ -e "$dir/held/now" ]; do sleep 0.02; done
+    rm "$dir/held/now"
+}
+cp -r "$dir/piece" "$dir/held"
+head -c 700 "$dir/one/study.csv" >"$dir/held/study.csv"
+hold 0.5
+expect 'after a kill' 0 study -o "$dir/held" --resume -q
+is "$(cksum <"$dir/held/study.csv")" "$whole"
+wait
+hold 4
+expect 'beside another' 1 study -o "$dir/held" --resume -q
+says 'another program is writing it'
 expect 'no folder' 1 study -o "$dir/none" --merge
 says 'No such file'
 

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "interrupt.h"
@@ -308,6 +309,22 @@ static void put_problem(void *ctx, const se3d_model_error *error)
     complain("%s\n", error->message);
 }
 
+/* The only part of one is the table itself: it is looked at, and if it is whole that is all. */
+static void list_table(const job *j, path_list *list)
+{
+    struct stat about;
+    const size_t size = strlen(j->path) + 1;
+    if (list->count == 0 && stat(j->path, &about) == 0) {
+        list->paths = malloc(sizeof *list->paths);
+        char *path = list->paths ? malloc(size) : NULL;
+        if (path) {
+            memcpy(path, j->path, size);
+            list->paths[list->count++] = path;
+        }
+    }
+    errno = 0;
+}
+
 static int merge(job *j)
 {
     path_list list = {NULL, 0};
@@ -315,9 +332,15 @@ static int merge(job *j)
     uint64_t failed = 0;
     char message[PATH_SIZE + 200];
     int code = EXIT_FAILED;
+    errno = 0;
+    const int listed = list_shards(j->folder, &list);
+    const int has_parts = list.count > 0;
+    if (listed) {
+        list_table(j, &list);
+    }
     how.report = put_problem;
-    how.partial = j->o->partial;
-    if (!list_shards(j->folder, &list) || list.count == 0) {
+    how.partial = j->o->partial && has_parts;
+    if (!listed || list.count == 0) {
         snprintf(message, sizeof message, "%s: %s", j->folder,
                  list.count == 0 && errno == 0 ? "has no shards, study.K-of-N.csv"
                                                : strerror(errno));
@@ -330,7 +353,8 @@ static int merge(job *j)
             print_end(j, j->path, se3d_study_count_samples(j->study), failed);
             code = SE3D_FAILED(status) || failed > 0 ? EXIT_FAILED : EXIT_DONE;
         } else if (status == SE3D_ERR_STATE) {
-            complain("not merged; --partial writes what is there\n");
+            complain(has_parts ? "not merged; --partial writes what is there\n"
+                               : "not whole; --resume goes on with it\n");
         } else {
             code = fail(j, j->error.message);
         }

@@ -115,6 +115,7 @@ void se3di_temporary_release(const char *path, int hold)
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* In memory of malloc. */
@@ -176,17 +177,30 @@ bool se3di_file_is_same(const char *a, const char *b)
            of_a.st_ino == of_b.st_ino;
 }
 
+/* A process that was killed holds its locks until it is gone: whoever goes on at once with its
+ * work comes too early, by some milliseconds, on a busy machine by more. */
+static int lock_patiently(int number)
+{
+    const struct timespec pause = {0, 20000000};
+    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    int result = fcntl(number, F_SETLK, &lock);
+    for (int k = 0; k < 100 && result != 0 && (errno == EACCES || errno == EAGAIN); ++k) {
+        (void)nanosleep(&pause, NULL);
+        result = fcntl(number, F_SETLK, &lock);
+    }
+    return result;
+}
+
 FILE *se3di_file_continue(const char *path)
 {
     struct stat about;
-    struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     const int number =
         open(path, O_RDWR | O_CREAT | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (number < 0) {
         return NULL;
     }
     const bool regular = fstat(number, &about) == 0 && S_ISREG(about.st_mode);
-    const bool locked = regular && fcntl(number, F_SETLK, &lock) == 0;
+    const bool locked = regular && lock_patiently(number) == 0;
     const bool busy = regular && !locked && (errno == EACCES || errno == EAGAIN);
     FILE *file = regular && !busy ? fdopen(number, "r+b") : NULL; /* some disks have no locks */
     if (!file) {
