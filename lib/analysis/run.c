@@ -226,8 +226,19 @@ static int has_step_control(const se3di_integration *integration)
     return integration->method->run != NULL;
 }
 
-/* Dynamics goes on from its own history, or starts anew. */
-static se3d_status begin_dynamics(se3di_run *run, double h)
+/* A row of the motion within the last step: an interpolation, of which nothing is kept. */
+static int is_row(se3di_run *run, double t)
+{
+    se3di_integration *integration = &run->integration;
+    integration->shows_motion = run->shows_motion;
+    const int is = integration->method->run == se3di_explicit_run && !run->equations.watch &&
+                   se3di_explicit_is_within(integration, t);
+    integration->shows_motion = 0;
+    return is;
+}
+
+/* Dynamics goes on from its own history, or starts anew; up to t. */
+static se3d_status begin_dynamics(se3di_run *run, double h, double t)
 {
     se3di_model *model = run->model;
     const int waits = model->history_inputs != model->inputs_version && has_history(run) &&
@@ -238,7 +249,8 @@ static se3d_status begin_dynamics(se3di_run *run, double h)
     const int is_there = has_history(run);
     const int goes_on = is_there && model->history_inputs == model->inputs_version;
     run->equations.redundant |= is_there && model->history_redundant > 0; /* whoever made it */
-    if (!goes_on || run->integration.method->advance) {
+    run->shows_row = goes_on && is_row(run, t);
+    if (!goes_on || (run->integration.method->advance && !run->shows_row)) {
         SE3DI_TRY(keep_state(run));
     }
     if (waits) { /* efforts have changed since, nothing else: all is found anew */
@@ -428,7 +440,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
     SE3DI_TRY(refuse_against(run, t_end));
     run->refused = 0;
     step = remaining / se3di_steps_count(remaining, step, t_end);
-    SE3DI_TRY(begin_dynamics(run, step));
+    SE3DI_TRY(begin_dynamics(run, step, t_end));
     se3di_run_tell_bodies(run);
     se3di_run_tell_step(run);
     se3di_run_tell_crowd(run);
@@ -544,7 +556,7 @@ static se3d_status run_step(se3di_run *run, double h)
     se3di_integration *integration = &run->integration;
     const se3di_model *model = run->model;
     const double t_end = model->time + h;
-    SE3DI_TRY(begin_dynamics(run, h));
+    SE3DI_TRY(begin_dynamics(run, h, -HUGE_VAL));
     while (model->time < t_end) {
         double end = t_end;
         integration->at_kink = 0;
@@ -589,7 +601,7 @@ static se3d_status begin(se3di_run *run)
 {
     const se3d_status told = run->error->status;
     run->error->status = SE3D_OK;
-    run->has_before = run->steps_once = run->before_waits = 0;
+    run->has_before = run->steps_once = run->before_waits = run->shows_row = 0;
     run->events.reached = run->model->time; /* not where an earlier call has come to */
     run->model->remembers = 1;
     se3di_user_begin(run->model);

@@ -34,6 +34,7 @@ typedef struct se3di_run {
     se3di_saved before;      /* the state that the call under way began with, where */
     uint64_t before_version;
     int32_t has_before;       /* it was kept */
+    int32_t shows_row;        /* it was not: the call shows what is within the last step */
     int32_t steps_once;       /* the call is one step */
     int32_t driven_twice;     /* some coordinate is */
     int32_t shows_motion;     /* runs may end without accelerations and multipliers */

@@ -62,6 +62,11 @@ static void recover(se3di_run *run, double t_end)
     se3di_model *model = run->model;
     const se3di_integrator *method = run->integration.method;
     const se3di_error cause = *run->error;
+    if (run->prepared && run->shows_row) { /* by the same interpolation as what was there */
+        (void)show_accepted(run, run->events.reached);
+        *run->error = cause;
+        return;
+    }
     if (!run->prepared || !run->has_before) {
         return;
     }

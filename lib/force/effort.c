@@ -8,6 +8,9 @@
  * coordinate: no angle is measured and no turn counted, only g.  docs/theory/springs.md */
 #include "force/signal.h"
 
+#include <stddef.h>
+#include <string.h>
+
 static se3d_status eval_effort(const se3di_model *model, const se3di_force *force, double t,
                                se3di_effect *effect)
 {
@@ -33,8 +36,23 @@ static se3d_status eval_effort(const se3di_model *model, const se3di_force *forc
     return SE3D_OK;
 }
 
+/* None; the callback of a user may fail all the same. */
+static se3d_status find_potential(const se3di_model *model, const se3di_force *force, double t,
+                                  double *potential)
+{
+    se3di_effect effect;
+    *potential = 0.0;
+    if (!se3di_law_is_callback(model, force)) {
+        return SE3D_OK;
+    }
+    memset(&effect, 0, offsetof(se3di_effect, K));
+    effect.wants_derivative = 0;
+    return eval_effort(model, force, t, &effect);
+}
+
 const se3di_force_class se3di_force_class_effort = {
     .name = "effort",
     .eval = eval_effort,
+    .find_potential = find_potential,
     .traits = SE3DI_FORCE_IS_SCALAR,
 };

@@ -28,13 +28,13 @@ static se3d_status eval_state(const se3di_model *model, const se3di_force *force
     return SE3D_OK;
 }
 
-/* None; the law of a user may fail all the same. */
+/* None; the callback of a user may fail all the same. */
 static se3d_status find_potential(const se3di_model *model, const se3di_force *force, double t,
                                   double *potential)
 {
     double jet[3];
     *potential = 0.0;
-    if (force->tyre_index < 0 && force->function[0] >= 0) {
+    if (force->tyre_index < 0 && se3di_law_is_callback(model, force)) {
         SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
     }
     return SE3D_OK;

@@ -768,8 +768,31 @@ static se3d_status needs_projection(se3di_explicit *m, int *needed)
     return SE3D_OK;
 }
 
+int se3di_explicit_is_within(const se3di_integration *integration, double t)
+{
+    const se3di_model *model = integration->equations->assembly.model;
+    const se3di_explicit_past *past = se3di_explicit_past_of(model);
+    const double rough =
+        se3di_state_rough(model, integration->shows_motion, integration->settings.tolerance);
+    return past->dense > 0.0 && t > past->at.begin && t < past->at.time && rough > 0.0 &&
+           past->gap >= 0.0 && past->gap <= GAP_PART * rough;
+}
+
+/* Nothing is solved on the way: what the solvers need is not made. */
+static se3d_status show_within(se3di_integration *integration, double t)
+{
+    se3di_explicit m = se3di_explicit_point(integration);
+    m.step.integration = integration;
+    se3di_forces_show(m.assembly->model, 1);
+    m.methods->interpolate(&m, t, m.y);
+    return show(&m, m.y, t, 0);
+}
+
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
 {
+    if (se3di_explicit_is_within(integration, t_end)) {
+        return show_within(integration, t_end);
+    }
     se3di_explicit m = se3di_explicit_begin(integration);
     const int at_begin = !(t_end > m.past->at.begin);
     se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);

@@ -146,6 +146,8 @@ void se3di_explicit_come_back(se3di_integration *integration);
 se3d_status se3di_explicit_step(se3di_integration *integration, double h);
 /* To t_end with step control. */
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end);
+/* Whether t is within the last step, whose motion is shown by an interpolation that is ready. */
+int se3di_explicit_is_within(const se3di_integration *integration, double t);
 /* Counts in the history are counts, whoever wrote it. */
 int se3di_explicit_is_sound(const double *history, size_t count);
 se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end);
