@@ -11,6 +11,7 @@
 
 #include "math/vec3.h"
 #include "particles/mesh.h"
+#include "particles/share.h"
 #include "particles/wall.h"
 
 #include <math.h>
@@ -27,22 +28,42 @@ void se3di_audit_mark(se3di_particles *set)
 void se3di_audit_add(se3di_particles *set, double span)
 {
     double power[SE3DI_AUDIT_KINDS] = {0.0};
+    const int spread = se3di_share_is_spread(set);
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_audit_load *a = &set->audit[k];
         double v[3], w[3];
+        if (se3di_share_is_ghost(set, k)) {
+            continue;
+        }
         for (int c = 0; c < 3; ++c) {
             v[c] = 0.5 * (a->v[c] + set->particles[k].v[c]);
             w[c] = 0.5 * (a->w[c] + set->spins[k].w[c]);
         }
-        power[0] += se3di_dot(a->damping, v);
-        power[1] += se3di_dot(a->slide, v) + se3di_dot(a->turn, w);
-        power[2] += se3di_dot(a->roll, w);
-        power[3] += se3di_dot(a->twist, w);
+        const double own[SE3DI_AUDIT_KINDS] = {se3di_dot(a->damping, v),
+                                               se3di_dot(a->slide, v) + se3di_dot(a->turn, w),
+                                               se3di_dot(a->roll, w), se3di_dot(a->twist, w)};
+        for (int c = 0; c < SE3DI_AUDIT_KINDS; ++c) {
+            if (spread) {
+                se3di_exact_add(&set->audit_seen[c], -span * own[c]);
+            } else {
+                power[c] += own[c];
+            }
+        }
     }
     for (int k = 0; k < SE3DI_AUDIT_KINDS; ++k) {
         set->audit_work[k] += span * (set->audit_power[k] - power[k]);
+        se3di_exact_carry(&set->audit_seen[k]);
     }
     set->wall_work += span * set->audit_power[SE3DI_AUDIT_KINDS];
+}
+
+void se3di_audit_unite(se3di_particles *set)
+{
+    se3di_share_add_exactly(set, SE3DI_AUDIT_KINDS, set->audit_seen);
+    for (int k = 0; k < SE3DI_AUDIT_KINDS; ++k) {
+        set->audit_work[k] += se3di_exact_get(&set->audit_seen[k]);
+    }
+    memset(set->audit_seen, 0, sizeof set->audit_seen);
 }
 
 /* Of a contact with this overlap, and the displacements of its springs. */

@@ -9,6 +9,8 @@
 void se3di_audit_mark(se3di_particles *set);
 /* After it: add the work of the forces in a time of `span`. */
 void se3di_audit_add(se3di_particles *set, double span);
+/* A set that was spread is whole again: what all processes have seen, to audit_work. */
+void se3di_audit_unite(se3di_particles *set);
 /* What contacts store now, by kinds [J]. */
 void se3di_audit_elastic(const se3di_particles *set, double elastic[SE3DI_AUDIT_KINDS]);
 

@@ -7,9 +7,11 @@
 
 #include "math/vec3.h"
 #include "particles/clump.h"
+#include "particles/share.h"
 #include "particles/wall.h"
 
 #include <math.h>
+#include <string.h>
 
 #define SEAM 0.499 /* of a period away from the point: its other image may be as near */
 
@@ -76,12 +78,22 @@ typedef struct passer {
     double mass, drift;
     int32_t tag;
     uint32_t before; /* its sides */
+    int spread;      /* others see to other passers */
 } passer;
 
 static void pass_flow(se3di_flow *flow, const passer *p, const double d[3], int forward)
 {
     const double sign = forward ? 1.0 : -1.0;
     if ((flow->tag >= 0 && flow->tag != p->tag) || !is_within(flow, d, p->v)) {
+        return;
+    }
+    if (p->spread) {
+        flow->forward += (uint64_t)forward;
+        flow->backward += (uint64_t)!forward;
+        se3di_exact_add(&flow->seen[0], sign * p->mass);
+        for (int a = 0; a < 3; ++a) {
+            se3di_exact_add(&flow->seen[1 + a], sign * p->mass * p->v[a]);
+        }
         return;
     }
     flow->total.forward += (uint64_t)forward;
@@ -137,40 +149,61 @@ static void pass_all(se3di_particles *set, const passer *p)
 
 void se3di_flows_count(se3di_particles *set, double drift)
 {
+    const int spread = se3di_share_is_spread(set);
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_particle *g = &set->particles[k];
-        const passer p = {g->x, g->v, 1.0 / g->inverse_mass, drift, set->spins[k].tag, set->key[k]};
-        if (!se3di_clump_find(set, k)) {
+        const passer p = {g->x,        g->v,  1.0 / g->inverse_mass, drift, set->spins[k].tag,
+                          set->key[k], spread};
+        if (!se3di_clump_find(set, k) && !se3di_share_is_ghost(set, k)) {
             pass_all(set, &p);
         }
     }
-    for (size_t k = 0; k < set->clump_count; ++k) {
+    for (size_t k = 0; k < se3di_share_clumps(set); ++k) {
         const se3di_clump *clump = &set->clumps[k];
         const size_t first = set->index_of[clump->first];
         const passer p = {
-            clump->x,     clump->v, se3di_clump_mass(set, clump), drift, set->spins[first].tag,
-            set->order[k]};
+            clump->x,      clump->v, se3di_clump_mass(set, clump), drift, set->spins[first].tag,
+            set->order[k], spread};
         pass_all(set, &p);
     }
 }
 
-void se3di_flows_tick(se3di_particles *set)
+/* What all processes have seen, with what had passed before the set was spread. */
+static se3di_flow_sum total_of(const se3di_particles *set, const se3di_flow *flow)
+{
+    struct {
+        se3di_exact seen[4];
+        double counts[2];
+    } all = {.counts = {(double)flow->forward, (double)flow->backward}};
+    se3di_flow_sum total = flow->total;
+    if (!se3di_share_is_spread(set)) {
+        return total;
+    }
+    memcpy(all.seen, flow->seen, sizeof all.seen);
+    se3di_share_add_exactly(set, 4, all.seen);
+    set->share->add(set, 2, all.counts);
+    total.forward += (uint64_t)all.counts[0];
+    total.backward += (uint64_t)all.counts[1];
+    total.mass += se3di_exact_get(&all.seen[0]);
+    for (int a = 0; a < 3; ++a) {
+        total.momentum[a] += se3di_exact_get(&all.seen[1 + a]);
+    }
+    return total;
+}
+
+void se3di_flows_unite(se3di_particles *set)
 {
     for (size_t f = 0; f < set->flow_count; ++f) {
         se3di_flow *flow = &set->flows[f];
-        if (set->time - flow->begun >= flow->window * (1.0 - 1e-9)) {
-            flow->rates = se3di_flow_rates_since(flow, set->time);
-            flow->has_rates = 1;
-            flow->before = flow->total;
-            flow->begun = set->time;
-        }
+        flow->total = total_of(set, flow);
+        flow->forward = flow->backward = 0;
+        memset(flow->seen, 0, sizeof flow->seen);
     }
 }
 
-se3di_flow_rates se3di_flow_rates_since(const se3di_flow *flow, double time)
+static se3di_flow_rates rates_between(const se3di_flow_sum *a, const se3di_flow_sum *b, double span)
 {
-    const double span = time - flow->begun, by = span > 0.0 ? 1.0 / span : 0.0;
-    const se3di_flow_sum *a = &flow->before, *b = &flow->total;
+    const double by = span > 0.0 ? 1.0 / span : 0.0;
     se3di_flow_rates rates = {
         .count = by * ((double)(b->forward - a->forward) - (double)(b->backward - a->backward)),
         .mass = by * (b->mass - a->mass)};
@@ -178,4 +211,23 @@ se3di_flow_rates se3di_flow_rates_since(const se3di_flow *flow, double time)
         rates.momentum[k] = by * (b->momentum[k] - a->momentum[k]);
     }
     return rates;
+}
+
+void se3di_flows_tick(se3di_particles *set)
+{
+    for (size_t f = 0; f < set->flow_count; ++f) {
+        se3di_flow *flow = &set->flows[f];
+        if (set->time - flow->begun >= flow->window * (1.0 - 1e-9)) {
+            const se3di_flow_sum total = total_of(set, flow);
+            flow->rates = rates_between(&flow->before, &total, set->time - flow->begun);
+            flow->has_rates = 1;
+            flow->before = total;
+            flow->begun = set->time;
+        }
+    }
+}
+
+se3di_flow_rates se3di_flow_rates_since(const se3di_flow *flow, double time)
+{
+    return rates_between(&flow->before, &flow->total, time - flow->begun);
 }

@@ -12,6 +12,8 @@ void se3di_flows_mark_clumps(se3di_particles *set, size_t begin, size_t end);
 /* After all were moved, for the time `drift`: count those that are on another side, one after the
  * other. */
 void se3di_flows_count(se3di_particles *set, double drift);
+/* A set that was spread is whole again: what all processes have seen, to the totals. */
+void se3di_flows_unite(se3di_particles *set);
 /* Means from the beginning of the window to a time. */
 se3di_flow_rates se3di_flow_rates_since(const se3di_flow *flow, double time);
 /* A step has ended: begin a new window if the last one is over. */

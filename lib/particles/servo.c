@@ -11,6 +11,7 @@
 
 #include "math/elementary.h"
 #include "math/vec3.h"
+#include "particles/share.h"
 
 #include <math.h>
 #include <string.h>
@@ -85,19 +86,47 @@ double se3di_servo_wanted(const se3di_servo *servo)
     return servo->area > 0.0 ? servo->load * servo->area : servo->load;
 }
 
+/* Stiffnesses and dampings of what presses a wall, and their sums over all processes. */
+typedef struct total {
+    double K, C;
+    se3di_exact exact[2]; /* of a set that is spread */
+} total;
+
+static void add(const se3di_particles *set, total *sum, double K, double C)
+{
+    sum->K += K;
+    sum->C += C;
+    if (se3di_share_is_spread(set)) {
+        se3di_exact_add(&sum->exact[0], K);
+        se3di_exact_add(&sum->exact[1], C);
+    }
+}
+
+static void unite(const se3di_particles *set, total *sum)
+{
+    if (se3di_share_is_spread(set)) {
+        se3di_share_add_exactly(set, 2, sum->exact);
+        sum->K = se3di_exact_get(&sum->exact[0]);
+        sum->C = se3di_exact_get(&sum->exact[1]);
+    }
+}
+
 /* Of what is bonded to the wall, in whatever direction. */
 static double bond_resistance(const se3di_particles *set, const se3di_servo *servo, double h)
 {
-    double K = 0.0, C = 0.0;
+    total sum = {0.0, 0.0, {{{0.0}}}};
     for (size_t k = 0; k < set->bond_count; ++k) {
         const se3di_bond *bond = &set->bonds[k];
         const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
-        if (end->id == SE3DI_NO_INDEX && is_same(end->shape, servo->shape)) {
-            K += fmax(bond->stiffness[0], bond->stiffness[1]);
-            C += fmax(bond->damping[0], bond->damping[1]);
+        const uint32_t sphere = set->bond_ends[bond->end[0]].id;
+        if (end->id == SE3DI_NO_INDEX && is_same(end->shape, servo->shape) &&
+            !se3di_share_is_ghost(set, set->index_of[sphere])) {
+            add(set, &sum, fmax(bond->stiffness[0], bond->stiffness[1]),
+                fmax(bond->damping[0], bond->damping[1]));
         }
     }
-    return STEPS * h * K + DAMPS * C;
+    unite(set, &sum);
+    return STEPS * h * sum.K + DAMPS * sum.C;
 }
 
 /* How much the force grows with the speed in a step, if all particles that are near carry it. */
@@ -106,7 +135,7 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
 {
     const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
     const double bonds = bond_resistance(set, servo, h);
-    double K = 0.0, C = 0.0;
+    total sum = {0.0, 0.0, {{{0.0}}}};
     for (size_t k = 0; set->list_valid && k < set->near_count; ++k) {
         const uint32_t i = set->near_walls[k].i & ~SE3DI_LIST_ACTIVE;
         const se3di_wall *wall = &set->walls[set->near_walls[k].wall];
@@ -115,15 +144,15 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
             const se3di_pair *pair =
                 &set->pairs[set->spins[i].material * set->stuff_count + wall->material];
             const double root = hertz ? sqrt(g->radius) : 1.0;
-            K += pair->kn * root;
-            C += pair->dn * sqrt(root / g->inverse_mass);
+            add(set, &sum, pair->kn * root, pair->dn * sqrt(root / g->inverse_mass));
         }
     }
-    if (hertz && K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
-        const double root = se3di_pow(force / K, 1.0 / 3.0);
-        return bonds + STEPS * h * 1.5 * K * root + DAMPS * C * sqrt(root);
+    unite(set, &sum);
+    if (hertz && sum.K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
+        const double root = se3di_pow(force / sum.K, 1.0 / 3.0);
+        return bonds + STEPS * h * 1.5 * sum.K * root + DAMPS * sum.C * sqrt(root);
     }
-    return bonds + STEPS * h * K + DAMPS * C;
+    return bonds + STEPS * h * sum.K + DAMPS * sum.C;
 }
 
 static double choose_speed(const se3di_particles *set, const se3di_servo *servo, double h)
@@ -161,7 +190,7 @@ void se3di_servos_rest(se3di_particles *set)
 
 void se3di_servos_drift(se3di_particles *set, double h)
 {
-    for (size_t k = 0; k < set->servo_count && set->count > 0; ++k) {
+    for (size_t k = 0; k < set->servo_count && se3di_share_total(set) > 0; ++k) {
         se3di_servo *servo = &set->servos[k];
         const double force = se3di_servo_force(set, servo);
         servo->work += servo->half * force;

@@ -269,7 +269,7 @@ void se3di_particles_filter(se3di_particles *set, const unsigned char *keep)
     se3di_clumps_filter(set);
     se3di_bonds_filter(set);
     se3di_particles_remap(set, set->order);
-    if (set->count == 0) {
+    if (set->count == 0 && !se3di_share_is_spread(set)) {
         se3di_servos_rest(set);
         se3di_walls_rest(set);
     }

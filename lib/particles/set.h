@@ -18,6 +18,7 @@
 #include "base/slots.h"
 #include "contact/bodies/law.h"
 #include "contact/shape/shape.h"
+#include "math/exact.h"
 #include "model/model.h"
 #include "se3d/cell.h"
 #include "se3d/particles.h"
@@ -257,6 +258,9 @@ typedef struct se3di_flow {
     double begun;                 /* time at the beginning of the window, */
     se3di_flow_sum before, total; /* what had passed then, and now */
     se3di_flow_rates rates;       /* of the last whole window */
+    /* of a set that is spread, which adds it to `total` when it is whole again: share.h */
+    uint64_t forward, backward;
+    se3di_exact seen[4]; /* mass, momentum */
 } se3di_flow;
 
 /* A sphere of a template: place in the principal axes, from the centre of mass. */
@@ -496,6 +500,7 @@ typedef struct se3di_particles {
     double wall_work;                          /* given by walls [J] */
     double audit_power[SE3DI_AUDIT_KINDS + 1]; /* of the last forces on particles with the velocity
                                                 * of walls or images; [4]: of all [W] */
+    se3di_exact audit_seen[SE3DI_AUDIT_KINDS]; /* taken since the set was spread: share.h */
     uint64_t steps, rebuilds, refreshes, lost;
     uint64_t lost_of[SE3D_PARTICLES_TAGS];
     double home_low[3], home_high[3]; /* the box of all places where particles were added */
@@ -570,7 +575,8 @@ typedef struct se3di_force_task {
     double *exact;                       /* the same without rounding; NULL: no; share.h */
     const double *exact_steps;           /* [SE3DI_EXACT_PARTS] */
     se3di_audit_load *audit;             /* of an audited set, added to; NULL: no */
-    double power[SE3DI_AUDIT_KINDS + 1]; /* the same, out: added to */
+    double power[SE3DI_AUDIT_KINDS + 1]; /* the same, out: added to, */
+    se3di_exact *exact_power;            /* or, without rounding, to these; NULL: no */
     int32_t in_turn;                     /* loads are added to i and j pair by pair */
     uint32_t unused;                     /* the index in lanes that nobody uses */
     const se3di_stuff *stuffs;           /* of a user-defined law, as the next three */

@@ -17,11 +17,12 @@ typedef struct se3di_share {
     /* The first clumps; their spheres are own particles. Of the others, which are ghosts, only q
      * and A are renewed: x, v and spin are those of when the lists were made. */
     uint32_t owned_clumps;
-    se3d_status told;                /* of the call under way, which has failed for all; else 0 */
-    const uint32_t *number;          /* [id] their ids in the whole */
-    uint64_t total;                  /* own particles of all processes */
-    size_t ids;                      /* of the whole so far */
-    double *sums;                    /* [slabs most * walls * 6 * SE3DI_EXACT_PARTS] */
+    se3d_status told;       /* of the call under way, which has failed for all; else 0 */
+    const uint32_t *number; /* [id] their ids in the whole */
+    uint64_t total;         /* own particles of all processes */
+    size_t ids;             /* of the whole so far */
+    double *sums;           /* [slabs most * walls * 6 * SE3DI_EXACT_PARTS] */
+    se3di_exact (*powers)[SE3DI_AUDIT_KINDS + 1]; /* [slabs most] as power of a slab; or NULL */
     double steps[SE3DI_EXACT_PARTS]; /* 3/2 2^52 times what the parts are multiples of */
     double (*fresh)[4]; /* [fresh_count] places and radii of what sources have inserted */
     size_t fresh_count; /* since lists were made; all processes know of it */
@@ -108,6 +109,18 @@ static inline void se3di_share_add_to_wall(const se3di_particles *set, uint32_t 
             sum[SE3DI_EXACT_PARTS * a + n] += part;
             rest -= part;
         }
+    }
+}
+
+/* Sums over all processes, which do not depend on who has what. */
+static inline void se3di_share_add_exactly(const se3di_particles *set, size_t count,
+                                           se3di_exact *sums)
+{
+    for (size_t k = 0; k < count; ++k) {
+        se3di_exact_carry(&sums[k]);
+    }
+    if (se3di_share_is_spread(set) && count > 0) {
+        set->share->add(set, count * SE3DI_EXACT_SIZE, sums->part);
     }
 }
 

@@ -239,6 +239,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         task.in_turn = 1;
         task.exact = set->share->sums;
         task.exact_steps = set->share->steps;
+        task.exact_power = set->audits ? set->share->powers[0] : NULL;
     }
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
@@ -273,6 +274,7 @@ static se3d_status evaluate(se3di_particles *set, double h, se3di_particle_motio
     set->law_failure = (se3di_law_failure){0, 0, 0, 0};
     set->force_valid = 1;
     if (se3di_share_total(set) == 0) {
+        se3di_servos_rest(set);
         se3di_walls_rest(set);
         return set->starved ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     }

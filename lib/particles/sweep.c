@@ -282,6 +282,10 @@ static void evaluate_forces(const sweep *w, uint32_t s)
     se3di_slab *slab = &set->slabs[s];
     se3di_force_task task = *w->task;
     size_t walls = set->wall_count;
+    if (task.exact_power) {
+        task.exact_power = set->share->powers[s];
+        memset(task.exact_power, 0, sizeof set->share->powers[s]);
+    }
     task.begin = slab->pair_begin;
     task.end = slab->pair_end;
     se3di_particles_get_kernels(set)->pairs(&task);
@@ -452,9 +456,28 @@ static void sweep_together(const sweep *w)
 #endif
 }
 
+/* Of an audited set that is spread: pairs give nothing, and each wall contact is evaluated once. */
+static void sum_powers(se3di_particles *set)
+{
+    se3di_exact *sums = set->share->powers[0];
+    for (uint32_t s = 1; s < set->slab_count; ++s) {
+        for (int k = 0; k <= SE3DI_AUDIT_KINDS; ++k) {
+            se3di_exact_add_sum(&sums[k], &set->share->powers[s][k]);
+        }
+    }
+    se3di_share_add_exactly(set, SE3DI_AUDIT_KINDS + 1, sums);
+    for (int k = 0; k <= SE3DI_AUDIT_KINDS; ++k) {
+        set->audit_power[k] = se3di_exact_get(&sums[k]);
+    }
+}
+
 static void sum_slabs(se3di_particles *set)
 {
     double sum[9] = {0.0};
+    if (set->audits && se3di_share_is_spread(set)) {
+        sum_powers(set);
+        return;
+    }
     memset(set->audit_power, 0, sizeof set->audit_power);
     for (uint32_t s = 0; s < set->slab_count; ++s) {
         for (int k = 0; k <= SE3DI_AUDIT_KINDS; ++k) {

@@ -43,6 +43,7 @@ static void destroy(team *t)
     free(t->gone);
     free(t->share.fresh);
     free(t->share.sums);
+    free(t->share.powers);
     free(t);
 }
 

@@ -99,7 +99,7 @@ typedef struct team {
     uint64_t clump_arrival_count;
     uint64_t lost, lost_of[SE3D_PARTICLES_TAGS];
     uint64_t *removed; /* [sinks] as the last three, when the run began */
-    size_t sum_capacity, removed_capacity;
+    size_t sum_capacity, power_capacity, removed_capacity;
     se3d_mpi_stats stats;
     double begun;
 } team;

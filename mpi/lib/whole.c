@@ -5,11 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "particles/audit.h"
 #include "particles/clump.h"
 #include "particles/contacts.h"
 #include "particles/grid.h"
 #include "particles/list.h"
 #include "particles/memory.h"
+#include "particles/passage.h"
 #include "team.h"
 
 /* A particle with the forces on it. */
@@ -19,12 +21,14 @@ typedef struct loaded {
 } loaded;
 
 /* All of one kind from all processes: particles, pairs and walls that touch, the same on meshes and
- * their triangles, clumps, ends of bonds, bonds, and those that are gone. */
-enum { PARTICLES, PAIRS, WALLS, TOUCHES, FACES, CLUMPS, ENDS, TIES, GONE, KINDS };
+ * their triangles, clumps, ends of bonds, bonds, those that are gone, and what contacts do to each
+ * of the particles, if that is audited. */
+enum { PARTICLES, PAIRS, WALLS, TOUCHES, FACES, CLUMPS, ENDS, TIES, GONE, AUDITS, KINDS };
 
 static const size_t sizes[KINDS] = {sizeof(loaded),          sizeof(history),  sizeof(history),
                                     sizeof(se3di_mesh_pair), sizeof(uint32_t), sizeof(se3di_clump),
-                                    sizeof(se3di_bond_end),  sizeof(tie),      sizeof(parting)};
+                                    sizeof(se3di_bond_end),  sizeof(tie),      sizeof(parting),
+                                    sizeof(se3di_audit_load)};
 
 typedef struct head {
     uint64_t count[KINDS];
@@ -37,10 +41,7 @@ typedef struct whole {
 
 static const char *refusal(const se3di_particles *set)
 {
-    return set->flow_count > 0              ? "cannot be counted by flows"
-           : set->audits                    ? "cannot be audited"
-           : set->servo_count > 0           ? "cannot be pressed by servo walls"
-           : set->cell.count > 0            ? "cannot be in a cell that strains"
+    return set->cell.count > 0              ? "cannot be in a cell that strains"
            : set->law == SE3DI_LAW_CALLBACK ? "cannot have a law of contact of the user's own"
                                             : NULL;
 }
@@ -101,6 +102,8 @@ static void choose_steps(se3di_particles *set)
                  6 * SE3DI_EXACT_PARTS * SE3DI_PARTICLE_SLABS_MAX * (set->wall_count + 1),
                  sizeof *t->share.sums);
     memset(t->share.sums, 0, t->sum_capacity * sizeof *t->share.sums);
+    team_reserve(t, &t->share.powers, &t->power_capacity,
+                 set->audits ? SE3DI_PARTICLE_SLABS_MAX : 0, sizeof *t->share.powers);
 }
 
 /* What sinks have taken before the run. */
@@ -139,29 +142,47 @@ static void sum_counts(se3di_particles *set)
     }
 }
 
-/* The forces of the last step belong to the particles, whoever has them. */
-static se3di_load *save_loads(const se3di_particles *set)
+/* The forces of the last step belong to the particles, whoever has them; and `parts` of them, of an
+ * audited set. */
+typedef struct saved {
+    se3di_load *loads; /* [id]; NULL: they are to be computed */
+    se3di_audit_load *parts;
+} saved;
+
+static saved save_loads(const se3di_particles *set)
 {
     team *t = team_of(set);
-    se3di_load *loads = NULL;
-    size_t none = 0;
+    saved s = {NULL, NULL};
+    size_t none = 0, no_parts = 0;
     if (set->list_valid && set->force_valid) {
-        team_reserve(t, &loads, &none, set->id_count + 1, sizeof *loads);
+        team_reserve(t, &s.loads, &none, set->id_count + 1, sizeof *s.loads);
+        team_reserve(t, &s.parts, &no_parts, set->audits ? set->id_count + 1 : 0, sizeof *s.parts);
         for (size_t k = 0; k < set->count; ++k) {
-            loads[set->spins[k].id] = set->loads[k];
+            s.loads[set->spins[k].id] = set->loads[k];
+            if (set->audits) {
+                s.parts[set->spins[k].id] = set->audit[k];
+            }
         }
     }
-    return loads;
+    return s;
 }
 
-static void restore_loads(se3di_particles *set, se3di_load *loads)
+static void restore_loads(se3di_particles *set, const saved *s)
 {
-    for (size_t k = 0; loads && k < set->count; ++k) {
+    for (size_t k = 0; s->loads && k < set->count; ++k) {
         if (!se3di_share_is_ghost(set, k)) {
-            set->loads[k] = loads[se3di_share_number(set, k)];
+            set->loads[k] = s->loads[se3di_share_number(set, k)];
+            if (set->audits) {
+                set->audit[k] = s->parts[se3di_share_number(set, k)];
+            }
         }
     }
-    free(loads);
+}
+
+static void forget_loads(saved *s)
+{
+    free(s->loads);
+    free(s->parts);
 }
 
 static void number_all(se3di_particles *set)
@@ -191,8 +212,8 @@ se3d_status team_spread(se3di_particles *set, const char **why)
     choose_steps(set);
     number_all(set);
     team_begin_bonds(set);
-    se3di_load *loads = save_loads(set);
-    const int32_t valid = loads != NULL;
+    saved loads = save_loads(set);
+    const int32_t valid = loads.loads != NULL;
     t->from_whole = t->share.is_spread = 1;
     const se3d_status status = se3di_particles_rebuild(set);
     t->from_whole = 0;
@@ -201,11 +222,12 @@ se3d_status team_spread(se3di_particles *set, const char **why)
     }
     keep_counts(set);
     if (status < 0) {
-        free(loads);
+        forget_loads(&loads);
         team_gather(set);
         return status;
     }
-    restore_loads(set, loads);
+    restore_loads(set, &loads);
+    forget_loads(&loads);
     set->force_valid = valid;
     return SE3D_OK;
 }
@@ -285,6 +307,9 @@ static void pack(const se3di_particles *set, bytes *out)
             }
             p.mover.spin.id = p.mover.number;
             bytes_put(t, &part[PARTICLES], &p, sizeof p);
+            if (set->audits) {
+                bytes_put(t, &part[AUDITS], &set->audit[k], sizeof set->audit[k]);
+            }
         }
     }
     for (uint32_t s = 0; set->list_valid && s < set->slab_count; ++s) {
@@ -401,6 +426,9 @@ static void fill_particles(se3di_particles *set, const whole *w)
             set->particles[k] = particles[from].mover.particle;
             set->spins[k] = particles[from].mover.spin;
             set->loads[k] = particles[from].load;
+            if (w->count[AUDITS] > 0) {
+                set->audit[k] = ((const se3di_audit_load *)w->of[AUDITS])[from];
+            }
             set->index_of[id] = (uint32_t)k;
         }
     }
@@ -588,6 +616,10 @@ void team_gather(se3di_particles *set)
     t->stats.ghosts = set->count - t->share.owned;
     pack(set, &own);
     sum_counts(set);
+    se3di_flows_unite(set);
+    if (set->audits) {
+        se3di_audit_unite(set);
+    }
     team_collect(t, &own);
     free(own.data);
     whole w = unpack(t);

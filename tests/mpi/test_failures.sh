@@ -15,13 +15,6 @@ refuses() {
     holds "$1: it is said once" test "$(grep -c 'several processes share' "$dir/err")" -eq 1
 }
 
-{ cat "$column" && echo 'flows: [{name: f, point: [0, 0, 0.01], normal: [0, 0, 1]}]'; } >"$dir/refused.yaml"
-refuses flows
-sed 's/^contact: {/contact: {audit: true, /' "$column" >"$dir/refused.yaml"
-refuses audited
-cp "$source/examples/models/oedometer.yaml" "$dir/refused.yaml"
-sed -i 's/, audit: true//; s/dissipation.[a-z]*, //g' "$dir/refused.yaml"
-refuses 'servo walls'
 cp "$source/examples/models/triaxial.yaml" "$dir/refused.yaml"
 refuses 'in a cell'
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Clumps and bonds over 1, 2, 3 and 4 processes, and with two threads: the same hash and the same files; and resumed on
-# another number of processes. SE3D_RANKS: other numbers of processes.
+# Clumps, bonds, and what is told of particles (flows, audits, servo walls) over 1, 2, 3 and 4 processes, and with two
+# threads: the same hash and the same files; and resumed on another number of processes. SE3D_RANKS: other numbers of processes.
 # Run with SE3D_MPI_PROGRAM and SE3D_SOURCE_DIR set.
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/mpi/support.sh"
 
-for model in clumps bonds; do
+for model in clumps bonds told; do
     for ranks in ${SE3D_RANKS:-1 2 3 4}; do
         share "$ranks" run "$source/tests/mpi/$model.yaml" -o "$dir/$model.$ranks"
         holds "$model run on $ranks processes" test "$status" -eq 0
@@ -27,12 +27,30 @@ done
 for name in glue.count glue.torn glue.lost hold.count knot.count particles.lost; do
     holds "bonds: $name" test "$(column "$dir/bonds.1/bonds.csv" $name)" -gt 0
 done
+for name in gate.count gate.mass level.mass_rate plate.force plate.position dissipation.torsion; do
+    holds "told: $name" test "$(column "$dir/told.1/told.csv" $name | awk '{print ($1 != 0)}')" -eq 1
+done
 
 # As one process without others has them, but for rounding: what is counted is the same.
-"$SE3D_PROGRAM" run "$source/tests/mpi/bonds.yaml" -o "$dir/alone" -q
+for model in bonds told; do
+    "$SE3D_PROGRAM" run "$source/tests/mpi/$model.yaml" -o "$dir/alone" -q
+done
 for name in glue.count glue.torn glue.lost hold.count; do
     holds "bonds: $name as without MPI" \
         test "$(column "$dir/bonds.1/bonds.csv" $name)" = "$(column "$dir/alone/bonds.csv" $name)"
+done
+
+# near NAME: in the second row, before small differences have grown.
+near() {
+    for side in told.1 alone; do
+        head -n 3 "$dir/$side/told.csv" >"$dir/$side.head"
+    done
+    awk -v a="$(column "$dir/told.1.head" "$1")" -v b="$(column "$dir/alone.head" "$1")" \
+        'BEGIN {d = a - b; s = a + b; exit !(d * d <= 1e-24 * s * s)}'
+}
+for name in gate.count gate.mass level.count level.mass_rate plate.position dissipation.normal \
+    dissipation.tangential dissipation.rolling dissipation.torsion; do
+    holds "told: $name as without MPI" near $name
 done
 
 share 2 run "$source/tests/mpi/bonds.yaml" -o "$dir/threads" --set contact.threads=2
@@ -40,14 +58,16 @@ sed -n 's/.*hash //p' "$dir/out" >"$dir/threads/hash"
 holds "two threads in each of two processes give the same" diff -r "$dir/bonds.1" "$dir/threads"
 
 # There are clumps among the bonded ones, too.
-path=$source/tests/mpi/bonds.yaml
-share 3 run "$path" -o "$dir/killed" --checkpoint 0 &
-here=$!
-kill_one "$path" "$dir/killed"
-wait $here
-share 2 run "$path" -o "$dir/killed" --resume
-holds "two processes go on with what three had begun" test "$status" -eq 0
-sed -n 's/.*hash //p' "$dir/out" >"$dir/killed/hash"
-holds "the files are the same" diff -r "$dir/bonds.1" "$dir/killed"
+for model in bonds told; do
+    path=$source/tests/mpi/$model.yaml
+    share 3 run "$path" -o "$dir/killed.$model" --checkpoint 0 &
+    here=$!
+    kill_one "$path" "$dir/killed.$model"
+    wait $here
+    share 2 run "$path" -o "$dir/killed.$model" --resume
+    holds "$model: two processes go on with what three had begun" test "$status" -eq 0
+    sed -n 's/.*hash //p' "$dir/out" >"$dir/killed.$model/hash"
+    holds "$model: the files are the same" diff -r "$dir/$model.1" "$dir/killed.$model"
+done
 
 finish

@@ -21,9 +21,9 @@ extern "C" {
 
 /* Share the particles of a system among the processes of `comm`, of which a copy is made. Sets that
  * are created later are not shared; snapshots, clones and copies are whole. What is not carried
- * (flows, audits, servo walls, cells that strain, laws by callback) is refused when a run begins
- * (UNSUPPORTED, the message says what). A call that fails in one process, also by a callback of
- * its own, fails in all, with that message. Exclusive; collective.
+ * (cells that strain, laws by callback) is refused when a run begins (UNSUPPORTED, the message says
+ * what). A call that fails in one process, also by a callback of its own, fails in all, with that
+ * message. Exclusive; collective.
  * @return OK, NULL, STATE (attached already, called from a callback, or the library is of another
  *         version), NO_MEMORY, IO (MPI failed).
  * @since 0.1 */
