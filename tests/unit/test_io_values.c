@@ -45,6 +45,24 @@ static void four_ways_to_say_an_orientation_agree(void)
     }
 }
 
+/* Of all lengths and places of the point, beside what the C library reads. */
+static void decimal_numbers_are_read_to_the_last_bit(void)
+{
+    uint64_t seed = 7;
+    for (int k = 0; k < 400; ++k) {
+        char number[40], keys[80];
+        se3d_body body;
+        double mass = 0.0, J[6];
+        snprintf(number, sizeof number, "%.*f", k % 19, (1.5 + check_random(&seed)) * (1 + k * k));
+        snprintf(keys, sizeof keys, "mass: %s, inertia: [1, 1, 1]", number);
+        se3d_model *model = read_body(keys, &body);
+        CHECK(se3d_body_get_mass(se3d_model_get_system(model), body, &mass, J) == SE3D_OK);
+        const double wanted = strtod(number, NULL);
+        CHECK(memcmp(&mass, &wanted, sizeof mass) == 0);
+        se3d_model_destroy(model);
+    }
+}
+
 /* A = Rz(yaw) Ry(pitch) Rx(roll): its first column and last row in closed form. */
 static void roll_pitch_yaw_are_about_fixed_axes_in_this_order(void)
 {
@@ -294,6 +312,7 @@ static void texts_of_the_caller_are_copied(void)
 int main(void)
 {
     RUN(four_ways_to_say_an_orientation_agree);
+    RUN(decimal_numbers_are_read_to_the_last_bit);
     RUN(roll_pitch_yaw_are_about_fixed_axes_in_this_order);
     RUN(matrices_near_half_turns_are_read_exactly);
     RUN(shapes_give_mass_and_inertia);

@@ -10,8 +10,39 @@
 #include "io/base/pool.h"
 #include "io/document/formula_text.h"
 
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* Up to 15 digits, and a point within: two numbers that have no error, whose quotient is rounded
+ * once, as what the expression would give. @return false: it has another form */
+static bool read_decimal(const char *text, size_t length, double *value)
+{
+    double digits = 0.0, scale = 1.0;
+    bool has_point = false;
+    if (length == 0 || length > 15 || !is_digit(text[length - 1]) ||
+        (text[0] == '0' && length > 1 && text[1] != '.')) {
+        return false;
+    }
+    for (size_t k = 0; k < length; ++k) {
+        const bool is_point = text[k] == '.' && k > 0 && !has_point;
+        if (!is_point && !is_digit(text[k])) {
+            return false;
+        }
+        digits = is_point ? digits : 10.0 * digits + (text[k] - '0');
+        scale = has_point ? 10.0 * scale : scale;
+        has_point = has_point || is_point;
+    }
+    *value = digits / scale;
+    return true;
+}
+
 bool se3di_formula_number(se3di_formula *f, const char *text, size_t length, double *value)
 {
+    if (read_decimal(text, length, value)) {
+        return true;
+    }
     char *copy = se3di_iopool_copy(f->reader->pool, text, length);
     se3di_amount result;
     if (!copy) {
