@@ -65,13 +65,13 @@ int layout_has(const layout_struct *s, const layout_item *member, size_t size)
 {
     const size_t whole =
         member->pointer ? sizeof(void *) : layout_times(member->size, member->count);
-    return size == 0 || size >= s->size || member->offset + whole <= size;
+    return size >= s->size || member->offset + whole <= size;
 }
 
 size_t layout_said(const layout_struct *s, const void *structure, size_t stride)
 {
     size_t size = stride;
-    if (s->is_sized) {
+    if (s->is_sized && stride >= sizeof size) {
         memcpy(&size, structure, sizeof size);
         size = size < sizeof size ? sizeof size : size;
     }
@@ -183,7 +183,7 @@ static void write_wish(const layout_item *item, const void *at, bytes *out)
     memcpy(&pointer, at, sizeof pointer);
     bytes_put_u8(out, pointer != NULL);
     if (pointer && item->kind == LAYOUT_STRUCT && item->of->is_sized && !item->stride) {
-        bytes_put_u64(out, layout_said(item->of, pointer, 0));
+        bytes_put_u64(out, layout_said(item->of, pointer, item->size));
     }
 }
 

@@ -104,9 +104,9 @@ const void *layout_parameter(const void *base, size_t n);
 size_t layout_count(const layout_walk *walk, const layout_item *item, const void *base, int before);
 /* The bytes from one of its elements to the next. */
 size_t layout_stride(const layout_walk *walk, const layout_item *item, const void *base);
-/* How much of a structure of `size` bytes (0: all) is there for a member. */
+/* How much of a structure of `size` bytes is there for a member. */
 int layout_has(const layout_struct *s, const layout_item *member, size_t size);
-/* The size that a structure says it has, else `stride`. */
+/* The size that a structure says it has; `stride` if it says none, or has no room for it. */
 size_t layout_said(const layout_struct *s, const void *structure, size_t stride);
 
 /* Write what stands at `at`. */
