@@ -20,6 +20,8 @@
 #define GAP_ROUNDING        1e-12 /* relative violation of a position equation */
 #define GAP_CLOSED          1e-6  /* the largest that may be closed at the end of a step */
 #define PART_LEAST          1e-8  /* of a step */
+#define TURN_MOST           0.2   /* of velocities, that a step may change at once */
+#define REST                1e-5  /* of the size or of a radian, in a step: hardly anything moves */
 #define PARTS_TRIED         200   /* of one step; more changes are passed over in what is left */
 
 size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
@@ -30,7 +32,7 @@ size_t se3di_lie_verlet_history_count(const se3di_assembly *assembly)
 size_t se3di_lie_verlet_work_count(const se3di_assembly *assembly)
 {
     return 6 * (size_t)assembly->dense_count + 2 * (size_t)assembly->row_count +
-           6 * (size_t)assembly->body_count + assembly->unknown_count +
+           12 * (size_t)assembly->body_count + assembly->unknown_count +
            se3di_lie_friction_work_count(assembly->model);
 }
 
@@ -61,7 +63,8 @@ se3di_lie_verlet se3di_lie_verlet_begin(se3di_integration *integration, int forc
     m.lambda = m.wrench + 6 * (size_t)assembly->dense_count;
     m.best = m.lambda + assembly->row_count;
     m.half = m.best + assembly->row_count;
-    m.last = m.half + 6 * (size_t)assembly->body_count;
+    m.begin = m.half + 6 * (size_t)assembly->body_count;
+    m.last = m.begin + 6 * (size_t)assembly->body_count;
     m.friction = se3di_lie_friction_begin(m.equations, m.last + assembly->unknown_count,
                                           assembly->model->history + SE3DI_EQUAL_HEADER);
     return m;
@@ -449,10 +452,57 @@ se3d_status se3di_lie_verlet_finish(se3di_lie_verlet *m)
     return se3di_work_accept(model, m->h);
 }
 
+/* What the velocities of the frames miss of v_0 + s a_0, over the largest ones, of rotation
+ * (`is_spin`) or of translation. */
+static double measure_turn(const se3di_lie_verlet *m, double s, int is_spin)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const double length = is_spin ? 1.0 : m->size;
+    double worst = 0.0, most = REST * length / fabs(m->h);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        const se3di_frame *from = &m->equations->saved[body];
+        const se3di_frame *frame = &assembly->model->frames[body];
+        const double *before = is_spin ? from->w : from->v, *v = is_spin ? frame->w : frame->v;
+        const double *a = m->begin + 6 * (size_t)k + 3 * (size_t)is_spin;
+        double missed[3];
+        if (se3di_state_is_carrier(assembly, k)) {
+            continue;
+        }
+        for (int c = 0; c < 3; ++c) {
+            missed[c] = v[c] - before[c] - s * a[c];
+        }
+        worst = se3di_larger(worst, se3di_norm(missed));
+        most = fmax(most, fmax(se3di_norm(before), se3di_norm(v)));
+    }
+    return worst / most;
+}
+
+/* A step that closes a gap at a singular position may have left the branch of the motion there:
+ * velocities then change at once. */
+static se3d_status check_branch(const se3di_lie_verlet *m, double s)
+{
+    if (!m->is_singular ||
+        (measure_turn(m, s, 0) <= TURN_MOST && measure_turn(m, s, 1) <= TURN_MOST)) {
+        return SE3D_OK;
+    }
+    return se3di_error_set(m->equations->error, SE3D_ERR_NO_CONVERGENCE,
+                           "t = %g s: a step of %g s leaves the motion: velocities change at once "
+                           "at a singular position; try another step",
+                           m->t1, m->h);
+}
+
 se3d_status se3di_lie_verlet_advance(se3di_lie_verlet *m)
 {
+    const se3di_assembly *assembly = m->assembly;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const double *a = assembly->model->acceleration + 6 * (size_t)assembly->free_body[k];
+        memcpy(m->begin + 6 * (size_t)k, a, 6 * sizeof *a);
+    }
     SE3DI_TRY(se3di_lie_verlet_drift(m));
+    SE3DI_TRY(check_branch(m, 0.5 * m->h));
     SE3DI_TRY(se3di_lie_verlet_kick(m));
+    SE3DI_TRY(check_branch(m, m->h));
     return se3di_lie_verlet_finish(m);
 }
 
@@ -497,6 +547,7 @@ se3d_status se3di_lie_verlet_follow(se3di_lie_verlet *m, double h, double t1)
     m->t1 = t1;
     for (;;) {
         SE3DI_TRY(se3di_equations_keep(m->equations));
+        m->is_singular = 0;
         const se3d_status status = se3di_lie_verlet_advance(m);
         s.gives_up |= ++s.tried >= PARTS_TRIED;
         if (status == SE3D_ERR_NO_CONVERGENCE && s.longest < s.whole) {

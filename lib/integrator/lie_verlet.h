@@ -31,6 +31,7 @@ typedef struct se3di_lie_verlet {
     double *lambda;       /* [rows] */
     double *best;         /* [rows]: with the smallest gap yet */
     double *half;         /* half-step velocity and momentum at its end [free bodies * 6] */
+    double *begin;        /* accelerations at its start [free bodies * 6] */
     double *last;         /* [unknowns] */
     se3di_lie_friction friction;
 } se3di_lie_verlet;
