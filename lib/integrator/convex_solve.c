@@ -26,9 +26,10 @@
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
 #define SAME        1e-2 /* of a slope: changes that the matrix need not know */
 #define SOLVES_MOST 500
-#define KEPT        16   /* if one in so many slopes has changed the preconditioner is made anew */
-#define GUESSES     6    /* at which contacts act and how, before */
-#define GUESSED     1e-3 /* of the largest impulse: they will hardly change */
+#define KEPT        16    /* if one in so many slopes has changed the preconditioner is made anew */
+#define GUESSES     6     /* at which contacts act and how, before */
+#define GUESSED     1e-3  /* of the largest impulse: they will hardly change */
+#define ROUNDING    1e-12 /* of velocities: a change that leads nowhere */
 #define LINE_STEPS  60
 #define LINE_SLOPE  1e-3 /* of the cost along the line, relative to that at its beginning */
 
@@ -487,7 +488,7 @@ static double search(const se3di_convex *c, const se3di_convex_island *island)
                             dot(c->carried, c->change, begin, end)};
     double curvature, low = 0.0, high = HUGE_VAL, s = 1.0;
     const double first = dot(c->gradient, c->change, begin, end);
-    if (!(first < 0.0)) {
+    if (!(first < 0.0) || line[1] <= ROUNDING * ROUNDING * island->momentum) {
         return 1.0;
     }
     for (int k = 0; k < LINE_STEPS; ++k) {
