@@ -63,7 +63,9 @@ static void recover(se3di_run *run, double t_end)
     const se3di_integrator *method = run->integration.method;
     const se3di_error cause = *run->error;
     if (run->prepared && run->shows_row) { /* by the same interpolation as what was there */
+        ++run->guard.muted;
         (void)show_accepted(run, run->events.reached);
+        --run->guard.muted;
         *run->error = cause;
         return;
     }
