@@ -216,16 +216,17 @@ static int32_t choose_explicit(const se3di_run *run)
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
  * small steps, or have done so before. A motion under way stays with radau, or without it: the
  * state would now decide otherwise. */
-static void choose_method(se3di_run *run)
+static se3d_status choose_method(se3di_run *run)
 {
     const se3di_model *model = run->model;
     if (!run->automatic) {
-        return;
+        return SE3D_OK;
     }
-    const int stiff =
-        run->analysis == SE3D_ANALYSIS_DYNAMICS &&
-        (is_history_of(model, SE3D_METHOD_RADAU) ||
-         (!is_history_of(model, SE3D_METHOD_DOP853) && se3di_stiffness_is_stiff(model)));
+    int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS && is_history_of(model, SE3D_METHOD_RADAU);
+    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && !stiff &&
+        !is_history_of(model, SE3D_METHOD_DOP853)) {
+        SE3DI_TRY(se3di_stiffness_is_stiff(run->model, run->error, &stiff));
+    }
     int32_t method = stiff ? SE3D_METHOD_RADAU : choose_explicit(run);
     if (model->sets) {
         method = SE3D_METHOD_VERLET;
@@ -233,6 +234,7 @@ static void choose_method(se3di_run *run)
         method = SE3D_METHOD_CONVEX;
     }
     se3di_run_use_method(run, se3di_integrator_find(method));
+    return SE3D_OK;
 }
 
 int se3di_run_is_driven(const se3di_run *run)
@@ -380,7 +382,7 @@ static se3d_status enter_crowd(se3di_run *run)
 
 static se3d_status build_anew(se3di_run *run)
 {
-    choose_method(run);
+    SE3DI_TRY(choose_method(run));
     SE3DI_TRY(se3di_run_build(run));
     run->gravity_varies = se3di_model_gravity_varies(run->model);
     return SE3D_OK;

@@ -7,9 +7,13 @@
 #include "nonlinear/equations.h"
 
 #include <math.h>
+#include <string.h>
 
 #define STIFF_RATIO                                                                                \
     2e4 /* of the rates: bodies that are held by joints decay more slowly than free ones */
+
+#define HELD_RATIO  1e3 /* the same, of the rate of bodies that are held */
+#define HELD_SOLVES 12  /* towards that rate, from below */
 
 #define STEP_ANGLE 0.1 /* of the fastest oscillation in an explicit step [rad] */
 
@@ -72,9 +76,91 @@ static double rate_of_motion(const se3di_model *model)
     return fmax(fmax(spin, pendulum), 1.0);
 }
 
-int se3di_stiffness_is_stiff(const se3di_model *model)
+/* out -= D v of the six numbers of a body at `rows` by those of a body at `columns`. */
+static void subtract_block(const se3di_assembly *assembly, const uint32_t body[2], const double *D,
+                           const double *v, double *out)
 {
-    double decay, oscillation;
+    const int32_t row = assembly->free_index[body[0]], column = assembly->free_index[body[1]];
+    for (int r = 0; row >= 0 && column >= 0 && r < 6; ++r) {
+        for (int c = 0; c < 6; ++c) {
+            out[6 * row + r] -= D[12 * r + c] * v[6 * column + c];
+        }
+    }
+}
+
+/* out = -(d wrench / d velocity) v of all elements that are elastic. */
+static void resist(const se3di_assembly *assembly, const double *v, double *out)
+{
+    const se3di_model *model = assembly->model;
+    memset(out, 0, assembly->unknown_count * sizeof *out);
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        se3di_effect effect = {.wants_derivative = 1};
+        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC) ||
+            se3di_force_eval(model, force, model->time, &effect) < 0) {
+            continue;
+        }
+        for (int b = 0; b < 4; ++b) {
+            const int row = b / 2, column = b % 2;
+            const uint32_t body[2] = {row ? force->body_j : force->body_i,
+                                      column ? force->body_j : force->body_i};
+            subtract_block(assembly, body, effect.D + 6 * (12 * row + column), v, out);
+        }
+    }
+}
+
+static double dot(const double *a, const double *b, size_t n)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n; ++k) {
+        sum += a[k] * b[k];
+    }
+    return sum;
+}
+
+/* The fastest decay that the constraints allow, by power iteration, until it is `enough`: its
+ * Rayleigh quotients grow towards the largest. */
+static se3d_status find_held_rate(se3di_equations *equations, double enough, double *rate)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t n = assembly->unknown_count;
+    double *v = equations->x, *b = equations->b;
+    SE3DI_TRY(se3di_equations_factor(equations));
+    memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
+    for (size_t k = 0; k < n; ++k) {
+        b[k] = (double)(1 + k % 7); /* no direction is left out */
+    }
+    for (int k = 0; k < HELD_SOLVES && !(*rate > enough); ++k) {
+        SE3DI_TRY(se3di_equations_solve(equations));
+        se3di_assembly_mul_mass(assembly, v, b);
+        const double square = dot(v, b, n);
+        if (!(square > 0.0 && isfinite(square))) {
+            break;
+        }
+        for (size_t i = 0; i < n; ++i) {
+            v[i] /= sqrt(square);
+        }
+        resist(assembly, v, b);
+        *rate = dot(v, b, n);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_stiffness_is_stiff(se3di_model *model, se3di_error *error, int *is_stiff)
+{
+    double decay, oscillation, held = 0.0;
     measure(model, &decay, &oscillation);
-    return decay > STIFF_RATIO * rate_of_motion(model);
+    const double motion = rate_of_motion(model);
+    *is_stiff = decay > STIFF_RATIO * motion;
+    if (!*is_stiff || model->constraint_slots.count == 0) {
+        return SE3D_OK;
+    }
+    se3di_equations equations;
+    se3di_error own = {0}; /* what cannot be solved is for the analysis itself to say */
+    SE3DI_TRY(se3di_equations_init(&equations, model, &se3di_formulation_romega, 0, error));
+    equations.error = &own;
+    const se3d_status status = find_held_rate(&equations, HELD_RATIO * motion, &held);
+    se3di_equations_destroy(&equations);
+    *is_stiff = status < 0 || held > HELD_RATIO * motion;
+    return SE3D_OK;
 }

@@ -9,8 +9,10 @@
  * present state; infinite if there is none. */
 double se3di_stiffness_step(const se3di_model *model);
 /* An explicit method would be held to steps by decays that are long over: the fastest that a
- * spring-damper or bushing forces on its free bodies, tr(M^-1 D), D = -d wrench / d velocity, is
- * much faster than the motion that one wants to see. */
-int se3di_stiffness_is_stiff(const se3di_model *model);
+ * spring-damper or bushing forces is much faster than the motion that one wants to see, both on its
+ * bodies as if they were free, tr(M^-1 D), D = -d wrench / d velocity, and as they are held by the
+ * constraints: a light body on a pin away from its centre may be held by a heavy one.
+ * @return OK, NO_MEMORY */
+se3d_status se3di_stiffness_is_stiff(se3di_model *model, se3di_error *error, int *is_stiff);
 
 #endif

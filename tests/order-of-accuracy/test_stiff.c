@@ -126,6 +126,75 @@ static void auto_looks_at_stiffness_and_says_what_it_picked(void)
     }
 }
 
+/* A small bead on a long light arm, with a damper on its pin: by its own inertia about its centre
+ * it would stop within 20 ns, but on the pin its mass moves. `damping` [N m s]. */
+static uint64_t swing_bead(double damping, double *angle)
+{
+    se3d_system *system = NULL;
+    se3d_solver *solver = NULL;
+    se3d_solver_stats stats;
+    se3d_constraint pin;
+    se3d_force force;
+    se3d_body_def bead = se3d_body_def_default();
+    se3d_joint_def joint = se3d_joint_def_default();
+    se3d_rsda_def damper = se3d_rsda_def_default();
+    se3d_solver_def def = se3d_solver_def_default();
+    const double gravity[3] = {0.0, 0.0, -9.81}, at[3] = {0.0, 0.0, 0.0};
+    const double axis[3] = {0.0, 1.0, 0.0};
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_system_set_gravity(system, gravity));
+    bead.mass = 0.2;
+    bead.inertia[0] = bead.inertia[1] = bead.inertia[2] = 1e-9;
+    bead.position[0] = 0.5 * sin(0.1);
+    bead.position[2] = -0.5 * cos(0.1);
+    CHECK(!se3d_body_create(system, &bead, &joint.body_j));
+    CHECK(!se3d_system_get_ground(system, &joint.body_i));
+    CHECK(!se3d_joint_def_set_frame(system, &joint, at, axis, NULL));
+    CHECK(!se3d_joint_create_revolute(system, &joint, &pin));
+    damper.joint = pin;
+    damper.c = damping;
+    CHECK(!se3d_force_create_rsda(system, &damper, &force));
+    CHECK(!se3d_solver_create(system, &def, &solver));
+    CHECK(se3d_solver_run(solver, 5.0) >= 0);
+    CHECK(!se3d_joint_get_coordinate(system, pin, SE3D_JOINT_COORDINATE_ANGLE, angle, NULL, NULL));
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    CHECK(!se3d_solver_get_method(solver, &picked));
+    se3d_solver_destroy(solver);
+    se3d_system_destroy(system);
+    return stats.steps;
+}
+
+/* phi'' = -(c phi' + m g l sin phi) / J, by the classical method of order 4. */
+static double swing_exactly(double c)
+{
+    const double J = 0.05 + 1e-9, h = 1e-3;
+    double y[2] = {0.1, 0.0};
+    for (int k = 0; k < 5000; ++k) {
+        double slope[2] = {0.0, 0.0}, sum[2] = {0.0, 0.0};
+        for (int s = 0; s < 4; ++s) {
+            const double part = s == 0 ? 0.0 : s == 3 ? h : 0.5 * h;
+            const double at[2] = {y[0] + part * slope[0], y[1] + part * slope[1]};
+            slope[0] = at[1];
+            slope[1] = -(c * at[1] + 0.2 * 9.81 * 0.5 * sin(at[0])) / J;
+            sum[0] += (s == 1 || s == 2 ? 2.0 : 1.0) * slope[0];
+            sum[1] += (s == 1 || s == 2 ? 2.0 : 1.0) * slope[1];
+        }
+        y[0] += h / 6.0 * sum[0];
+        y[1] += h / 6.0 * sum[1];
+    }
+    return y[0];
+}
+
+static void auto_sees_what_holds_a_light_body(void)
+{
+    double angle;
+    CHECK(swing_bead(0.05, &angle) < 100);
+    CHECK(strcmp(picked, "dop853") == 0);
+    CHECK_NEAR(0.1 - angle, swing_exactly(0.05), 1e-6);
+    CHECK(swing_bead(2e3, &angle) < 100); /* it is held fast: 4e4/s */
+    CHECK(strcmp(picked, "radau") == 0);
+}
+
 /* The bar alone with a damper on its pin that grows: c = exp(6 t). At 3 s it creeps, and dop853 is
  * held to steps of some 1e-8 s. */
 static se3d_system *build_growing(se3d_constraint *pin)
@@ -398,6 +467,7 @@ static void auto_takes_no_rounding_for_the_motion(void)
 int main(void)
 {
     RUN(auto_takes_no_rounding_for_the_motion);
+    RUN(auto_sees_what_holds_a_light_body);
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
     RUN(auto_leaves_dop853_where_decays_hold_it);
