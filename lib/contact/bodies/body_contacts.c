@@ -199,6 +199,20 @@ const char *se3di_shape_describe(const se3di_model *model, uint32_t shape)
     return s->name ? s->name : body ? body : "without a name";
 }
 
+se3d_status se3di_contacts_too_deep(const se3di_model *model, double t, const uint32_t shapes[2],
+                                    double overlap, se3di_error *error)
+{
+    const double size = fmin(se3di_shape_contact_size(&model->shapes[shapes[0]]),
+                             se3di_shape_contact_size(&model->shapes[shapes[1]]));
+    return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
+                           "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, at most %g of "
+                           "their size %.3g m is allowed; try a stiffer material, or a smaller "
+                           "step if one is given",
+                           t, se3di_shape_describe(model, shapes[0]),
+                           se3di_shape_describe(model, shapes[1]), overlap,
+                           model->contact.overlap_limit, size);
+}
+
 static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
 {
     const se3di_model *model = p->model;
@@ -207,12 +221,8 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     if (e->at->overlap <= p->overlap_limit * size) {
         return SE3D_OK;
     }
-    return se3di_error_set(
-        p->error, SE3D_ERR_STEP_SIZE,
-        "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, more than %g of their size "
-        "%.3g m; try a smaller step or a stiffer material",
-        p->t, se3di_shape_describe(model, e->shape_i), se3di_shape_describe(model, e->shape_j),
-        e->at->overlap, p->overlap_limit, size);
+    const uint32_t shapes[2] = {e->shape_i, e->shape_j};
+    return se3di_contacts_too_deep(model, p->t, shapes, e->at->overlap, p->error);
 }
 
 static se3d_status note(void *ctx, const se3di_encounter *e)

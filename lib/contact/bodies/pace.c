@@ -31,6 +31,7 @@
 #define SOFT         1e-6 /* of the smaller size: arrivals that move less in a contact's time */
 #define SHORT        1e-6 /* a long step ends so much before contact begins */
 #define FACE_POINTS  8.0  /* of shapes other than spheres, which may share a load */
+#define AT_LIMIT     0.99 /* of the deepest overlap that is allowed */
 #define ALL_PAIRS    64   /* up to so many shapes all pairs are looked at, beyond what is listed */
 
 typedef struct pace {
@@ -341,12 +342,35 @@ static void find_culprits(pace *p)
     }
 }
 
+/* The deepest contact, if it is all but as deep as is allowed: steps shrink towards that. */
+static const se3di_body_contact *find_deepest(const se3di_model *model)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    const se3di_body_contact *deepest = NULL;
+    double most = AT_LIMIT * model->contact.overlap_limit;
+    for (size_t k = 0; k < c->count; ++k) {
+        const double share =
+            c->list[k].overlap / smaller_size(model, c->list[k].shape_i, c->list[k].shape_j);
+        if (share > most) {
+            most = share;
+            deepest = &c->list[k];
+        }
+    }
+    return deepest;
+}
+
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
 {
     pace p = {.model = model, .step = HUGE_VAL};
     const size_t used = error ? strlen(error->message) : 0;
     if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY) {
         return; /* no shape is to blame */
+    }
+    const se3di_body_contact *deepest = find_deepest(model);
+    if (deepest && error->status == SE3D_ERR_STEP_SIZE) {
+        const uint32_t shapes[2] = {deepest->shape_i, deepest->shape_j};
+        (void)se3di_contacts_too_deep(model, model->time, shapes, deepest->overlap, error);
+        return;
     }
     find_culprits(&p);
     if (p.i != p.j && used < sizeof error->message) {
