@@ -17,6 +17,9 @@
 #define SHAPES(x)                                                                                  \
     "se3d: 1\ncontact: {}\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\n"            \
     "bodies: [{name: b, fixed: true, shapes: [{type: sphere, " x "}]}]\n"
+#define BALL_OF_M                                                                                  \
+    "bodies: [{name: b, mass: 1, inertia: [1, 1, 1], shapes: [{type: sphere, radius: 1, "          \
+    "material: m}]}]\n"
 #define GLASS PARTICLES("material: glass, radius: 0.1, upper: [1, 1, 1]")
 
 typedef struct bad_input {
@@ -103,9 +106,21 @@ static const bad_input table[] = {
      "bodies: [{name: b, fixed: true, shapes: [{type: plane, material: m}]}]\n",
      3,
      0,
-     {"stiffness = 0"}},
+     {"stiffness: is missing"}},
     {GLASS "contact: {law: herz}\n", 4, 16, {"contact.law: is `herz`", "hertz_mindlin"}},
     {GLASS "contact: {boundary: [open, sink]}\n", 4, 21, {"contact.boundary: must be a list of 3"}},
+    {"se3d: 1\ncontact: {}\nmaterials: [{name: m, stiffness: 1e5}]\n" BALL_OF_M,
+     3,
+     0,
+     {"materials[0].density: is missing, must be > 0 (kg/m^3)"}},
+    {"se3d: 1\ncontact: {}\nmaterials: [{name: m, density: 1}]\n" BALL_OF_M,
+     3,
+     0,
+     {"materials[0].stiffness: is missing, must be > 0 (N/m) with `law: hooke`"}},
+    {"se3d: 1\ncontact: {law: hertz_mindlin}\nmaterials: [{name: m, density: 1}]\n" BALL_OF_M,
+     3,
+     0,
+     {"materials[0].young: is missing, must be > 0 (Pa) with `law: hertz_mindlin`"}},
     {GLASS "contact: {pairs: [{material_1: glass}]}\n", 4, 0, {"pairs[0].material_2: is missing"}},
     {GLASS "contact: {pairs: [{material_1: glass, material_2: glass, restitution: 0}]}\n",
      4,

@@ -41,11 +41,31 @@ const se3di_object se3di_object_material = {
     NULL};
 /* clang-format on */
 
+/* What has no default: the defaults of the library are no materials. */
+static bool check_given(se3di_reader *reader, const se3di_node *entry)
+{
+    se3d_contact_settings contact = {.struct_size = sizeof contact};
+    if (!se3di_node_get(entry, "density")) {
+        return se3di_reader_fail_key(reader, entry, "density",
+                                     "is missing, must be > 0 (kg/m^3) of a material that a shape "
+                                     "or particles have, also where bodies have a mass");
+    }
+    if (!se3di_reader_check(reader, entry, se3d_system_get_contact(reader->system, &contact))) {
+        return false;
+    }
+    const bool is_hooke = contact.law == SE3D_CONTACT_LAW_HOOKE;
+    const char *key = is_hooke ? "stiffness" : "young";
+    return se3di_node_get(entry, key) ||
+           se3di_reader_fail_key(reader, entry, key, "is missing, must be > 0 (%s) with `law: %s`",
+                                 is_hooke ? "N/m" : "Pa", is_hooke ? "hooke" : "hertz_mindlin");
+}
+
 static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_material *material)
 {
     se3d_material_def def = se3d_material_def_default();
     if (!se3di_read_fields(reader, entry, &se3di_object_material, NULL, "se3d_material_def",
-                           &def)) {
+                           &def) ||
+        !check_given(reader, entry)) {
         return false;
     }
     def.name = se3di_node_get(entry, "name")->text;
