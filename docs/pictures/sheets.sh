@@ -44,12 +44,16 @@ for kind in light dark narrow plot sketch; do
     narrow) across=8 down=2 box=320:534 ;;
     plot | sketch) across=3 down=3 box=853:640 ;;
     esac
-    for picture in "$@"; do
-        echo "file '$(realpath "$picture")'"
-        echo 'duration 1'
-    done >"$folder/list"
-    ffmpeg -v error -y -f concat -safe 0 -i "$folder/list" -vf "scale=$box:force_original_aspect_ratio=decrease,pad=$box:-1:-1:gray,fps=1,tile=${across}x${down}:padding=4" \
+    rm -f "$folder"/boxed-*.png
+    number=0
+    for picture in "$@"; do # of one size: sketches and plots have their own
+        number=$((number + 1))
+        ffmpeg -v error -y -i "$picture" -frames:v 1 -vf "scale=$box:force_original_aspect_ratio=decrease,pad=$box:-1:-1:gray" \
+            -pix_fmt rgb24 "$folder/boxed-$number.png" || failed="$failed $picture"
+    done
+    ffmpeg -v error -y -framerate 1 -start_number 1 -i "$folder/boxed-%d.png" -vf "tile=${across}x${down}:padding=4" \
         "$folder/$kind-%d.png" || failed="$failed $kind"
+    rm -f "$folder"/boxed-*.png
 done
 ls "$folder"/*.png
 [ -z "$failed" ] || { echo "failed:$failed" >&2; exit 1; }
