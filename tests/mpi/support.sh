@@ -39,14 +39,26 @@ own_processes() {
     done 2>/dev/null
 }
 
-# kill_one MODEL DIR: one of the processes that run a model, as soon as there is a checkpoint.
-kill_one() {
-    tries=0
-    while [ ! -e "$2/run.checkpoint" ] && [ $tries -lt 1000 ]; do
-        sleep 0.02
-        tries=$((tries + 1))
+# run_killed RANKS MODEL DIR WORDS...: a run with checkpoints, one of whose processes is killed as soon as there is one.
+# On a busy machine a run may be over before: it is made again.
+run_killed() {
+    many=$1 killed_model=$2 killed=$3
+    shift 3
+    for attempt in 1 2 3 4 5; do
+        rm -rf "$killed"
+        share "$many" run "$killed_model" -o "$killed" "$@" --checkpoint 0 &
+        here=$!
+        victim=
+        while [ -z "$victim" ] && kill -0 $here 2>/dev/null; do
+            victim=$(own_processes "run $killed_model -o $killed" | tail -n 1)
+        done
+        while [ ! -e "$killed/run.checkpoint" ] && kill -0 $here 2>/dev/null; do
+            sleep 0.01
+        done
+        [ -z "$victim" ] || kill -9 "$victim" 2>/dev/null
+        wait $here
+        grep -q -i 'signal 9\|killed' "$dir/err" && break
     done
-    victim=$(own_processes "run $1 -o $2" | tail -n 1)
-    holds "there is a process to kill" test -n "$victim"
-    kill -9 "$victim"
+    holds "a killed process ends all (try $attempt)" grep -q -i 'signal 9\|killed' "$dir/err"
+    holds "none is left" test -z "$(own_processes "run $killed_model -o $killed")"
 }

@@ -35,12 +35,7 @@ holds "it names the same ones on three processes" cmp "$dir/err1" "$dir/err3"
 
 # Killed in the midst: the others end, and mpirun says why; resumed on fewer, as if nothing had been.
 long=analysis.duration=0.02
-share 3 run "$column" -o "$dir/killed" --set $long --checkpoint 0 &
-here=$!
-kill_one "$column" "$dir/killed"
-wait $here
-holds "a killed process ends all" grep -q -i 'signal 9\|killed' "$dir/err"
-holds "none is left" test -z "$(own_processes "run $column -o $dir/killed")"
+run_killed 3 "$column" "$dir/killed" --set $long
 
 share 2 run "$column" -o "$dir/killed" --set $long --resume
 holds "two processes go on with what three had begun" test "$status" -eq 0

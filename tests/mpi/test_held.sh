@@ -60,10 +60,7 @@ holds "two threads in each of two processes give the same" diff -r "$dir/bonds.1
 # There are clumps among the bonded ones, too.
 for model in bonds told; do
     path=$source/tests/mpi/$model.yaml
-    share 3 run "$path" -o "$dir/killed.$model" --checkpoint 0 &
-    here=$!
-    kill_one "$path" "$dir/killed.$model"
-    wait $here
+    run_killed 3 "$path" "$dir/killed.$model"
     share 2 run "$path" -o "$dir/killed.$model" --resume
     holds "$model: two processes go on with what three had begun" test "$status" -eq 0
     sed -n 's/.*hash //p' "$dir/out" >"$dir/killed.$model/hash"
