@@ -138,9 +138,10 @@ static void fill_heights(const double ab[3], const double ac[3], facet *f)
     se3di_cross(ab, ac, doubled);
     const double longest = fmax(se3di_dot(ab, ab), se3di_dot(ac, ac));
     const int slender = se3di_norm(doubled) < SLENDER * longest;
-    f->heights[0] = slender ? 0.0 : 1.0 / se3di_norm(f->to_b);
-    f->heights[1] = slender ? 0.0 : 1.0 / se3di_norm(f->to_c);
-    f->heights[2] = slender ? 0.0 : 1.0 / se3di_norm(to_a);
+    const double inverse[3] = {se3di_norm(f->to_b), se3di_norm(f->to_c), se3di_norm(to_a)};
+    for (int k = 0; k < 3; ++k) { /* 0: beyond the range of numbers */
+        f->heights[k] = slender || inverse[k] == 0.0 ? 0.0 : 1.0 / inverse[k];
+    }
 }
 
 static void fill_facets(se3di_shape *s)
