@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "analysis/crowd.h"
 
+#include "analysis/stiffness.h"
 #include "contact/bodies/crowd.h"
 #include "force/driver_rate.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define BOUNCY 0.8 /* restitution above which impacts by convex may give energy */
+#define ANGLE  0.5 /* of spins and oscillations in a step [rad] */
 
 static int is_known(const se3di_pair *pair)
 {
@@ -46,6 +53,51 @@ int se3di_crowd_suits(const se3di_model *model)
 {
     return model->constraint_slots.count == 0 && model->force_slots.count == 0 &&
            se3di_crowd_may_touch(model);
+}
+
+/* Shapes of two such materials may touch. */
+static int is_used(const se3di_model *model, int32_t material)
+{
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        if (model->shapes[k].material == material) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static int bounces(const se3di_model *model)
+{
+    const int32_t count = (int32_t)model->material_slots.count;
+    for (int32_t i = 0; i < count; ++i) {
+        for (int32_t j = 0; j <= i; ++j) {
+            if (model->pairs[i * count + j].restitution > BOUNCY && is_used(model, i) &&
+                is_used(model, j)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static int has_callback(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (model->forces[k].type == SE3DI_FORCE_CALLBACK) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int se3di_crowd_bears(const se3di_model *model, double h)
+{
+    double spin = 0.0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        spin = fmax(spin, se3di_norm(model->frames[k].w));
+    }
+    return spin * h <= ANGLE && se3di_stiffness_angle(model, h) <= ANGLE && !bounces(model) &&
+           !has_callback(model);
 }
 
 /* Shapes follow each other body by body, or a body counts once more; what no group and mask lets

@@ -10,6 +10,9 @@
 int se3di_crowd_may_touch(const se3di_model *model);
 /* There is nothing beside contacts that it would be less exact for: no constraints and elements. */
 int se3di_crowd_suits(const se3di_model *model);
+/* Steps of h are short beside spins and the oscillations of springs and dampers, no impact gives
+ * back nearly all, and no element is the user's own. */
+int se3di_crowd_bears(const se3di_model *model, double h);
 /* At least so many free bodies have shapes that may touch. */
 int se3di_crowd_has(const se3di_model *model, size_t least);
 

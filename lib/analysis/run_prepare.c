@@ -17,6 +17,7 @@
 #include "nonlinear/against.h"
 #include "primitive/user.h"
 
+#include <math.h>
 #include <string.h>
 
 void se3di_run_init(se3di_run *run, se3di_model *model, se3di_error *error, se3d_system *system)
@@ -156,6 +157,7 @@ void se3di_run_choose_for_call(se3di_run *run, int is_step)
 }
 
 #define STEP_CROWD 5e-3 /* s: a longest step for other methods would be too long for convex */
+#define STEP_SLOW  1e-3 /* s: a shorter one is what makes steps short; the one that convex takes */
 
 /* No tolerance is asked for, and bodies may touch that convex would step: SE3DI_CROWD_ */
 static int32_t may_crowd(const se3di_run *run)
@@ -166,8 +168,19 @@ static int32_t may_crowd(const se3di_run *run)
         !se3di_crowd_has(model, SE3DI_CROWD_HELD)) {
         return SE3DI_CROWD_NONE;
     }
-    return se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model) ? SE3DI_CROWD_NEAR
-                                                                           : SE3DI_CROWD_SLOW;
+    if (se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model)) {
+        return SE3DI_CROWD_NEAR;
+    }
+    const double step = run->integration.settings.step;
+    return step > 0.0 && step < STEP_SLOW ? SE3DI_CROWD_NONE : SE3DI_CROWD_SLOW;
+}
+
+/* Contacts have held steps short, and nothing else needs them so short. */
+static int is_slow(const se3di_run *run)
+{
+    return is_history_of(run->model, SE3D_METHOD_DOP853) &&
+           se3di_explicit_leaves_crowd(run->model) &&
+           se3di_crowd_bears(run->model, fmax(run->integration.settings.step, STEP_SLOW));
 }
 
 int se3di_run_is_crowded(const se3di_run *run)
@@ -180,9 +193,7 @@ int se3di_run_is_crowded(const se3di_run *run)
     if (is_history_of(model, SE3D_METHOD_CONVEX)) {
         return 1;
     }
-    return crowd == SE3DI_CROWD_NEAR
-               ? se3di_bodies_crowd(model)
-               : is_history_of(model, SE3D_METHOD_DOP853) && se3di_explicit_leaves_crowd(model);
+    return crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(model) : is_slow(run);
 }
 
 /* A function of time or the user's code is among the rows. */

@@ -64,6 +64,43 @@ double se3di_stiffness_step(const se3di_model *model)
     return rate > 0.0 ? STEP_ANGLE / rate : HUGE_VAL; /* a host may trap divisions by 0 */
 }
 
+/* |A_tt| / m + |J^-1 A_rr| of one body of an element, A 6 x 6 of 12 x 12: unlike the trace it does
+ * not vanish where what pulls along and what pushes across are alike. */
+static double body_norm(const se3di_body *body, const double *A)
+{
+    double J[9], column[3], along = 0.0, about = 0.0;
+    if (body->fixed) {
+        return 0.0;
+    }
+    se3di_inertia_matrix(body->J, J);
+    for (int c = 0; c < 3; ++c) {
+        const double turning[3] = {A[12 * 3 + 3 + c], A[12 * 4 + 3 + c], A[12 * 5 + 3 + c]};
+        const double moving[3] = {A[c], A[12 + c], A[24 + c]};
+        se3di_solve3(J, turning, column);
+        along += se3di_dot(moving, moving);
+        about += se3di_dot(column, column);
+    }
+    return sqrt(along) / body->mass + sqrt(about);
+}
+
+double se3di_stiffness_angle(const se3di_model *model, double h)
+{
+    double angle = 0.0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        const se3di_body *i = &model->bodies[force->body_i], *j = &model->bodies[force->body_j];
+        se3di_effect effect = {.wants_derivative = 1};
+        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC) ||
+            se3di_force_eval(model, force, model->time, &effect) < 0) {
+            continue;
+        }
+        const double decay = body_norm(i, effect.D) + body_norm(j, effect.D + 6 * 13);
+        const double square = body_norm(i, effect.K) + body_norm(j, effect.K + 6 * 13);
+        angle = fmax(angle, h * decay + h * sqrt(square));
+    }
+    return angle;
+}
+
 /* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
  * and of the spins; 1 at least, as a spin by rounding is none. */
 static double rate_of_motion(const se3di_model *model)

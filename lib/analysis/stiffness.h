@@ -5,6 +5,8 @@
 
 #include "model/model.h"
 
+/* What the fastest spring-damper or bushing turns and decays by in a step of h, its bodies free. */
+double se3di_stiffness_angle(const se3di_model *model, double h);
 /* The longest step of an explicit method that follows every spring-damper and bushing at the
  * present state; infinite if there is none. */
 double se3di_stiffness_step(const se3di_model *model);

@@ -113,8 +113,9 @@ static void print_analysis(const se3d_run_analysis *a)
     printf(", CPU time %.3g s\n", a->cpu_time);
     if (a->left[0]) {
         printf("  auto left %s for %s at t = %.9g s: %s\n", a->left, a->method, a->left_at,
-               strcmp(a->method, "convex") == 0 ? "many bodies came together"
-                                                : "the motion became stiff");
+               strcmp(a->method, "convex") == 0
+                   ? "bodies that touch held its steps short, or are many"
+                   : "the motion became stiff");
     }
     print_step(a);
     if (a->reached > a->tolerance) {
