@@ -107,8 +107,9 @@ typedef int (*se3d_interrupt)(void *ctx);
  * keep their size. */
 
 /* Memory functions of a system. `alloc` and `realloc` return NULL on failure; sizes are in bytes
- * and `free` receives the size that was asked for. Memory must be aligned as malloc's is. @since
- * 0.1 */
+ * and `free` receives the size that was asked for. Memory must be aligned as malloc's is. Clones
+ * share some memory, which the last one gives back: where they are used in several threads, so are
+ * these functions. @since 0.1 */
 typedef struct se3d_allocator {
     void *(*alloc)(void *ctx, size_t size);                                      /* as malloc */
     void *(*realloc)(void *ctx, void *memory, size_t old_size, size_t new_size); /* as realloc */
