@@ -14,6 +14,7 @@
 
 #define HELD_RATIO  1e3 /* the same, of the rate of bodies that are held */
 #define HELD_SOLVES 12  /* towards that rate, from below */
+#define GOLDEN      0.6180339887498949
 
 #define STEP_ANGLE 0.1 /* of the fastest oscillation in an explicit step [rad] */
 
@@ -165,7 +166,9 @@ static se3d_status find_held_rate(se3di_equations *equations, double enough, dou
     SE3DI_TRY(se3di_equations_factor(equations));
     memset(equations->c, 0, assembly->row_count * sizeof *equations->c);
     for (size_t k = 0; k < n; ++k) {
-        b[k] = (double)(1 + k % 7); /* no direction is left out */
+        const double turns =
+            GOLDEN * (double)k; /* no two bodies are alike, however many there are */
+        b[k] = 1.0 + turns - floor(turns);
     }
     for (int k = 0; k < HELD_SOLVES && !(*rate > enough); ++k) {
         SE3DI_TRY(se3di_equations_solve(equations));
@@ -199,5 +202,5 @@ se3d_status se3di_stiffness_is_stiff(se3di_model *model, se3di_error *error, int
     const se3d_status status = find_held_rate(&equations, HELD_RATIO * motion, &held);
     se3di_equations_destroy(&equations);
     *is_stiff = status < 0 || held > HELD_RATIO * motion;
-    return SE3D_OK;
+    return status == SE3D_ERR_NO_MEMORY ? status : SE3D_OK;
 }

@@ -449,6 +449,40 @@ static void a_solver_that_is_read_goes_on_by_its_method(void)
 }
 
 /* A spin of rounding is no motion beside which a damper is stiff. */
+/* Equal bodies on rails of their own, a damper between the first one and any other. */
+static void auto_sees_a_damper_between_any_two_bodies(void)
+{
+    for (size_t other = 1; other < 24; ++other) {
+        se3d_system *system = NULL;
+        se3d_solver *solver = NULL;
+        se3d_tsda_def damper = se3d_tsda_def_default();
+        se3d_force force;
+        se3d_solver_def def = se3d_solver_def_default();
+        CHECK(!se3d_system_create(NULL, &system));
+        for (size_t k = 0; k < 24; ++k) {
+            se3d_body_def body = se3d_body_def_default();
+            se3d_joint_def rail = se3d_joint_def_default();
+            se3d_constraint made;
+            body.mass = 1.0;
+            body.inertia[0] = body.inertia[1] = body.inertia[2] = 0.1;
+            body.position[2] = rail.point_i[2] = (double)k;
+            CHECK(!se3d_body_create(system, &body, &rail.body_j));
+            CHECK(!se3d_system_get_ground(system, &rail.body_i));
+            CHECK(!se3d_joint_create_prismatic(system, &rail, &made));
+            damper.body_i = k == 0 ? rail.body_j : damper.body_i;
+            damper.body_j = k == other ? rail.body_j : damper.body_j;
+        }
+        damper.c = 1e6;
+        CHECK(!se3d_force_create_tsda(system, &damper, &force));
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        CHECK(!se3d_solver_run(solver, 1e-4));
+        CHECK(!se3d_solver_get_method(solver, &picked));
+        CHECK(strcmp(picked, "radau") == 0);
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(system);
+    }
+}
+
 static void auto_takes_no_rounding_for_the_motion(void)
 {
     static const double spins[] = {0.0, 1e-300, 1e-17, 1e-6, 1.0};
@@ -468,6 +502,7 @@ int main(void)
 {
     RUN(auto_takes_no_rounding_for_the_motion);
     RUN(auto_sees_what_holds_a_light_body);
+    RUN(auto_sees_a_damper_between_any_two_bodies);
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
     RUN(auto_leaves_dop853_where_decays_hold_it);
