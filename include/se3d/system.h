@@ -233,8 +233,8 @@ static inline se3d_status se3d_system_get_work(const se3d_system *system, se3d_w
  * @since 0.1 */
 SE3D_API se3d_status se3d_system_get_violation(const se3d_system *system, double violation[3]);
 
-/* Compute a hash of the state (time, positions, velocities, accelerations, multipliers,
- * particles): equal bits, equal hash. @return the hash; 0 for NULL. @since 0.1 */
+/* Compute a hash of the state (time, positions, velocities, accelerations and multipliers if they
+ * are shown, particles): equal bits, equal hash. @return the hash; 0 for NULL. @since 0.1 */
 SE3D_API uint64_t se3d_system_hash(const se3d_system *system);
 
 /* Save the state of a system. @return OK, NULL, NO_MEMORY, STATE (within a callback that sees a

@@ -390,6 +390,7 @@ uint64_t se3d_system_hash(const se3d_system *system)
     }
     const se3di_model *model = &system->model;
     se3di_pending_complete(model->pending);
+    const int lacks = model->settled & SE3DI_LACKING; /* what is there is of another state */
     uint64_t hash = se3di_hash_numbers(SE3DI_HASH_START, &model->time, 1);
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         const se3di_frame *frame = &model->frames[k];
@@ -397,9 +398,9 @@ uint64_t se3d_system_hash(const se3d_system *system)
         hash = se3di_hash_numbers(hash, frame->p, 4);
         hash = se3di_hash_numbers(hash, frame->v, 3);
         hash = se3di_hash_numbers(hash, frame->w, 3);
-        hash = se3di_hash_numbers(hash, model->acceleration + 6 * k, 6);
+        hash = se3di_hash_numbers(hash, model->acceleration + 6 * k, lacks ? 0 : 6);
     }
-    hash = se3di_hash_numbers(hash, model->lambda, model->row_count);
+    hash = se3di_hash_numbers(hash, model->lambda, lacks ? 0 : model->row_count);
     for (size_t k = 0; model->broken_count > 0 && k < model->row_count; ++k) {
         hash = se3di_hash_word(hash, (uint64_t)(model->rows[k].left_out & SE3DI_ROW_BREAKS) >> 1);
     }

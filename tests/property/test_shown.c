@@ -192,6 +192,21 @@ static void snapshots_and_clones_know_what_is_missing(void)
     drop(&w);
 }
 
+/* What was shown before is not of the state. */
+static void a_motion_has_one_hash(void)
+{
+    linkage w = make(SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA);
+    linkage other = make(SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA);
+    run(&w, SE3D_SHOWN_MOTION, 0.1);
+    run(&other, SE3D_SHOWN_ALL, 0.1);
+    CHECK(se3d_system_hash(w.system) != se3d_system_hash(other.system));
+    run(&w, SE3D_SHOWN_MOTION, 0.2);
+    run(&other, SE3D_SHOWN_MOTION, 0.2);
+    CHECK(se3d_system_hash(w.system) == se3d_system_hash(other.system));
+    drop(&other);
+    drop(&w);
+}
+
 static void a_run_to_the_present_time_completes_the_state(void)
 {
     linkage w = make(SE3D_METHOD_RADAU, SE3D_FORMULATION_ROMEGA);
@@ -237,6 +252,7 @@ int main(void)
         what_begins_behind_them_is_the_same(&kinds[k]);
     }
     RUN(snapshots_and_clones_know_what_is_missing);
+    RUN(a_motion_has_one_hash);
     RUN(a_run_to_the_present_time_completes_the_state);
     RUN(what_needs_multipliers_gets_them);
     RUN(other_values_are_refused);
