@@ -15,6 +15,7 @@
 #define ROUNDING    2e-15 /* of a velocity of one kind, relative to those of the other */
 #define GAUSS_PART  0.3   /* of the tolerance, instead of SE3DI_EXPLICIT_PART, where all is plain */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
+#define WIDE        1e-8  /* regularisation of short steps */
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
 
@@ -62,9 +63,13 @@ double se3di_gauss_get_reach(const se3di_integration *integration, const se3di_m
 }
 
 /* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
- * positions; elsewhere a wider filter costs steps and accuracy. */
-static double regularisation(double tolerance)
+ * positions; elsewhere a wider filter costs steps and accuracy. The short steps of rk4 end within
+ * a narrow one by the hundred, and what they err by there adds up in the velocity. */
+static double regularisation(const se3di_integrator *method, int is_controlled, double tolerance)
 {
+    if (is_controlled && method->tag == SE3D_METHOD_RK4) {
+        return WIDE;
+    }
     return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
 }
 
@@ -110,7 +115,7 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration)
     };
 }
 
-se3di_explicit se3di_explicit_begin(se3di_integration *integration)
+se3di_explicit se3di_explicit_begin(se3di_integration *integration, int is_controlled)
 {
     se3di_explicit m = se3di_explicit_point(integration);
     const double asked = integration->settings.tolerance;
@@ -118,7 +123,8 @@ se3di_explicit se3di_explicit_begin(se3di_integration *integration)
     se3di_contacts_begin(m.assembly->model, 0.0, 1.0, 0);
     const double solved =
         fmin(m.tolerance, fmax(SE3DI_EXPLICIT_PART * asked, SE3DI_EXPLICIT_LEAST));
-    m.kkt = se3di_state_begin(m.equations, regularisation(solved), fmin(1e-6, 1e-3 * solved));
+    const double eps = regularisation(integration->method, is_controlled, solved);
+    m.kkt = se3di_state_begin(m.equations, eps, fmin(1e-6, 1e-3 * solved));
     return m;
 }
 

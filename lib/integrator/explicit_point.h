@@ -14,7 +14,8 @@ se3di_explicit_past *se3di_explicit_past_of(const se3di_model *model);
 int se3di_explicit_leaves_crowd(const se3di_model *model);
 /* The parts of history and work. */
 se3di_explicit se3di_explicit_point(const se3di_integration *integration);
-se3di_explicit se3di_explicit_begin(se3di_integration *integration);
+/* The same, and the solver as it needs it; `is_controlled`: errors decide of its steps. */
+se3di_explicit se3di_explicit_begin(se3di_integration *integration, int is_controlled);
 /* y'_1 as the bodies see it; y_1 was set last. */
 const double *se3di_explicit_get_rates(const se3di_explicit *m);
 void se3di_explicit_grow_scale(se3di_explicit *m);

@@ -492,7 +492,7 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
 se3d_status se3di_explicit_start(se3di_integration *integration, double h)
 {
     (void)h; /* the first step is chosen */
-    se3di_explicit m = se3di_explicit_begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration, 0);
     memset(m.past, 0, sizeof *m.past);
     memset(m.y0, 0, (SE3DI_EXPLICIT_FORMS + 1) * m.count * sizeof *m.y0);
     m.past->scale.length = se3di_state_length(m.assembly->model);
@@ -544,7 +544,7 @@ int se3di_explicit_renews_all(const se3di_integration *integration)
 
 se3d_status se3di_explicit_renew(se3di_integration *integration)
 {
-    se3di_explicit m = se3di_explicit_begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration, 0);
     const se3d_status status = m.motion->finds_all(m.equations) ? adopt_evaluated(&m) : adopt(&m);
     m.past->at.renewed = 1.0;
     se3di_state_end(m.equations, &m.kkt);
@@ -675,7 +675,7 @@ static se3d_status step_once(se3di_explicit *m, double h, int *reported)
 
 se3d_status se3di_explicit_step(se3di_integration *integration, double h)
 {
-    se3di_explicit m = se3di_explicit_begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration, 0);
     int reported = 0;
     se3d_status status = SE3D_OK;
     se3di_pending_complete(m.assembly->model->pending);
@@ -717,7 +717,7 @@ static se3d_status advance_to(se3di_explicit *m, double t_end)
 
 se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end)
 {
-    se3di_explicit m = se3di_explicit_begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration, 1);
     se3d_status status = advance(&m, t_end);
     status = status < 0 || integration->at_kink ? status : m.methods->build_dense(&m);
     se3di_state_end(m.equations, &m.kkt);
@@ -793,7 +793,7 @@ se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
     if (se3di_explicit_is_within(integration, t_end)) {
         return show_within(integration, t_end);
     }
-    se3di_explicit m = se3di_explicit_begin(integration);
+    se3di_explicit m = se3di_explicit_begin(integration, 1);
     const int at_begin = !(t_end > m.past->at.begin);
     se3d_status status = at_begin ? SE3D_OK : advance_to(&m, t_end);
     se3di_state_end(m.equations, &m.kkt);

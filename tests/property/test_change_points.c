@@ -290,6 +290,17 @@ static void explicit_methods_keep_to_their_branch(void)
     }
 }
 
+/* Its steps are so short that many end next to the singular position. */
+static void rk4_keeps_to_its_branch(void)
+{
+    for (int f = 0; f < 3; ++f) {
+        const trial loose = {SE3D_METHOD_RK4, formulations[f], 1e-4, f == 1 ? 4e-3 : 0.0};
+        const trial tight = {SE3D_METHOD_RK4, formulations[f], 1e-6, 0.0};
+        try_all(&loose, f, 3e-4, 3e-4);
+        try_all(&tight, f + 1, 3e-5, 3e-5);
+    }
+}
+
 static void implicit_methods_keep_to_their_branch(void)
 {
     static const int32_t methods[] = {SE3D_METHOD_BDF, SE3D_METHOD_RADAU,
@@ -340,6 +351,7 @@ static void rattle_and_verlet_keep_to_their_branch_or_say_so(void)
 int main(void)
 {
     RUN(explicit_methods_keep_to_their_branch);
+    RUN(rk4_keeps_to_its_branch);
     RUN(implicit_methods_keep_to_their_branch);
     RUN(equal_steps_keep_to_their_branch);
     RUN(rattle_and_verlet_keep_to_their_branch_or_say_so);
