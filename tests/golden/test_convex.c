@@ -845,6 +845,55 @@ static void what_it_does_not_know_is_refused(void)
     }
 }
 
+/* Logs between walls, three, two and one, not quite parallel: they come to rest. The normal of two
+ * of them has no end to alternate between, and what touches does not wander from end to end. */
+static void a_pile_of_logs_comes_to_rest(void)
+{
+    enum { ROWS = 3, LOGS = ROWS * (ROWS + 1) / 2 };
+    const double R = 0.05, half = 0.5 * PI, J[3] = {0.0214, 0.0214, 0.00125};
+    for (int is_capsule = 0; is_capsule < 2; ++is_capsule) {
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e5);
+        se3d_body logs[LOGS];
+        se3d_energy energy;
+        se3d_shape made;
+        double r[3], v[3], before[3];
+        scene_floor(&s, 0.0);
+        for (int side = -1; side <= 1; side += 2) {
+            const double size[3] = {0.05, 1.0, 0.4};
+            se3d_shape_def wall = scene_shape(&s, scene_ground(&s));
+            memcpy(wall.size, size, sizeof size);
+            wall.position[0] = side * (ROWS * R + 0.027);
+            wall.position[2] = 0.2;
+            CHECK(se3d_shape_create_box(s.system, &wall, &made) == SE3D_OK);
+        }
+        for (int k = 0, row = 0; row < ROWS; ++row) {
+            for (int c = 0; c < ROWS - row; ++c, ++k) {
+                const double yaw = 0.002 * (k * 7 % 5 - 2), axis[3] = {cos(yaw), sin(yaw), 0.0};
+                const double at[3] = {(2 * c - (ROWS - row - 1)) * R, 0.003 * (k * 3 % 5 - 2),
+                                      R + row * (1.7320508 * R + 0.002) + 0.001};
+                logs[k] = scene_body(&s, 1.0, J, at, scene_zero);
+                scene_turn(&s, logs[k], axis, half);
+                se3d_shape_def def = scene_shape(&s, logs[k]);
+                def.radius = R;
+                def.length = 0.5;
+                CHECK((is_capsule ? se3d_shape_create_capsule(s.system, &def, &made)
+                                  : se3d_shape_create_cylinder(s.system, &def, &made)) == SE3D_OK);
+            }
+        }
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+        scene_run(&s, 1.5);
+        get(&s, logs[LOGS - 1], before, v);
+        scene_run(&s, 1.8);
+        get(&s, logs[LOGS - 1], r, v);
+        CHECK(se3d_system_get_energy(s.system, &energy) == SE3D_OK);
+        CHECK_NEAR(energy.kinetic, 0.0, 1e-9);
+        for (int k = 0; k < 3; ++k) {
+            CHECK_NEAR(r[k], before[k], 1e-7);
+        }
+        scene_end(&s);
+    }
+}
+
 int main(void)
 {
     RUN(a_box_rests_as_deep_as_its_springs_say);
@@ -856,6 +905,7 @@ int main(void)
     RUN(sliding_impacts_take_mu_times_the_normal_impulse);
     RUN(a_stack_of_ten_stands_without_creep);
     RUN(a_pyramid_stands_without_creep);
+    RUN(a_pile_of_logs_comes_to_rest);
     RUN(twenty_dominoes_fall);
     RUN(many_bodies_are_stepped_by_convex);
     RUN(bodies_far_apart_are_no_crowd);

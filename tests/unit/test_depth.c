@@ -90,6 +90,23 @@ static void show(const se3di_shape *i, const se3di_shape *j, double wanted, cons
     }
 }
 
+/* Two round sides that are nearly parallel: their points have normals of their own, which lean from
+ * that of the least translation by what the axes do, and are as deep as the two. */
+static int are_along(const se3di_shape *i, const se3di_shape_pose *at, const se3di_shape *j,
+                     const se3di_shape_pose *of)
+{
+    const se3di_solid one = {i, at}, two = {j, of};
+    double u[3], w[3], across[3];
+    if (se3di_shape_class_of(i)->lines != SE3DI_AXES_Z ||
+        se3di_shape_class_of(j)->lines != SE3DI_AXES_Z) {
+        return 0;
+    }
+    se3di_solid_axis(&one, 2, u);
+    se3di_solid_axis(&two, 2, w);
+    se3di_cross(u, w, across);
+    return se3di_norm(across) < 1e-2;
+}
+
 /* `convex`: j, or the convex solid whose surface it is. Along any direction the overlap bounds the
  * least one: one that is less than that found here is
  * right if it is that along its own normal. Normals may differ where these are equal to rounding.
@@ -115,15 +132,18 @@ static void compare(const se3di_shape *i, const se3di_shape_pose *at, const se3d
     const double beyond = j->kind == SE3DI_SHAPE_MESH ? 0.0 : beyond_of(i, at, j, of, &m);
     const double lean = se3di_norm(turn);
     const int less = p && along < wanted - 1e-12 && fabs(p->overlap - along) < SAME;
-    const int same = off < SAME && (lean < SAME || (lean < 10.0 * SAME && along < wanted + 1e-14));
+    const int along_sides = are_along(i, at, j, of);
+    const double most = 2e-5 + (along_sides ? 0.3 : 1e-2) * wanted;
+    const int same = off < SAME && (lean < (along_sides ? 0.05 : SAME) ||
+                                    (lean < 10.0 * SAME && along < wanted + 1e-14));
     ++a->counted;
     a->less += less;
     a->wrong += !same && !less;
-    a->outside += !(beyond < 2e-5 + 1e-2 * wanted);
+    a->outside += !(beyond < most);
     a->depth = less ? a->depth : fmax(a->depth, off);
-    a->normal = less ? a->normal : fmax(a->normal, lean);
+    a->normal = less || along_sides ? a->normal : fmax(a->normal, lean);
     a->beyond = fmax(a->beyond, beyond);
-    if ((!same && !less) || !(beyond < 2e-5 + 1e-2 * wanted)) {
+    if ((!same && !less) || !(beyond < most)) {
         show(i, j, wanted, n, p);
     }
 }

@@ -2,10 +2,10 @@
 /* Points of contact of two convex shapes, along the direction in which they come apart first.
  *
  * All points of a pair have that normal, and their overlaps are measured along it: those of flat
- * parts that lean little from it where the other part is cut off at the sides, those of two lines
- * at the ends of what they have in common. Directions that differ little, as those of two faces
- * that lie on each other and of their edges, so give nearly the same points, and the least overlap
- * is never left for another one. */
+ * parts that lean little from it where the other part is cut off at the sides. Only those of two
+ * round sides, at the ends of what they have in common, have their own. Directions that differ
+ * little, as those of two faces that lie on each other and of their edges, so give nearly the same
+ * points, and the least overlap is never left for another one. */
 #include "contact/narrow/internal.h"
 #include "math/vec3.h"
 
@@ -13,7 +13,7 @@
 
 #define FACE_COSINE 0.985 /* faces leaning by less than 10 degrees from the normal */
 #define PARALLEL    1e-2  /* sine below which two lines touch in two points */
-#define LOSS        1e-3  /* of the overlap: by how much it is less at these if the lines cross */
+#define LOSS        0.5   /* of the overlap: by how much it is less at these if the lines cross */
 #define SAME        2e-15 /* of the size: depths that are one; faces come before edges then */
 #define EXACT       1e-9  /* the normal is that of a face */
 #define LIFT        1e-5  /* of the size: by how much points of a round rim are too shallow */
@@ -130,43 +130,43 @@ static void point_touches(const parting *p, uint32_t feature, se3di_manifold *ma
     bend_side(p->j, p->n, &c->bend_j);
 }
 
-/* Two lines on the surfaces, or cores, that touch along what they have in common. */
+/* The axes of two round shapes that touch along what they have in common. */
 typedef struct lines {
-    const double *a, *b;   /* their beginnings */
+    double a[3], b[3];     /* their beginnings */
     double u[3], w[3];     /* unit */
     double long_a, long_b; /* lengths */
     double low, high;      /* what they have in common, along a */
+    double from, to;       /* where b begins and ends, seen along a */
 } lines;
+
+static double line_of(const se3di_solid *solid, double begin[3], double u[3])
+{
+    const double half = solid->shape->half_length;
+    se3di_solid_axis(solid, 2, u);
+    se3di_copy(solid->at->x, begin);
+    se3di_add_scaled(-half, u, begin);
+    return 2.0 * half;
+}
 
 /* Returns 0 if they cross at an angle, or lie end to end. If they cross nearly parallel, the
  * overlap falls off to either side. */
-static int lines_meet(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
-                      lines *l)
+static int lines_meet(const parting *p, lines *l)
 {
     double across[3], d[3];
-    l->a = face_i->corner[0];
-    l->b = face_j->corner[0];
-    se3di_sub(face_i->corner[1], l->a, l->u);
-    se3di_sub(face_j->corner[1], l->b, l->w);
-    l->long_a = se3di_norm(l->u);
-    l->long_b = se3di_norm(l->w);
-    if (!(l->long_a > 0.0 && l->long_b > 0.0)) {
-        return 0;
-    }
-    se3di_scale(1.0 / l->long_a, l->u, l->u);
-    se3di_scale(1.0 / l->long_b, l->w, l->w);
+    l->long_a = line_of(p->i, l->a, l->u);
+    l->long_b = line_of(p->j, l->b, l->w);
     se3di_cross(l->u, l->w, across);
     if (!(se3di_norm(across) < PARALLEL && fabs(se3di_dot(l->u, p->n)) < PARALLEL)) {
         return 0;
     }
     se3di_sub(l->b, l->a, d);
-    const double from = se3di_dot(d, l->u);
-    const double to = from + l->long_b * se3di_dot(l->w, l->u);
+    l->from = se3di_dot(d, l->u);
+    l->to = l->from + l->long_b * se3di_dot(l->w, l->u);
     const double round = p->i->shape->radius + p->j->shape->radius;
     const double turn = fabs(se3di_dot(across, p->n));
     const double far = sqrt(2.0 * LOSS * p->depth * round);
-    l->low = fmax(0.0, fmin(from, to));
-    l->high = fmin(l->long_a, fmax(from, to));
+    l->low = fmax(0.0, fmin(l->from, l->to));
+    l->high = fmin(l->long_a, fmax(l->from, l->to));
     const int meet = l->high > l->low;
     if (far < turn * l->long_a) {
         se3di_sub(p->on_i, l->a, d);
@@ -176,28 +176,64 @@ static int lines_meet(const parting *p, const se3di_face *face_i, const se3di_fa
     return meet && l->high > l->low;
 }
 
+/* The foot of a place on a line. */
+static void foot_on(const double begin[3], const double u[3], const double x[3], double foot[3])
+{
+    double d[3];
+    se3di_sub(x, begin, d);
+    se3di_copy(begin, foot);
+    se3di_add_scaled(se3di_dot(d, u), u, foot);
+}
+
+/* A place of the one line, `t` along a, and its foot on the other: of an end of b that on a. */
+static void find_pair(const lines *l, double t, double on_a[3], double on_b[3])
+{
+    if (t == l->from || t == l->to) {
+        se3di_copy(l->b, on_b);
+        se3di_add_scaled(t == l->from ? 0.0 : l->long_b, l->w, on_b);
+        foot_on(l->a, l->u, on_b, on_a);
+    } else {
+        se3di_copy(l->a, on_a);
+        se3di_add_scaled(t, l->u, on_a);
+        foot_on(l->b, l->w, on_a, on_b);
+    }
+}
+
+static void bend_along(const double axis[3], double radius, const double n[3], se3di_bend *bend)
+{
+    double u[3];
+    se3di_copy(axis, u);
+    se3di_add_scaled(-se3di_dot(axis, n), n, u);
+    se3di_scale(1.0 / se3di_norm(u), u, u);
+    se3di_bend_set(bend, u, HUGE_VAL, radius);
+}
+
+/* Both points have normals of their own, from axis to axis. The least translation of two that are
+ * parallel but for little has the normal of the one end or of the other: logs that lie on each
+ * other would be pushed to and fro, and not come to rest. The deeper one is as deep as the two. */
 static void lines_touch(const parting *p, const lines *l, se3di_manifold *manifold)
 {
-    const double round = p->i->shape->radius + p->j->shape->radius;
+    const double r_i = p->i->shape->radius, r_j = p->j->shape->radius;
+    double x[2][3], n[2][3], overlap[2];
+    for (int k = 0; k < 2; ++k) {
+        double q[3];
+        find_pair(l, k ? l->high : l->low, x[k], q);
+        se3di_sub(q, x[k], n[k]);
+        const double distance = se3di_norm(n[k]);
+        if (!(se3di_dot(n[k], p->n) > FACE_COSINE * distance)) {
+            return;
+        }
+        se3di_scale(1.0 / distance, n[k], n[k]);
+        overlap[k] = r_i + r_j - distance;
+    }
+    const double more = p->depth - fmax(overlap[0], overlap[1]);
     for (uint32_t k = 0; k < 2; ++k) {
-        double x[3], q[3], d[3], way[3];
-        se3di_copy(l->a, x);
-        se3di_add_scaled(k ? l->high : l->low, l->u, x);
-        se3di_copy(l->w, way);
-        se3di_add_scaled(-se3di_dot(way, p->n), p->n, way);
-        se3di_sub(x, l->b, d);
-        const double t = se3di_dot(d, way) / se3di_dot(way, way);
-        se3di_copy(l->b, q);
-        se3di_add_scaled(fmax(0.0, fmin(l->long_b, t)), l->w, q);
-        se3di_sub(x, q, d);
-        const double along = se3di_dot(d, p->n);
-        se3di_add_scaled(-along, p->n, d);
-        const double overlap = along + p->radius - 0.5 * se3di_dot(d, d) / round;
-        if (overlap > 0.0) {
-            se3di_add_scaled(se3di_core_radius(p->i->shape) - 0.5 * overlap, p->n, x);
-            se3di_contact_point *c = se3di_manifold_add(manifold, x, p->n, overlap, k + 1u);
-            bend_side(p->i, p->n, &c->bend_i);
-            bend_side(p->j, p->n, &c->bend_j);
+        overlap[k] += more;
+        if (overlap[k] > 0.0) {
+            se3di_add_scaled(r_i - 0.5 * overlap[k], n[k], x[k]);
+            se3di_contact_point *c = se3di_manifold_add(manifold, x[k], n[k], overlap[k], k + 1u);
+            bend_along(l->u, r_i, n[k], &c->bend_i);
+            bend_along(l->w, r_j, n[k], &c->bend_j);
         }
     }
 }
@@ -254,7 +290,7 @@ static void touch(const parting *p, se3di_manifold *manifold)
         se3di_narrow_clip(&face_i, &face_j, p->n, p->radius, 0, manifold);
     } else if (flat_j) {
         se3di_narrow_clip(&face_j, &face_i, back, p->radius, 1, manifold);
-    } else if (face_i.count == 2 && face_j.count == 2 && lines_meet(p, &face_i, &face_j, &both)) {
+    } else if (face_i.count == 2 && face_j.count == 2 && lines_meet(p, &both)) {
         lines_touch(p, &both, manifold);
     }
     if (flat_i || flat_j) {
