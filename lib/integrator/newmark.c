@@ -396,7 +396,7 @@ static se3d_status review(se3di_newmark_step *step, double most, se3di_memory_en
 /* A step of given length that leaves the branch of the motion at a singular position. */
 static se3d_status check_branch(const se3di_newmark_step *step)
 {
-    if (se3di_newmark_measure_shift(step) <= SHIFT_MAX) {
+    if (se3di_newmark_measure_shift(step, 1) <= SHIFT_MAX) {
         return SE3D_OK;
     }
     return se3di_error_set(step->equations->error, SE3D_ERR_NO_CONVERGENCE,
@@ -454,7 +454,8 @@ static int may_be_divided(se3d_status status)
            status == SE3D_ERR_NOT_FINITE;
 }
 
-/* To t, in one step of h if that can be; on failure the state is that after the last part. */
+/* To t, in one step of h if that can be; on failure the state is that after the last part, from
+ * which the call comes back to where it began (analysis/run_failure.c). */
 static se3d_status step_in_parts(se3di_integration *integration, double h, double t)
 {
     const se3di_newmark_header *header = header_of(integration);

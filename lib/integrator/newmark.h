@@ -90,8 +90,12 @@ se3d_status se3di_newmark_factor(se3di_newmark_step *step);
 void se3di_newmark_find_scales(const se3di_assembly *assembly, const double *vdot, double scale[2]);
 
 /* The displacement z over the motion of the step: of the size h^2, but large if a step has met its
- * constraints on another branch of the motion, near a singular position. NaN if z is. */
-double se3di_newmark_measure_shift(const se3di_newmark_step *step);
+ * constraints on another branch of the motion, near a singular position. NaN if z is. Motion that
+ * begins in the step (a driver t^3 from rest) has such a z, too: a_n = 0 makes x = beta/gamma h v
+ * of it, whatever it was. Step control makes such steps shorter; where lengths are given it
+ * `bears_growth`, that part of the speed that has been gained is left out, and accelerations at
+ * the end, which may be of any size on another branch, say nothing. */
+double se3di_newmark_measure_shift(const se3di_newmark_step *step, int bears_growth);
 /* *error of the solved step, relative to the tolerance; 0 if any is accepted (`most` 0). */
 se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double *error);
 

@@ -87,17 +87,38 @@ static double measure(const se3di_newmark_step *step, const se3di_newmark_header
            fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
 }
 
-double se3di_newmark_measure_shift(const se3di_newmark_step *step)
+/* The largest velocities of the model's state, of translation and of rotation. */
+static void find_velocities(const se3di_assembly *assembly, double speed[2])
+{
+    speed[0] = speed[1] = 0.0;
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        if (!se3di_state_is_carrier(assembly, k)) {
+            speed[0] = fmax(speed[0], se3di_norm(frame->v));
+            speed[1] = fmax(speed[1], se3di_norm(frame->w));
+        }
+    }
+}
+
+double se3di_newmark_measure_shift(const se3di_newmark_step *step, int bears_growth)
 {
     const se3di_newmark_header *header = se3di_newmark_get_history(step->assembly).header;
     const double sizes[2] = {header->scale.length, 1.0};
-    const double scale[2] = {header->scale.speed, header->scale.spin};
-    double worst = 0.0;
+    const double kept[2] = {header->scale.speed, header->scale.spin};
+    const double part = bears_growth ? step->h * step->beta / step->gamma : 0.0;
+    double worst = 0.0, speed[2];
+    if (bears_growth) {
+        find_velocities(step->assembly, speed);
+    } else {
+        se3di_newmark_find_scales(step->assembly, step->vdot, speed);
+    }
     for (size_t k = 0; k < step->assembly->unknown_count; k += 3) {
         const size_t kind = k % 6 / 3;
-        const double shift = se3di_norm(step->z + k) - SHIFT_ROUNDING * sizes[kind];
+        const double growth = fmax(0.0, speed[kind] - kept[kind]);
+        const double borne = SHIFT_ROUNDING * sizes[kind] + part * growth;
+        const double shift = se3di_norm(step->z + k) - borne;
         if (!se3di_state_is_carrier(step->assembly, k / 6)) {
-            worst = se3di_larger(worst, shift / scale[kind]);
+            worst = se3di_larger(worst, shift / fmax(speed[kind], kept[kind]));
         }
     }
     return worst / step->h;
@@ -134,7 +155,7 @@ se3d_status se3di_newmark_estimate(se3di_newmark_step *step, double most, double
         SE3DI_TRY(filter(step, jerk));
         *error = fmin(*error, se3di_larger(STAYS, measure(step, past.header, step->equations->x)));
     }
-    const double shift = PHASE * SHIFT_WEIGHT * se3di_newmark_measure_shift(step) /
+    const double shift = PHASE * SHIFT_WEIGHT * se3di_newmark_measure_shift(step, 0) /
                          fmax(step->integration->settings.tolerance, SE3DI_NEWMARK_REACH);
     *error = se3di_larger(*error, shift);
     return SE3D_OK;
