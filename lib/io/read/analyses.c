@@ -41,9 +41,11 @@ static const se3di_key analysis_keys[] = {
          "gauss: smooth motions, to tight tolerances; "
          "auto: verlet with particles, convex from where ten free bodies or more are at others, if "
          "nothing else acts on them but constant gravity, no tolerance is given and no step above "
-         "0.005, radau if a damper's decay is 20000 times faster than the motion, gauss where "
-         "nothing but constant gravity acts on an open tree of joints or on loops of plane pins "
-         "and balls, else dop853; both are left for radau if stability limits their steps"},
+         "0.005, radau if a damper's decay is 20000 times faster than the motion (and 1000 times "
+         "as joints hold its bodies), gauss where nothing but constant gravity acts on an open "
+         "tree of joints or on loops of plane pins and balls, else dop853; both are left for radau "
+         "if stability limits their steps, dop853 for convex if three free bodies or more may "
+         "touch and contacts alone limit its steps to below 5e-5 (docs/theory/convex.md)"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
