@@ -42,7 +42,7 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
 {
     se3di_effect effect;
     *potential = 0.0;
-    if (!se3di_law_is_callback(model, force)) {
+    if (!se3di_law_has_callback(model, force)) {
         return SE3D_OK;
     }
     memset(&effect, 0, offsetof(se3di_effect, K));

@@ -208,6 +208,21 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
     return SE3D_OK;
 }
 
+static int has_callback(const se3di_model *model, const se3di_function *function)
+{
+    int found = function->callback != NULL;
+    for (uint32_t k = 0; k < function->signal_count && !found; ++k) {
+        const se3di_function *inner = se3di_signal_function(model, &function->signals[k]);
+        found = inner && has_callback(model, inner);
+    }
+    return found;
+}
+
+int se3di_law_has_callback(const se3di_model *model, const se3di_force *force)
+{
+    return force->function[0] >= 0 && has_callback(model, &model->functions[force->function[0]]);
+}
+
 void se3di_law_keep_own(const se3di_function *function, double *gradient)
 {
     for (uint32_t k = function->variable_count - function->signal_count; k < 3; ++k) {

@@ -31,11 +31,8 @@ const se3di_signal *se3di_law_get_leaf(const se3di_model *model, const se3di_fun
  * [SE3D_FUNCTION_VARIABLES_MAX] (or NULL) as those of se3di_function_eval, own variables first. */
 se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *function,
                            const double *own, double jet[3], double *gradient);
-/* Whether the law of an element is the user's code. */
-static inline int se3di_law_is_callback(const se3di_model *model, const se3di_force *force)
-{
-    return force->function[0] >= 0 && model->functions[force->function[0]].callback != NULL;
-}
+/* Whether the law of an element is the user's code, or depends on such a function. */
+int se3di_law_has_callback(const se3di_model *model, const se3di_force *force);
 /* Slopes to the three own variables: those to signals, which may stand there, become zero. */
 void se3di_law_keep_own(const se3di_function *function, double *gradient);
 /* d wrench / d (value of its function c), c = 0, 1, 2. */

@@ -34,7 +34,7 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
 {
     double jet[3];
     *potential = 0.0;
-    if (force->tyre_index < 0 && se3di_law_is_callback(model, force)) {
+    if (force->tyre_index < 0 && se3di_law_has_callback(model, force)) {
         SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
     }
     return SE3D_OK;

@@ -312,6 +312,52 @@ static void states_are_made_and_removed_by_hand(void)
     se3d_system_destroy(system);
 }
 
+/* An output that is the user's code; it fails if `ctx` says so. */
+static se3d_status give_output(void *ctx, const double *x, double jet[3], double *gradient)
+{
+    jet[0] = x[0];
+    jet[1] = 1.0;
+    jet[2] = 0.0;
+    if (gradient) {
+        gradient[0] = 1.0;
+    }
+    return *(const int *)ctx ? SE3D_ERR_CALLBACK : SE3D_OK;
+}
+
+/* Efforts and rates that are expressions of outputs have no energy, and what the user's code
+ * behind them says is told all the same. */
+static void the_energy_tells_of_callbacks_behind_signals(void)
+{
+    static const char *const users[] = {
+        "states: [{name: y, type: ode, rate: 0}]\n"
+        "forces: [{name: motor, type: effort, joint: pin, value: \"-2*y.value\"}]\n",
+        "states: [{name: y, type: ode, rate: 0}, {name: z, type: ode, rate: \"-2*y.value\"}]\n",
+        "states: [{name: y, type: ode, rate: 0},\n"
+        "  {name: z, type: transfer, input: y.value, numerator: [1, 0], denominator: [1, 1]}]\n"
+        "forces: [{name: motor, type: effort, joint: pin, value: \"z.value - z.value^2\"}]\n"};
+    for (size_t k = 0; k < sizeof users / sizeof *users; ++k) {
+        char text[1024];
+        int fails = 0;
+        se3d_state y;
+        se3d_energy energy;
+        se3d_function output;
+        se3d_function_def def = se3d_function_def_default();
+        snprintf(text, sizeof text, ARM "%s" RUN_TO_2, users[k]);
+        text_model m = text_model_open(text, SE3D_METHOD_DOP853, -1, 0.0);
+        def.callback = give_output;
+        def.ctx = &fails;
+        CHECK(!se3d_function_create(m.system, &def, &output));
+        CHECK(!se3d_state_find(m.system, "y", &y));
+        CHECK(!se3d_state_set_output(m.system, y, output));
+        CHECK(!se3d_system_get_energy(m.system, &energy));
+        fails = 1;
+        CHECK(se3d_system_get_energy(m.system, &energy) == SE3D_ERR_CALLBACK);
+        fails = 0;
+        CHECK(!se3d_system_get_energy(m.system, &energy));
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(a_controlled_arm_follows_its_closed_form);
@@ -323,5 +369,6 @@ int main(void)
     RUN(equilibria_leave_states_as_they_are);
     RUN(events_find_levels_of_states);
     RUN(states_are_made_and_removed_by_hand);
+    RUN(the_energy_tells_of_callbacks_behind_signals);
     return check_finish();
 }
