@@ -113,7 +113,7 @@ static void advise_convex(const se3di_run *run, se3d_status status)
         run->integration.method->tag != SE3D_METHOD_CONVEX && se3di_crowd_suits(run->model)) {
         const se3di_error before = *run->error;
         se3di_error_set(run->error, before.status,
-                        "%.300s; method convex takes bodies that touch at steps of milliseconds",
+                        "%.430s; method convex takes bodies that touch at steps of milliseconds",
                         before.message);
     }
 }

@@ -60,6 +60,15 @@ se3d_status se3di_error_set_of(se3di_error *error, const char *field, se3d_statu
     return status;
 }
 
+void se3di_error_append(se3di_error *error, const char *format, ...)
+{
+    const size_t used = strlen(error->message);
+    va_list arguments;
+    va_start(arguments, format);
+    se3di_error_format(error->message + used, sizeof error->message - used, format, arguments);
+    va_end(arguments);
+}
+
 void se3di_error_clear(se3di_error *error)
 {
     error->status = SE3D_OK;

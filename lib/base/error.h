@@ -34,6 +34,13 @@ se3d_status
 se3di_error_set_of(se3di_error *error, const char *field, se3d_status status, const char *format,
                    ...);
 
+/* Add to the message, as far as there is room; its status and field stay. */
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+void
+se3di_error_append(se3di_error *error, const char *format, ...);
+
 /* What both messages and the log are written with. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 0)))

@@ -231,4 +231,32 @@ for method in auto dop853 rk45 bdf radau generalized_alpha hht; do
     expect "too soft, $method" 1 "$program" run "$dir/soft.yaml" -o "$dir/o" --method "$method"
     says 'the shapes ball and floor overlap by 0.02 m, at most 0.2 of their size 0.1 m is allowed; try a stiffer'
 done
+# One that rests almost as deep is no reason for what fails elsewhere, at the time that is told.
+cat >"$dir/pole.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, -9.81]
+contact: {law: hooke}
+materials: [{name: soft, stiffness: 492.96, density: 1000, restitution: 0.05}]
+bodies:
+  - {name: ball, mass: 1, inertia: [0.01, 0.01, 0.01], position: [0, 0, 0.0801],
+     shapes: [{type: sphere, radius: 0.1, material: soft}]}
+  - {name: floor, fixed: true, shapes: [{type: plane, material: soft}]}
+  - {name: slider, mass: 1, inertia: [0.01, 0.01, 0.01], position: [5, 0, 0]}
+joints: [{name: way, type: prismatic, body_i: ground, body_j: slider, at: [5, 0, 0], axis: [1, 0, 0]}]
+forces: [{name: pole, type: tsda, body_i: ground, body_j: slider, h: "1/(t - 0.5)^2"}]
+analysis: {type: dynamics, duration: 1}
+output: [{file: s.csv, every: 0.1, channels: [ball.position]}]
+END
+for method in auto bdf radau generalized_alpha; do
+    expect "a pole beside a contact, $method" 1 "$program" run "$dir/pole.yaml" -o "$dir/o" --method "$method"
+    says 'cannot be met here; the motion is not smooth'
+    holds 'no depth is blamed' [ "$(grep -c 'overlap by' "$dir/err")" = 0 ]
+done
+# Rows far apart: the time is where the step failed, not that of the last row.
+sed 's/output: .*/output: [{file: s.csv, every: 0.5, channels: [ball.position]}]/' "$dir/soft.yaml" >"$dir/rare.yaml"
+for method in auto bdf radau generalized_alpha; do
+    expect "too soft, rows far apart, $method" 1 "$program" run "$dir/rare.yaml" -o "$dir/o" --method "$method"
+    says 'failed at t = 0.18466'
+    is "$(grep -o 't = [0-9.e-]* s' "$dir/err" | cut -c 1-10 | sort -u | tr '\n' ' ')" 't = 0.1846 '
+done
 finish

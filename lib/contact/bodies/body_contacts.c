@@ -7,6 +7,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* The first remembered point of a pair of shapes; the list is in order of the pairs. */
@@ -199,18 +200,16 @@ const char *se3di_shape_describe(const se3di_model *model, uint32_t shape)
     return s->name ? s->name : body ? body : "without a name";
 }
 
-se3d_status se3di_contacts_too_deep(const se3di_model *model, double t, const uint32_t shapes[2],
-                                    double overlap, se3di_error *error)
+void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shapes[2],
+                                   double overlap, char text[SE3DI_DEPTH_SIZE])
 {
     const double size = fmin(se3di_shape_contact_size(&model->shapes[shapes[0]]),
                              se3di_shape_contact_size(&model->shapes[shapes[1]]));
-    return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
-                           "t = %g s: the shapes %.60s and %.60s overlap by %.3g m, at most %g of "
-                           "their size %.3g m is allowed; try a stiffer material, or a smaller "
-                           "step if one is given",
-                           t, se3di_shape_describe(model, shapes[0]),
-                           se3di_shape_describe(model, shapes[1]), overlap,
-                           model->contact.overlap_limit, size);
+    snprintf(text, SE3DI_DEPTH_SIZE,
+             "the shapes %.60s and %.60s overlap by %.3g m, at most %g of their size %.3g m is "
+             "allowed; try a stiffer material",
+             se3di_shape_describe(model, shapes[0]), se3di_shape_describe(model, shapes[1]),
+             overlap, model->contact.overlap_limit, size);
 }
 
 static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
@@ -222,7 +221,10 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
         return SE3D_OK;
     }
     const uint32_t shapes[2] = {e->shape_i, e->shape_j};
-    return se3di_contacts_too_deep(model, p->t, shapes, e->at->overlap, p->error);
+    char text[SE3DI_DEPTH_SIZE];
+    se3di_contacts_describe_depth(model, shapes, e->at->overlap, text);
+    return se3di_error_set(p->error, SE3D_ERR_STEP_SIZE,
+                           "t = %g s: %s, or a smaller step if one is given", p->t, text);
 }
 
 static se3d_status note(void *ctx, const se3di_encounter *e)

@@ -23,9 +23,10 @@ int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b);
 int se3di_shapes_pass_through(const se3di_model *model, uint32_t a, uint32_t b);
 /* How messages call a shape: by its name, or that of its body. */
 const char *se3di_shape_describe(const se3di_model *model, uint32_t shape);
-/* Records that two shapes (dense) overlap by more than the settings allow. @return STEP_SIZE */
-se3d_status se3di_contacts_too_deep(const se3di_model *model, double t, const uint32_t shapes[2],
-                                    double overlap, se3di_error *error);
+/* How messages tell that two shapes (dense) are as deep in each other as the settings allow. */
+#define SE3DI_DEPTH_SIZE 256
+void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shapes[2],
+                                   double overlap, char text[SE3DI_DEPTH_SIZE]);
 
 /* Add the wrenches of all contacts, [bodies * 6] as those of force elements. */
 void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench);

@@ -20,7 +20,6 @@
 #include "math/vec3.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #define PARTS        64.0 /* steps in a time of contact where it is followed */
@@ -31,8 +30,8 @@
 #define SOFT         1e-6 /* of the smaller size: arrivals that move less in a contact's time */
 #define SHORT        1e-6 /* a long step ends so much before contact begins */
 #define FACE_POINTS  8.0  /* of shapes other than spheres, which may share a load */
-#define AT_LIMIT     0.99 /* of the deepest overlap that is allowed */
-#define ALL_PAIRS    64   /* up to so many shapes all pairs are looked at, beyond what is listed */
+#define AT_LIMIT     (1.0 - 1e-4) /* of the deepest overlap that is allowed */
+#define ALL_PAIRS    64 /* up to so many shapes all pairs are looked at, beyond what is listed */
 
 typedef struct pace {
     const se3di_model *model;
@@ -342,7 +341,7 @@ static void find_culprits(pace *p)
     }
 }
 
-/* The deepest contact, if it is all but as deep as is allowed: steps shrink towards that. */
+/* The deepest contact, if it is as deep as is allowed but for a trace: steps shrink to that. */
 static const se3di_body_contact *find_deepest(const se3di_model *model)
 {
     const se3di_body_contacts *c = &model->contacts;
@@ -359,24 +358,33 @@ static const se3di_body_contact *find_deepest(const se3di_model *model)
     return deepest;
 }
 
+/* The depth joins what is told already: it need not be the reason. */
+static void blame_depth(const se3di_model *model, const se3di_body_contact *deepest,
+                        se3di_error *error)
+{
+    const uint32_t shapes[2] = {deepest->shape_i, deepest->shape_j};
+    char text[SE3DI_DEPTH_SIZE];
+    se3di_contacts_describe_depth(model, shapes, deepest->overlap, text);
+    se3di_error_append(error, "; %s", text);
+}
+
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
 {
     pace p = {.model = model, .step = HUGE_VAL};
-    const size_t used = error ? strlen(error->message) : 0;
-    if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY) {
-        return; /* no shape is to blame */
+    if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY ||
+        strstr(error->message, " overlap by ")) {
+        return; /* no shape is to blame, or two are blamed */
     }
     const se3di_body_contact *deepest = find_deepest(model);
     if (deepest && error->status == SE3D_ERR_STEP_SIZE) {
-        const uint32_t shapes[2] = {deepest->shape_i, deepest->shape_j};
-        (void)se3di_contacts_too_deep(model, model->time, shapes, deepest->overlap, error);
+        blame_depth(model, deepest, error);
         return;
     }
     find_culprits(&p);
-    if (p.i != p.j && used < sizeof error->message) {
-        snprintf(
-            error->message + used, sizeof error->message - used, "; the shapes %.60s and %.60s %s",
-            se3di_shape_describe(model, p.i), se3di_shape_describe(model, p.j),
-            model->contacts.count > 0 ? "have the largest contact force" : "are about to touch");
+    if (p.i != p.j) {
+        se3di_error_append(error, "; the shapes %.60s and %.60s %s",
+                           se3di_shape_describe(model, p.i), se3di_shape_describe(model, p.j),
+                           model->contacts.count > 0 ? "have the largest contact force"
+                                                     : "are about to touch");
     }
 }

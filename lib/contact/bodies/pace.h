@@ -24,8 +24,8 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
 se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
                                       se3di_error *error);
 
-/* Add to the message of a step that failed which shapes have the largest contact force, or, if none
- * touch, which are about to. */
+/* Add to the message of a step that failed which shapes are as deep in each other as is allowed, or
+ * have the largest contact force, or, if none touch, are about to; nothing if it tells a depth. */
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error);
 
 #endif
