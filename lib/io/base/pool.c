@@ -149,19 +149,13 @@ bool se3di_iobytes_put(se3di_iobytes *bytes, se3di_iopool *pool, const void *dat
 bool se3di_iotext_put(se3di_iotext *t, se3di_iopool *pool, const char *text)
 {
     const size_t length = strlen(text);
-    if (t->used + length + 1 > t->room) {
-        const size_t room = 2 * (t->used + length) + 4096;
-        char *grown = se3di_iopool_alloc(pool, room);
-        if (!grown) {
-            return false;
-        }
-        if (t->used > 0) {
-            memcpy(grown, t->text, t->used);
-        }
-        t->text = grown;
-        t->room = room;
+    se3di_iobytes bytes = {(unsigned char *)t->text, t->used, t->room};
+    if (!se3di_iobytes_put(&bytes, pool, text,
+                           length + 1)) { /* with its zero, which is written over */
+        return false;
     }
-    memcpy(t->text + t->used, text, length + 1);
+    t->text = (char *)bytes.data;
+    t->room = bytes.capacity;
     t->used += length;
     const char *line = strrchr(text, '\n');
     t->column = line ? strlen(line + 1) : t->column + length;
