@@ -4,9 +4,6 @@
 #include "analysis/stiffness.h"
 #include "contact/bodies/crowd.h"
 #include "force/driver_rate.h"
-#include "math/vec3.h"
-
-#include <math.h>
 
 #define BOUNCY 0.8 /* restitution above which impacts by convex may give energy */
 #define ANGLE  0.5 /* of spins and oscillations in a step [rad] */
@@ -28,17 +25,21 @@ static int are_known(const se3di_model *model)
     return 1;
 }
 
-/* Elements that convex refuses or that are contacts of their own. */
-static int has_other_elements(const se3di_model *model)
+static int has_element(const se3di_model *model, int32_t type)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const int32_t type = model->forces[k].type;
-        if (type == SE3DI_FORCE_FRICTION || type == SE3DI_FORCE_ARMATURE ||
-            type == SE3DI_FORCE_STOP || type == SE3DI_FORCE_TYRE) {
+        if (model->forces[k].type == type) {
             return 1;
         }
     }
     return 0;
+}
+
+/* Elements that convex refuses or that are contacts of their own. */
+static int has_other_elements(const se3di_model *model)
+{
+    return has_element(model, SE3DI_FORCE_FRICTION) || has_element(model, SE3DI_FORCE_ARMATURE) ||
+           has_element(model, SE3DI_FORCE_STOP) || has_element(model, SE3DI_FORCE_TYRE);
 }
 
 int se3di_crowd_may_touch(const se3di_model *model)
@@ -80,24 +81,10 @@ static int bounces(const se3di_model *model)
     return 0;
 }
 
-static int has_callback(const se3di_model *model)
-{
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_CALLBACK) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 int se3di_crowd_bears(const se3di_model *model, double h)
 {
-    double spin = 0.0;
-    for (size_t k = 0; k < model->body_slots.count; ++k) {
-        spin = fmax(spin, se3di_norm(model->frames[k].w));
-    }
-    return spin * h <= ANGLE && se3di_stiffness_angle(model, h) <= ANGLE && !bounces(model) &&
-           !has_callback(model);
+    return se3di_stiffness_spin(model) * h <= ANGLE && se3di_stiffness_angle(model, h) <= ANGLE &&
+           !bounces(model) && !has_element(model, SE3DI_FORCE_CALLBACK);
 }
 
 /* Shapes follow each other body by body, or a body counts once more; what no group and mask lets

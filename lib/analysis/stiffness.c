@@ -18,6 +18,22 @@
 
 #define STEP_ANGLE 0.1 /* of the fastest oscillation in an explicit step [rad] */
 
+/* The derivatives of an elastic element. @return false: it is none, or the analysis itself will say
+ * why it cannot be evaluated. */
+static int eval_elastic(const se3di_model *model, const se3di_force *force, se3di_effect *effect)
+{
+    effect->wants_derivative = 1;
+    return (se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC) &&
+           se3di_force_eval(model, force, model->time, effect) >= 0;
+}
+
+/* Column c of J^-1 A_rr, A 6 x 6 of 12 x 12. */
+static void solve_turning(const double J[9], const double *A, int c, double column[3])
+{
+    const double turning[3] = {A[12 * 3 + 3 + c], A[12 * 4 + 3 + c], A[12 * 5 + 3 + c]};
+    se3di_solve3(J, turning, column);
+}
+
 /* tr(M^-1 D) of one body of an element, D 6 x 6 of 12 x 12 (minus the derivative of its wrench). */
 static double body_rate(const se3di_body *body, const double *D)
 {
@@ -27,8 +43,7 @@ static double body_rate(const se3di_body *body, const double *D)
     }
     se3di_inertia_matrix(body->J, J);
     for (int c = 0; c < 3; ++c) {
-        const double turning[3] = {D[12 * 3 + 3 + c], D[12 * 4 + 3 + c], D[12 * 5 + 3 + c]};
-        se3di_solve3(J, turning, column);
+        solve_turning(J, D, c, column);
         rate -= D[13 * c] / body->mass + column[c];
     }
     return rate;
@@ -41,12 +56,8 @@ static void measure(const se3di_model *model, double *decay, double *oscillation
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         se3di_effect effect;
-        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC)) {
+        if (!eval_elastic(model, force, &effect)) {
             continue;
-        }
-        effect.wants_derivative = 1;
-        if (se3di_force_eval(model, force, model->time, &effect) < 0) {
-            continue; /* the analysis itself will say so */
         }
         const double rate = body_rate(&model->bodies[force->body_i], effect.D) +
                             body_rate(&model->bodies[force->body_j], effect.D + 6 * 13);
@@ -75,9 +86,8 @@ static double body_norm(const se3di_body *body, const double *A)
     }
     se3di_inertia_matrix(body->J, J);
     for (int c = 0; c < 3; ++c) {
-        const double turning[3] = {A[12 * 3 + 3 + c], A[12 * 4 + 3 + c], A[12 * 5 + 3 + c]};
         const double moving[3] = {A[c], A[12 + c], A[24 + c]};
-        se3di_solve3(J, turning, column);
+        solve_turning(J, A, c, column);
         along += se3di_dot(moving, moving);
         about += se3di_dot(column, column);
     }
@@ -90,9 +100,8 @@ double se3di_stiffness_angle(const se3di_model *model, double h)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         const se3di_body *i = &model->bodies[force->body_i], *j = &model->bodies[force->body_j];
-        se3di_effect effect = {.wants_derivative = 1};
-        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC) ||
-            se3di_force_eval(model, force, model->time, &effect) < 0) {
+        se3di_effect effect;
+        if (!eval_elastic(model, force, &effect)) {
             continue;
         }
         const double decay = body_norm(i, effect.D) + body_norm(j, effect.D + 6 * 13);
@@ -102,16 +111,21 @@ double se3di_stiffness_angle(const se3di_model *model, double h)
     return angle;
 }
 
-/* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
- * and of the spins; 1 at least, as a spin by rounding is none. */
-static double rate_of_motion(const se3di_model *model)
+double se3di_stiffness_spin(const se3di_model *model)
 {
     double spin = 0.0;
     for (size_t k = 0; k < model->body_slots.count; ++k) {
         spin = fmax(spin, se3di_norm(model->frames[k].w));
     }
+    return spin;
+}
+
+/* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
+ * and of the spins; 1 at least, as a spin by rounding is none. */
+static double rate_of_motion(const se3di_model *model)
+{
     const double pendulum = sqrt(se3di_norm(model->gravity) / se3di_model_get_size(model));
-    return fmax(fmax(spin, pendulum), 1.0);
+    return fmax(fmax(se3di_stiffness_spin(model), pendulum), 1.0);
 }
 
 /* out -= D v of the six numbers of a body at `rows` by those of a body at `columns`. */
@@ -133,9 +147,8 @@ static void resist(const se3di_assembly *assembly, const double *v, double *out)
     memset(out, 0, assembly->unknown_count * sizeof *out);
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
-        se3di_effect effect = {.wants_derivative = 1};
-        if (!(se3di_force_class_of(force)->traits & SE3DI_FORCE_IS_ELASTIC) ||
-            se3di_force_eval(model, force, model->time, &effect) < 0) {
+        se3di_effect effect;
+        if (!eval_elastic(model, force, &effect)) {
             continue;
         }
         for (int b = 0; b < 4; ++b) {

@@ -5,6 +5,8 @@
 
 #include "model/model.h"
 
+/* The fastest spin of a body [rad/s]. */
+double se3di_stiffness_spin(const se3di_model *model);
 /* What the fastest spring-damper or bushing turns and decays by in a step of h, its bodies free. */
 double se3di_stiffness_angle(const se3di_model *model, double h);
 /* The longest step of an explicit method that follows every spring-damper and bushing at the
