@@ -94,13 +94,10 @@ static void blame_jump(const se3di_run *run, double t_end)
     const double range[2] = {now - 1e-9 * fabs(now), now + near}; /* steps may pass t_end */
     se3di_jump jump;
     char text[300];
-    if (se3di_jump_find(&run->equations.assembly, range, 16, 1, &jump)) {
-        const se3di_error before = *run->error;
-        se3di_jump_format(run->model, &jump, text, sizeof text);
-        if (strstr(before.message, text)) {
-            return; /* it was refused */
-        }
-        se3di_error_set(run->error, before.status, "%s (%.200s)", text, before.message);
+    if (run->error->cause != SE3DI_CAUSE_JUMP && /* it was not refused */
+        se3di_jump_find(&run->equations.assembly, range, 16, 1, &jump)) {
+        se3di_jump_format(run->model, &jump, text, sizeof text - sizeof " (");
+        se3di_error_wrap(run->error, strcat(text, " ("), ")");
     }
 }
 
@@ -111,10 +108,8 @@ static void advise_convex(const se3di_run *run, se3d_status status)
                       status == SE3D_ERR_STEP_COUNT;
     if (stuck && run->model->contacts.pair_count > 0 &&
         run->integration.method->tag != SE3D_METHOD_CONVEX && se3di_crowd_suits(run->model)) {
-        const se3di_error before = *run->error;
-        se3di_error_set(run->error, before.status,
-                        "%.430s; method convex takes bodies that touch at steps of milliseconds",
-                        before.message);
+        se3di_error_wrap(run->error, "",
+                         "; method convex takes bodies that touch at steps of milliseconds");
     }
 }
 

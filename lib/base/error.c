@@ -40,6 +40,7 @@ se3d_status se3di_error_set(se3di_error *error, se3d_status status, const char *
         error->status = status;
         va_end(arguments);
         error->field[0] = '\0';
+        error->cause = SE3DI_CAUSE_OTHER;
     }
     return status;
 }
@@ -56,6 +57,7 @@ se3d_status se3di_error_set_of(se3di_error *error, const char *field, se3d_statu
         se3di_error_format(error->message + used, sizeof error->message - used, format, arguments);
         va_end(arguments);
         error->status = status;
+        error->cause = SE3DI_CAUSE_OTHER;
     }
     return status;
 }
@@ -69,9 +71,20 @@ void se3di_error_append(se3di_error *error, const char *format, ...)
     va_end(arguments);
 }
 
+void se3di_error_wrap(se3di_error *error, const char *before, const char *after)
+{
+    char inner[SE3DI_ERROR_SIZE];
+    const size_t size = sizeof inner, around = strlen(before) + strlen(after);
+    const size_t room = around < size - 1 ? size - 1 - around : 0;
+    memcpy(inner, error->message, size);
+    snprintf(error->message, size, "%s%.*s%s", before, (int)room, inner, after);
+    se3di_text_make_plain(error->message); /* the message may have been cut in a character */
+}
+
 void se3di_error_clear(se3di_error *error)
 {
     error->status = SE3D_OK;
     error->message[0] = '\0';
     error->field[0] = '\0';
+    error->cause = SE3DI_CAUSE_OTHER;
 }

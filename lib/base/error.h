@@ -10,10 +10,18 @@
 #define SE3DI_ERROR_SIZE 512
 #define SE3DI_FIELD_SIZE 48
 
+/* What a message is about, for code that would add to it. */
+typedef enum se3di_cause {
+    SE3DI_CAUSE_OTHER = 0,
+    SE3DI_CAUSE_OVERLAP = 1, /* two shapes that are named */
+    SE3DI_CAUSE_JUMP = 2     /* a prescribed value that is named */
+} se3di_cause;
+
 typedef struct se3di_error {
     se3d_status status;
     char message[SE3DI_ERROR_SIZE];
     char field[SE3DI_FIELD_SIZE]; /* the argument or member that it is about; "": of none */
+    se3di_cause cause;            /* whoever sets the message may set this after it */
     struct se3di_logger *log;     /* of the owner, see base/log.h; NULL: none */
 } se3di_error;
 
@@ -40,6 +48,9 @@ __attribute__((format(printf, 2, 3)))
 #endif
 void
 se3di_error_append(se3di_error *error, const char *format, ...);
+
+/* Put the message between two texts. If there is no room it is the message that is cut. */
+void se3di_error_wrap(se3di_error *error, const char *before, const char *after);
 
 /* What both messages and the log are written with. */
 #if defined(__GNUC__)

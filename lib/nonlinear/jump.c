@@ -270,5 +270,9 @@ se3d_status se3di_jump_refuse(const se3di_assembly *assembly, double t_end, doub
         return SE3D_OK;
     }
     se3di_jump_format(assembly->model, &jump, text, sizeof text);
-    return se3di_error_set(error, SE3D_ERR_INCONSISTENT, "%s", text);
+    se3di_error_set(error, SE3D_ERR_INCONSISTENT, "%s", text);
+    if (error) {
+        error->cause = SE3DI_CAUSE_JUMP;
+    }
+    return SE3D_ERR_INCONSISTENT;
 }

@@ -19,6 +19,39 @@ static void an_error_without_a_record_keeps_its_status(void)
     CHECK(strcmp(error.message, "mass[1] = 1") == 0 && strcmp(error.field, "mass") == 0);
 }
 
+static void a_message_between_two_texts_is_what_is_cut(void)
+{
+    char tail[SE3DI_ERROR_SIZE];
+    se3di_error error = {0};
+    se3di_error_set_of(&error, "mass", SE3D_ERR_NULL, " = %d", 1);
+    error.cause = SE3DI_CAUSE_JUMP;
+    se3di_error_wrap(&error, "why (", ")");
+    CHECK(strcmp(error.message, "why (mass = 1)") == 0 && strcmp(error.field, "mass") == 0);
+    CHECK(error.status == SE3D_ERR_NULL && error.cause == SE3DI_CAUSE_JUMP);
+    memset(tail, 'a', sizeof tail - 1);
+    tail[sizeof tail - 1] = '\0';
+    se3di_error_set(&error, SE3D_ERR_NULL, "%s", tail);
+    CHECK(error.cause == SE3DI_CAUSE_OTHER);
+    se3di_error_wrap(&error, "why (", ")");
+    const size_t length = strlen(error.message);
+    CHECK(length == sizeof error.message - 1 && error.message[length - 1] == ')');
+    CHECK(error.message[length - 2] == 'a' && memcmp(error.message, "why (a", 6) == 0);
+    for (size_t k = 0; k + 1 < sizeof tail; k += 2) { /* characters of two bytes */
+        memcpy(&tail[k], "\xc3\xa9", 2);
+    }
+    tail[sizeof tail - 2] = '\0';
+    for (int shift = 0; shift < 2; ++shift) {
+        se3di_error_set(&error, SE3D_ERR_NULL, "%s", tail);
+        se3di_error_wrap(&error, &"--"[shift], ")");
+        CHECK(strlen(error.message) == sizeof error.message - 1);
+        CHECK(strspn(error.message, "-\xc3\xa9?)") == sizeof error.message - 1);
+        se3di_error_wrap(&error, tail, tail); /* no room for it at all */
+        CHECK(strlen(error.message) == sizeof error.message - 1);
+    }
+    se3di_error_clear(&error);
+    CHECK(error.cause == SE3DI_CAUSE_OTHER && error.message[0] == '\0');
+}
+
 static void count_lines(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
 {
     (void)level;
@@ -98,6 +131,7 @@ static void halves_go_to_the_even_integer(void)
 int main(void)
 {
     RUN(an_error_without_a_record_keeps_its_status);
+    RUN(a_message_between_two_texts_is_what_is_cut);
     RUN(a_log_without_a_callback_is_not_written);
     RUN(messages_have_points_in_a_locale_with_decimal_commas);
     RUN(a_coder_without_room_says_so);

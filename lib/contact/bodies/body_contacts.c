@@ -223,8 +223,12 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     const uint32_t shapes[2] = {e->shape_i, e->shape_j};
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, e->at->overlap, text);
-    return se3di_error_set(p->error, SE3D_ERR_STEP_SIZE,
-                           "t = %g s: %s, or a smaller step if one is given", p->t, text);
+    se3di_error_set(p->error, SE3D_ERR_STEP_SIZE, "t = %g s: %s, or a smaller step if one is given",
+                    p->t, text);
+    if (p->error) {
+        p->error->cause = SE3DI_CAUSE_OVERLAP;
+    }
+    return SE3D_ERR_STEP_SIZE;
 }
 
 static se3d_status note(void *ctx, const se3di_encounter *e)

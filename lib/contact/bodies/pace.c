@@ -20,7 +20,6 @@
 #include "math/vec3.h"
 
 #include <math.h>
-#include <string.h>
 
 #define PARTS        64.0 /* steps in a time of contact where it is followed */
 #define LAND_PARTS   16.0 /* if the error is controlled: no step over an event */
@@ -372,7 +371,7 @@ void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
 {
     pace p = {.model = model, .step = HUGE_VAL};
     if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY ||
-        strstr(error->message, " overlap by ")) {
+        error->cause == SE3DI_CAUSE_OVERLAP) {
         return; /* no shape is to blame, or two are blamed */
     }
     const se3di_body_contact *deepest = find_deepest(model);
