@@ -230,9 +230,11 @@ se3d_status se3d_body_get_point(const se3d_system *system, se3d_body body, const
 {
     uint32_t index;
     SE3DI_TRY(find_reader(system, body, local ? (const void *)ground : NULL, &index));
+    const se3di_floats host = se3di_floats_set();
     double turned[3];
     se3di_mul(system->model.frames[index].A, local, turned);
     se3di_add(system->model.frames[index].r, turned, ground);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 

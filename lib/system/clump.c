@@ -275,6 +275,7 @@ se3d_status se3d_particles_get_clumps(const se3d_particles *particles, size_t co
                                       double *e, double *v, double *w)
 {
     SE3DI_TRY(check_count(particles, count));
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < count; ++k) {
         const se3di_clump *clump = &particles->set.clumps[k];
         double q[4], rate[3];
@@ -292,6 +293,7 @@ se3d_status se3d_particles_get_clumps(const se3d_particles *particles, size_t co
             se3di_copy(rate, w + 3 * k);
         }
     }
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -329,6 +331,7 @@ se3d_status se3d_particles_get_clump_forces(const se3d_particles *particles, siz
                                             double *force, double *torque)
 {
     SE3DI_TRY(check_count(particles, count));
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < count; ++k) {
         double F[3] = {0.0}, T[3] = {0.0};
         if (particles->set.list_valid) { /* after an edit there are no forces yet */
@@ -341,5 +344,6 @@ se3d_status se3d_particles_get_clump_forces(const se3d_particles *particles, siz
             se3di_copy(T, torque + 3 * k);
         }
     }
+    se3di_floats_restore(host);
     return SE3D_OK;
 }

@@ -200,7 +200,9 @@ se3d_status se3d_driver_get_value(const se3d_system *system, se3d_constraint dri
     double jet[3];
     se3di_reading reading;
     if (se3di_is_driver_rate(found)) {
+        const se3di_floats host = se3di_floats_set();
         *value = se3di_driver_rate_coordinate(model, found);
+        se3di_floats_restore(host);
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_read_begin(system, &reading));

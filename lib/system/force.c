@@ -298,7 +298,9 @@ se3d_status se3d_force_get_wrench(const se3d_system *system, se3d_force force, s
     SE3DI_TRY(eval_reader(system, force, wrench, &effect));
     uint32_t body = side == 0 ? data->body_i : data->body_j;
     se3di_copy(effect.wrench + 6 * side, wrench);
+    const se3di_floats host = se3di_floats_set();
     se3di_mul(system->model.frames[body].A, effect.wrench + 6 * side + 3, wrench + 3);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 

@@ -87,9 +87,11 @@ se3d_status se3d_marker_get_position(const se3d_system *system, se3d_marker mark
 {
     const se3di_marker *data;
     SE3DI_TRY(find_reader(system, marker, r, &data));
+    const se3di_floats host = se3di_floats_set();
     const se3di_frame *frame = &system->model.frames[data->body];
     se3di_mul(frame->A, data->s, r);
     se3di_add(frame->r, r, r);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -97,11 +99,13 @@ se3d_status se3d_marker_get_velocity(const se3d_system *system, se3d_marker mark
 {
     const se3di_marker *data;
     SE3DI_TRY(find_reader(system, marker, v, &data));
+    const se3di_floats host = se3di_floats_set();
     const se3di_frame *frame = &system->model.frames[data->body];
     double local[3];
     se3di_cross(frame->w, data->s, local);
     se3di_mul(frame->A, local, v);
     se3di_add(frame->v, v, v);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -111,6 +115,7 @@ se3d_status se3d_marker_get_acceleration(const se3d_system *system, se3d_marker 
     const se3di_marker *data;
     SE3DI_TRY(find_reader(system, marker, a, &data));
     SE3DI_TRY(se3di_check_solved(system));
+    const se3di_floats host = se3di_floats_set();
     const se3di_frame *frame = &system->model.frames[data->body];
     const double *acceleration = system->model.acceleration + 6 * (size_t)data->body;
     double turning[3];
@@ -122,6 +127,7 @@ se3d_status se3d_marker_get_acceleration(const se3d_system *system, se3d_marker 
     se3di_add(local, centripetal, local);
     se3di_mul(frame->A, local, a);
     se3di_add(acceleration, a, a);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -129,6 +135,8 @@ se3d_status se3d_marker_get_orientation(const se3d_system *system, se3d_marker m
 {
     const se3di_marker *data;
     SE3DI_TRY(find_reader(system, marker, p, &data));
+    const se3di_floats host = se3di_floats_set();
     se3di_quat_mul(system->model.frames[data->body].p, data->p, p);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }

@@ -155,12 +155,14 @@ se3d_status se3d_modes_get_eigenvalue_sized(const se3d_modes *modes, size_t k,
     if (k >= (size_t)modes->of.eigen.count) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    const se3di_floats host = se3di_floats_set();
     const double modulus = se3di_hypot(modes->of.eigen.re[k], modes->of.eigen.im[k]);
     const se3d_eigenvalue full = {.real = modes->of.eigen.re[k],
                                   .imaginary = modes->of.eigen.im[k],
                                   .frequency = modulus / TWO_PI,
                                   .damping = modulus > 0.0 ? 0.0 - modes->of.eigen.re[k] / modulus
                                                            : 0.0 /* never -0 */};
+    se3di_floats_restore(host);
     return se3di_sized_give(eigenvalue, size, &full, sizeof full);
 }
 
@@ -179,7 +181,9 @@ se3d_status se3d_modes_get_shape(const se3d_modes *modes, size_t k, size_t body,
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     double re[6], im[6];
+    const se3di_floats host = se3di_floats_set();
     se3di_modes_shape(&modes->of, k, body, re, im);
+    se3di_floats_restore(host);
     memcpy(real, re, sizeof re);
     memcpy(imaginary, im, sizeof im);
     return SE3D_OK;
@@ -207,9 +211,11 @@ se3d_status se3d_modes_get_matrix(const se3d_modes *modes, int32_t matrix, size_
     if (values && capacity < *rows * *columns) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; values && k < *rows * *columns; ++k) {
         values[k] = se3di_modes_entry(&modes->of, matrix, k / *columns, k % *columns);
     }
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -228,9 +234,11 @@ se3d_status se3d_modes_get_transfer(const se3d_modes *modes, size_t input, size_
     if (input >= modes->of.inputs || output >= modes->of.outputs || !isfinite(frequency)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    const se3di_floats host = se3di_floats_set();
     double h[2];
     const se3d_status status =
         se3di_modes_transfer(&modes->of, input, output, TWO_PI * frequency, h);
+    se3di_floats_restore(host);
     *real = h[0];
     *imaginary = h[1];
     return status;

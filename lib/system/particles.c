@@ -508,7 +508,9 @@ se3d_status se3d_particles_get_step(const se3d_particles *particles, double *ste
     if (!step) {
         return SE3D_ERR_NULL;
     }
+    const se3di_floats host = se3di_floats_set();
     *step = se3di_particles_want_step(&particles->set, &particles->system->model);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -546,7 +548,9 @@ se3d_status se3d_particles_get_energy_sized(const se3d_particles *particles,
     }
     double g[3];
     SE3DI_TRY(se3di_particles_gravity(particles, g));
+    const se3di_floats host = se3di_floats_set();
     const se3d_particles_energy full = se3di_particles_energy(&particles->set, g);
+    se3di_floats_restore(host);
     return se3di_sized_give(energy, size, &full, sizeof full);
 }
 
@@ -560,6 +564,7 @@ se3d_status se3d_particles_get_dissipation_sized(const se3d_particles *particles
     if (!set->audits) {
         return SE3D_ERR_STATE;
     }
+    const se3di_floats host = se3di_floats_set();
     double elastic[SE3DI_AUDIT_KINDS];
     se3di_audit_elastic(set, elastic);
     se3d_particles_dissipation full = {.normal = set->audit_work[0],
@@ -576,6 +581,7 @@ se3d_status se3d_particles_get_dissipation_sized(const se3d_particles *particles
     for (size_t k = 0; k < set->bond_count; ++k) {
         full.bonds += set->bonds[k].dissipated;
     }
+    se3di_floats_restore(host);
     return se3di_sized_give(out, size, &full, sizeof full);
 }
 

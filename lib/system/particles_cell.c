@@ -263,6 +263,8 @@ se3d_status se3d_particles_get_cell_sized(const se3d_particles *particles, se3d_
     }
     se3d_cell_state full;
     memset(&full, 0, sizeof full);
+    const se3di_floats host = se3di_floats_set();
     fill_state(&particles->set, &full);
+    se3di_floats_restore(host);
     return se3di_sized_give(state, size, &full, sizeof full);
 }

@@ -227,6 +227,8 @@ se3d_status se3d_particles_get_tally_sized(const se3d_particles *particles, uint
     }
     double g[3];
     SE3DI_TRY(se3di_particles_gravity(particles, g));
+    const se3di_floats host = se3di_floats_set();
     const se3d_particles_tally full = se3di_particles_tally(&particles->set, tag, g);
+    se3di_floats_restore(host);
     return se3di_sized_give(tally, size, &full, sizeof full);
 }

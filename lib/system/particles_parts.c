@@ -19,7 +19,9 @@ se3d_status se3d_particles_get_wrench(const se3d_particles *particles, se3d_body
     }
     memset(force, 0, 3 * sizeof *force);
     memset(torque, 0, 3 * sizeof *torque);
+    const se3di_floats host = se3di_floats_set();
     se3di_particles_push_body(&particles->set, SE3DI_HANDLE(body), force, torque);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 

@@ -120,8 +120,10 @@ se3d_status se3d_particles_get_flow_sized(const se3d_particles *particles, uint3
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_flow *f = &particles->set.flows[flow];
+    const se3di_floats host = se3di_floats_set();
     const se3di_flow_rates rates =
         f->has_rates ? f->rates : se3di_flow_rates_since(f, particles->set.time);
+    se3di_floats_restore(host);
     se3d_flow_stats full = {.forward = f->total.forward,
                             .backward = f->total.backward,
                             .mass = f->total.mass,

@@ -99,11 +99,13 @@ se3d_status se3d_particles_get_servo_sized(const se3d_particles *particles, uint
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     const se3di_servo *s = &particles->set.servos[servo];
+    const se3di_floats host = se3di_floats_set();
     const double force = se3di_servo_force(&particles->set, s);
     const se3d_servo_state full = {.position = s->place,
                                    .speed = s->speed,
                                    .force = force,
                                    .wanted = se3di_servo_wanted(s),
                                    .work = s->work + s->half * force};
+    se3di_floats_restore(host);
     return se3di_sized_give(state, size, &full, sizeof full);
 }

@@ -234,6 +234,7 @@ se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,
     if (!se3di_is_finite(position, 3)) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
+    const se3di_floats host = se3di_floats_set();
     se3di_shape_pose pose;
     se3di_shape_place(data, &system->model.frames[data->body], &pose);
     double d[3], local[3], n[3], at[3];
@@ -243,6 +244,7 @@ se3d_status se3d_shape_get_nearest(const se3d_system *system, se3d_shape shape,
     se3di_mul(pose.R, n, normal);
     se3di_mul(pose.R, at, point);
     se3di_add(pose.x, point, point);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
