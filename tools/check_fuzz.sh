@@ -5,7 +5,8 @@
 #
 #     tools/check_fuzz.sh SECONDS [TARGET...]   for so long in all, shared by the targets
 #
-# What was learnt stays in build/fuzz/corpus for the next time. An input that fails goes, smaller, to
+# What was learnt stays in build/fuzz/corpus (or the folder SE3D_FUZZ_CORPUS) for the next time, and
+# fuzz/effort.tsv sums CPU seconds and inputs of each target over all runs. An input that fails goes, smaller, to
 # fuzz/finds/TARGET with a name that says what it is, and so becomes part of the test
 # fuzz.replay_TARGET. Without clang or its runtime nothing is run, and exit is 3:
 # SE3D_FUZZ_OPTIONAL=1 makes that 0. docs/reliability.md
@@ -13,7 +14,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 se3d_help "$@"
-all="model expression mesh table import unzip plot bytes calls record"
+all="model expression mesh table import unzip plot bytes calls functions record"
 seconds=${1:-}
 case $seconds in
 '' | *[!0-9]*)
@@ -24,6 +25,8 @@ esac
 shift
 targets=${*:-$all}
 out=build/fuzz
+corpus=${SE3D_FUZZ_CORPUS:-$out/corpus}
+effort=fuzz/effort.tsv
 
 have_libfuzzer() {
     probe=$(mktemp -d) || return 1
@@ -58,6 +61,21 @@ number() {
     sed -n "s/^$1 *//p" "$2" | tail -n 1
 }
 
+# CPU seconds of all that has ended so far; a subshell would have none.
+cpu() {
+    times >"$out/times"
+    spent=$(awk 'NR == 2 {gsub("m|s", " "); print int($1 * 60 + $2 + $3 * 60 + $4)}' "$out/times")
+}
+
+# add_effort TARGET SECONDS INPUTS: to what stands there for the target
+add_effort() {
+    awk -v target="$1" -v seconds="$2" -v inputs="$3" -v day="$(date +%F)" 'BEGIN { OFS = "\t" }
+        $1 == target { $2 += seconds; $3 += inputs; $4 = day; found = 1 }
+        { print }
+        END { if (!found) print target, seconds, inputs, day }' "$effort" >"$out/effort" &&
+        cp "$out/effort" "$effort"
+}
+
 each=$((seconds / $(echo $targets | wc -w)))
 [ "$each" -gt 0 ] || each=1
 failed=0
@@ -67,8 +85,8 @@ ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1
 UBSAN_OPTIONS=print_stacktrace=1
 export TMPDIR ASAN_OPTIONS UBSAN_OPTIONS
 for target in $targets; do
-    mkdir -p "$out/corpus/$target"
-    folders="$out/corpus/$target fuzz/seeds/$target"
+    mkdir -p "$corpus/$target"
+    folders="$corpus/$target fuzz/seeds/$target"
     [ -d "fuzz/finds/$target" ] && folders="$folders fuzz/finds/$target"
     [ "$target" = model ] && folders="$folders examples/models"
     dictionary=fuzz/dictionaries/$target.dict
@@ -76,15 +94,19 @@ for target in $targets; do
     [ -f "$dictionary" ] && dictionary=-dict=$dictionary || dictionary=
     longest=4096
     [ "$target" = calls ] && longest=400
+    cpu
+    begun=$spent
     [ "$target" = bytes ] && longest=60
     # shellcheck disable=SC2086
     "$out/fuzz/fuzz_$target" $folders $dictionary -max_total_time="$each" -max_len=$longest \
-        -timeout=25 -rss_limit_mb=3000 -malloc_limit_mb=2000 -print_final_stats=1 -verbosity=0 \
+        -timeout=100 -rss_limit_mb=3000 -malloc_limit_mb=2000 -print_final_stats=1 -verbosity=0 \
         -artifact_prefix="$out/found/$target-" ${SE3D_FUZZ_SEED:+-seed=$SE3D_FUZZ_SEED} \
         >"$out/$target.log" 2>&1
     status=$?
     count=$(number 'stat::number_of_executed_units:' "$out/$target.log")
     inputs=$((inputs + ${count:-0}))
+    cpu
+    add_effort "$target" $((spent - begun)) "${count:-0}"
     if [ $status -ne 0 ]; then
         failed=$((failed + 1))
         grep -aE 'ERROR|does not hold|runtime error|^ *#[0-9]+ .*(lib|tools|fuzz)/|Test unit written' \
@@ -94,5 +116,7 @@ for target in $targets; do
         "$([ $status -eq 0 ] && echo "none failed" || echo "FAILED: $out/$target.log")"
 done
 rm -rf "$out/tmp"
-echo "fuzz: $inputs inputs, $failed of $(echo $targets | wc -w) targets failed"
+total=$(awk '!/^#/ { seconds += $2; inputs += $3 }
+    END { printf "%.2f CPU hours, %d inputs", seconds / 3600, inputs }' "$effort")
+echo "fuzz: $inputs inputs, $failed of $(echo $targets | wc -w) targets failed; all runs so far: $total"
 [ "$failed" -eq 0 ]
