@@ -18,9 +18,11 @@
 #include <math.h>
 #include <string.h>
 
-#define MANY_FROM       1e-6 /* 8 stages for tolerances below, if they come one by one */
-#define CONTRACTION_AIM 0.3  /* of the iterations: fewer, longer steps cost more iterations */
-#define CONTRACTION_MAX 0.7  /* above, the step is given up */
+#define MANY_FROM       1e-6 /* 8 stages for tolerances below, if they come one by one, */
+#define MANY_IN_LANES   3e-6 /* in lanes, on open trees of this many freedoms, elsewhere always: */
+#define LARGE           8
+#define CONTRACTION_AIM 0.3 /* of the iterations: fewer, longer steps cost more iterations */
+#define CONTRACTION_MAX 0.7 /* above, the step is given up */
 #define ITERATIONS_MAX  12
 #define EXACT_MAX       100   /* iterations to rounding, for a step that is not controlled */
 #define ROUNDING        1e-14 /* a relative change that is only noise */
@@ -73,6 +75,17 @@ static int may_be_shorter(const se3di_explicit *m, double h)
     return isfinite(m->tolerance) && m->past->lost == 0.0 && h * rate_of_motion(m) > SHORT;
 }
 
+/* Tolerances below are met with less work by 8 stages than by 4. Of many freedoms some are fast and
+ * limit the steps by the contraction of the iterations, so that stages gain less there. */
+static double many_from(const se3di_explicit *m)
+{
+    if (!se3di_gauss_lanes_suit(m)) {
+        return MANY_FROM;
+    }
+    const int is_large = m->equations->is_open_tree && m->equations->tree->v_count >= LARGE;
+    return is_large ? MANY_IN_LANES : HUGE_VAL;
+}
+
 /* The stages of the next step; the history decides, so that clones go on alike. */
 static int choose_stages(const se3di_explicit *m)
 {
@@ -80,8 +93,7 @@ static int choose_stages(const se3di_explicit *m)
     if (settings->order > 0) {
         return settings->order / 2;
     }
-    const int pays = settings->tolerance < MANY_FROM || se3di_gauss_lanes_suit(m);
-    return pays && m->past->lost == 0.0 ? 8 : 4;
+    return settings->tolerance < many_from(m) && m->past->lost == 0.0 ? 8 : 4;
 }
 
 /* The motion goes on as in the last step: nothing that acts has jumped. */

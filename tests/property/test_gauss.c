@@ -161,6 +161,55 @@ static double go_forth_and_back(int32_t method, int32_t formulation, double h)
     return hypot(hypot(after[0] - before[0], after[1] - before[1]), after[2] - before[2]);
 }
 
+/* Evaluations of `order`, and where the last body is then. */
+static uint64_t run_order(const char *name, int count, int32_t order, double tolerance, double r[3])
+{
+    support_model model;
+    se3d_solver_stats stats;
+    se3d_solver *solver = NULL;
+    se3d_solver_def def = se3d_solver_def_default();
+    support_model_make(&model, name, count);
+    def.method = SE3D_METHOD_GAUSS;
+    def.formulation = SE3D_FORMULATION_JOINT;
+    def.tolerance = tolerance;
+    def.order = order;
+    CHECK(se3d_solver_create(model.system, &def, &solver) == SE3D_OK);
+    CHECK(se3d_solver_run(solver, 0.5) >= 0);
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    CHECK(!se3d_body_get_position(model.system, model.bodies[model.body_count - 1], r));
+    se3d_solver_destroy(solver);
+    support_model_destroy(&model);
+    return stats.evaluations;
+}
+
+/* Without an order: four stages at loose tolerances for many freedoms, eight elsewhere. */
+static void freedoms_and_tolerance_choose_the_stages(void)
+{
+    static const struct {
+        const char *name;
+        int count;
+        double tolerance;
+        int32_t order;
+    } rows[] = {{"chain_revolute", 8, 1e-2, 8},  {"chain_revolute", 8, 1e-5, 8},
+                {"chain_revolute", 8, 1e-6, 16}, {"chain_ball", 3, 1e-3, 8},
+                {"chain_revolute", 7, 1e-2, 16}, {"chain_ball", 2, 1e-2, 16},
+                {"four_bar", 3, 1e-2, 16}};
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; ++k) {
+        double r[3], chosen[3];
+        const uint64_t evaluations =
+            run_order(rows[k].name, rows[k].count, rows[k].order, rows[k].tolerance, r);
+        CHECK(run_order(rows[k].name, rows[k].count, 0, rows[k].tolerance, chosen) == evaluations);
+        CHECK(memcmp(r, chosen, sizeof r) == 0);
+        const int32_t other = rows[k].order == 8 ? 16 : 8;
+        const uint64_t otherwise =
+            run_order(rows[k].name, rows[k].count, other, rows[k].tolerance, chosen);
+        CHECK(otherwise != evaluations);
+        if (rows[k].order == 8) { /* fewer lanes, and fewer of them */
+            CHECK((double)evaluations < 0.8 * (double)otherwise);
+        }
+    }
+}
+
 static void steps_back_lead_to_where_it_came_from(void)
 {
     for (int32_t f = SE3D_FORMULATION_ROMEGA; f <= SE3D_FORMULATION_JOINT; ++f) {
@@ -341,6 +390,7 @@ int main(void)
 {
     RUN(errors_follow_the_tolerance_and_few_steps_are_rejected);
     RUN(a_loose_tolerance_takes_few_steps);
+    RUN(freedoms_and_tolerance_choose_the_stages);
     RUN(steps_back_lead_to_where_it_came_from);
     RUN(the_energy_does_not_drift);
     RUN(a_step_that_does_not_converge_is_refused);
