@@ -506,7 +506,8 @@ se3d_status se3di_lie_verlet_advance(se3di_lie_verlet *m)
     return se3di_lie_verlet_finish(m);
 }
 
-/* The place in a step at which accelerations jump, by halves. */
+/* The place in a step at which accelerations jump, by halves. Next to a singular position they
+ * change fast as well, but there shorter parts only come closer to it. */
 typedef struct search {
     double whole, least; /* the step, and the shortest part [s] */
     double longest;      /* part that is tried next; the whole step: nothing is searched for */
@@ -560,7 +561,7 @@ se3d_status se3di_lie_verlet_follow(se3di_lie_verlet *m, double h, double t1)
         } else {
             double most;
             const double missed = se3di_equal_steps_review(m->integration, m->h, &most);
-            if (refuse(&s, m->h, missed, most)) {
+            if (!m->is_singular && refuse(&s, m->h, missed, most)) {
                 se3di_equations_come_back(m->equations);
             } else {
                 ++m->equations->counters.steps;
