@@ -466,6 +466,8 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         SE3DI_TRY(run->integration.method->accelerate ? accelerate(run) : SE3D_OK);
         return se3di_friction_start(&run->equations);
     }
+    const double begin = run->model->time;
+    const uint64_t steps = run->equations.counters.steps;
     se3d_status status = run_method(run, t_end);
     while (status >= 0 && status != SE3D_INFO_EVENT && run->model->time < t_end &&
            must_switch(run)) {
@@ -473,6 +475,7 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         status = run_method(run, t_end);
     }
     se3di_run_tell_held(run);
+    se3di_run_tell_shaken(run, begin, steps);
     if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
         return status;
     }

@@ -25,6 +25,9 @@ void se3di_run_tell_step(se3di_run *run);
 void se3di_run_tell_crowd(se3di_run *run);
 /* The log is told that iterations limit the steps of a method. */
 void se3di_run_tell_held(se3di_run *run);
+/* The log is told which force element vibrates so fast that the steps are short, if one does: the
+ * call under way began at `begin` [s], after `steps` of the run. */
+void se3di_run_tell_shaken(se3di_run *run, double begin, uint64_t steps);
 /* What was found of redundant equations goes to the log. @return OK, INFO_REDUNDANT */
 se3d_status se3di_run_inform(se3di_run *run);
 

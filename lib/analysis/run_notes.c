@@ -3,12 +3,17 @@
 #include "analysis/run_end.h"
 
 #include "analysis/crowd.h"
+#include "analysis/stiffness.h"
 #include "base/log.h"
 #include "contact/bodies/crowd.h"
+#include "force/force.h"
 #include "nonlinear/ranks.h"
 
 #include <stdio.h>
 
+#define SHAKEN_STEPS 500  /* on which the average of the steps is taken */
+#define SHAKEN_ANGLE 2.0  /* of the vibration in a step that follows it, at most [rad] */
+#define SHAKEN_RATIO 1e3  /* of vibrations that nobody wants to see, at least, to the motion */
 #define LEFT_OUT_MAX 1e-4 /* how far rows that are left out may be off, relative */
 
 /* The log is told if the tolerance that is asked for is smaller than what the method reaches. */
@@ -95,6 +100,33 @@ void se3di_run_tell_held(se3di_run *run)
                         "radau takes longer ones",
                         run->model->time, method->name);
     }
+}
+
+void se3di_run_tell_shaken(se3di_run *run, double begin, uint64_t steps)
+{
+    const se3di_integration *integration = &run->integration;
+    const se3di_model *model = run->model;
+    const se3di_force *force;
+    run->shaken_steps += run->equations.counters.steps - steps;
+    run->shaken_time += model->time - begin;
+    if (run->shaken_steps < SHAKEN_STEPS || run->told_shaken == integration->method) {
+        return;
+    }
+    const double h = run->shaken_time / (double)run->shaken_steps;
+    const double rate = se3di_stiffness_vibration(model, &force);
+    const int is_controlled = se3di_integration_get_tolerance(integration, model) > 0.0;
+    if (is_controlled && h * rate < SHAKEN_ANGLE &&
+        rate > SHAKEN_RATIO * se3di_stiffness_motion(model)) {
+        run->told_shaken = integration->method;
+        se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
+                        "t = %g s: the steps of %s are %.2g s on the average, as short as to "
+                        "follow a vibration of %.2g rad/s: %s \"%s\" is stiff and hardly damped; "
+                        "damp it, or take a joint in its place",
+                        model->time, integration->method->name, h, rate,
+                        se3di_force_class_of(force)->name, force->name ? force->name : "");
+    }
+    run->shaken_steps = 0;
+    run->shaken_time = 0.0;
 }
 
 /* A row that was left out constrains the mechanism after all. */

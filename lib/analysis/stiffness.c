@@ -49,23 +49,44 @@ static double body_rate(const se3di_body *body, const double *D)
     return rate;
 }
 
+/* tr(M^-1 D) and tr(M^-1 K) of an element, 0 if it is none that is elastic. */
+static void measure_element(const se3di_model *model, const se3di_force *force, double *rate,
+                            double *square)
+{
+    const se3di_body *i = &model->bodies[force->body_i], *j = &model->bodies[force->body_j];
+    se3di_effect effect;
+    *rate = *square = 0.0;
+    if (eval_elastic(model, force, &effect)) {
+        *rate = body_rate(i, effect.D) + body_rate(j, effect.D + 6 * 13);
+        *square = body_rate(i, effect.K) + body_rate(j, effect.K + 6 * 13);
+    }
+}
+
 /* The largest over springs, dampers and bushings of tr(M^-1 D) or of sqrt tr(M^-1 K). */
 static void measure(const se3di_model *model, double *decay, double *oscillation)
 {
     *decay = *oscillation = 0.0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
-        se3di_effect effect;
-        if (!eval_elastic(model, force, &effect)) {
-            continue;
-        }
-        const double rate = body_rate(&model->bodies[force->body_i], effect.D) +
-                            body_rate(&model->bodies[force->body_j], effect.D + 6 * 13);
-        const double square = body_rate(&model->bodies[force->body_i], effect.K) +
-                              body_rate(&model->bodies[force->body_j], effect.K + 6 * 13);
+        double rate, square;
+        measure_element(model, &model->forces[k], &rate, &square);
         *decay = rate > *decay ? rate : *decay; /* not if it is NaN */
         *oscillation = square > *oscillation * *oscillation ? sqrt(square) : *oscillation;
     }
+}
+
+double se3di_stiffness_vibration(const se3di_model *model, const se3di_force **force)
+{
+    double fastest = 0.0;
+    *force = NULL;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        double rate, square;
+        measure_element(model, &model->forces[k], &rate, &square);
+        if (square > fastest * fastest && rate * rate < square) {
+            fastest = sqrt(square);
+            *force = &model->forces[k];
+        }
+    }
+    return fastest;
 }
 
 double se3di_stiffness_step(const se3di_model *model)
@@ -120,9 +141,7 @@ double se3di_stiffness_spin(const se3di_model *model)
     return spin;
 }
 
-/* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
- * and of the spins; 1 at least, as a spin by rounding is none. */
-static double rate_of_motion(const se3di_model *model)
+double se3di_stiffness_motion(const se3di_model *model)
 {
     const double pendulum = sqrt(se3di_norm(model->gravity) / se3di_model_get_size(model));
     return fmax(fmax(se3di_stiffness_spin(model), pendulum), 1.0);
@@ -203,7 +222,7 @@ se3d_status se3di_stiffness_is_stiff(se3di_model *model, se3di_error *error, int
 {
     double decay, oscillation, held = 0.0;
     measure(model, &decay, &oscillation);
-    const double motion = rate_of_motion(model);
+    const double motion = se3di_stiffness_motion(model);
     *is_stiff = decay > STIFF_RATIO * motion;
     if (!*is_stiff || model->constraint_slots.count == 0) {
         return SE3D_OK;

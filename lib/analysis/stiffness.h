@@ -12,6 +12,12 @@ double se3di_stiffness_angle(const se3di_model *model, double h);
 /* The longest step of an explicit method that follows every spring-damper and bushing at the
  * present state; infinite if there is none. */
 double se3di_stiffness_step(const se3di_model *model);
+/* The spring-damper or bushing that vibrates fastest, its bodies free, of those that damp the
+ * vibration less than critically. @return its rate [rad/s]; 0: there is none */
+double se3di_stiffness_vibration(const se3di_model *model, const se3di_force **force);
+/* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
+ * and of the spins; 1 at least, as a spin by rounding is none. */
+double se3di_stiffness_motion(const se3di_model *model);
 /* An explicit method would be held to steps by decays that are long over: the fastest that a
  * spring-damper or bushing forces is much faster than the motion that one wants to see, both on its
  * bodies as if they were free, tr(M^-1 D), D = -d wrench / d velocity, and as they are held by the

@@ -155,6 +155,72 @@ static void bushings_with_dampers_are_as_good_as_joints(void)
     }
 }
 
+typedef struct notes {
+    char last[512];
+    int32_t count;
+} notes;
+
+static void note(void *ctx, se3d_log_level level, se3d_log_kind kind, const char *message)
+{
+    notes *n = ctx;
+    if (level == SE3D_LOG_WARNING && kind == SE3D_LOG_STEP && strstr(message, "vibration")) {
+        ++n->count;
+        (void)snprintf(n->last, sizeof n->last, "%s", message);
+    }
+}
+
+static notes follow_noted(const char *text, int32_t method, double duration, int rows)
+{
+    notes n = {"", 0};
+    text_model m = text_model_open(text, method, SE3D_FORMULATION_ROMEGA, 0.0);
+    CHECK(!se3d_system_set_log(m.system, note, &n));
+    for (int k = 0; k < rows; ++k) {
+        CHECK(se3d_solver_run(m.solver, duration * (k + 1) / rows) >= 0);
+    }
+    text_model_close(&m);
+    return n;
+}
+
+/* Whose steps are those of a vibration that nobody asked for says so, once, and of which element;
+ * methods that pass over it, dampers and springs whose motion is the one to see say nothing. */
+static void vibrations_that_make_steps_short_are_named(void)
+{
+    static const struct shaken {
+        double k, c;
+        int32_t method, rows;
+        double duration;
+        int32_t told[2]; /* of the bushing, of the spring */
+    } rows[] = {{1e9, 0.0, SE3D_METHOD_BDF, 1, 0.004, {1, 0}},
+                {1e9, 0.0, SE3D_METHOD_BDF, 20, 0.004, {1, 0}},
+                {1e9, 1e3, SE3D_METHOD_BDF, 1, 0.004, {0, 0}}, /* it is over soon */
+                {1e9, 0.0, SE3D_METHOD_RATTLE, 1, 0.002, {1, 1}},
+                {1e9, 0.0, SE3D_METHOD_RADAU, 1, 0.3, {0, 0}},
+                {1e9, 1e5, SE3D_METHOD_BDF, 3, 0.3, {0, 0}},
+                {1e3, 0.0, SE3D_METHOD_BDF, 1, 0.3, {0, 0}},
+                {1e3, 0.0, SE3D_METHOD_RATTLE, 1, 0.3, {0, 0}}};
+    static const char *const elements[] = {
+        "type: bushing, at: [1, 0, 0], K: [k, k, k, k, k, k], C: [c, c, c, c, c, c]",
+        "type: tsda, at: [0.5, 0, 0.5], at_2: [1, 0, 0], k: k, c: c, l0: 0.7071"};
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; ++row) {
+        for (int element = 0; element < 2; ++element) {
+            const struct shaken *s = &rows[row];
+            char text[1500];
+            (void)snprintf(text, sizeof text,
+                           "se3d: 1\nparameters: {k: %g, c: %g}\n" HEAD PIN "%s"
+                           "forces: [{name: rubber, body_i: a, body_j: b, %s}]\n" TAIL,
+                           s->k, s->c, element ? HINGE : "", elements[element]);
+            const notes n = follow_noted(text, s->method, s->duration, s->rows);
+            CHECK(n.count == s->told[element]);
+            if (n.count != s->told[element] || getenv("SE3D_SHOW")) {
+                fprintf(stderr, "row %zu, element %d: %s\n", row, element, n.last);
+            }
+            if (s->told[element]) {
+                CHECK_CONTAINS(n.last, "\"rubber\"");
+            }
+        }
+    }
+}
+
 /* A strong spring against as strong a damper: what creeps back within a second is no error to be
  * left out. m x'' + k x' + k x = 0 from rest at .5 m. */
 static void what_creeps_against_a_damper_is_followed(void)
@@ -301,6 +367,7 @@ int main(void)
 {
     RUN(accelerations_are_those_of_the_motion_however_fast_a_force_is);
     RUN(bushings_with_dampers_are_as_good_as_joints);
+    RUN(vibrations_that_make_steps_short_are_named);
     RUN(what_creeps_against_a_damper_is_followed);
     RUN(states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by);
     RUN(chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion);
