@@ -12,7 +12,6 @@
 #include "math/larger.h"
 #include "math/over.h"
 #include "math/vec3.h"
-#include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
@@ -347,7 +346,7 @@ static void stand_at_begin(se3di_explicit *m)
         m->motion->set_again(m->equations, m->y1);
     } else {
         m->motion->set(m->equations, m->y1);
-        se3di_angles_accept(m->assembly->model);
+        m->motion->accept_angles(m->equations);
     }
     m->stands = 0;
 }
@@ -438,10 +437,12 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
         SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, fmax(1e-15, rough), 0));
     }
     if (rough > 0.0) {
+        m->motion->accept_angles(m->equations);
         return se3di_state_conclude_motion(m->equations, work, t);
     }
     SE3DI_TRY(find_all(m, t));
     se3di_contacts_renew_forces(m->assembly->model);
+    m->motion->accept_angles(m->equations);
     return se3di_state_conclude(m->equations, work, t);
 }
 

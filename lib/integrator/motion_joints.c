@@ -123,21 +123,20 @@ static void stand(se3di_equations *equations, const double *y)
     equations->is_placed = 1;
 }
 
-/* On an open tree the coordinates are the angles. */
+/* The coordinates are the angles; others are those of joints that close loops, and of forces. */
 static void accept_angles(se3di_equations *equations)
 {
     const se3di_tree *tree = equations->tree;
     se3di_model *model = equations->assembly.model;
-    if (!equations->is_open_tree || tree->angle_count < model->angle_count) {
+    if (tree->angle_count != model->angle_count) {
         se3di_angles_accept(model);
         return;
     }
-    for (uint32_t k = 0; k < tree->count; ++k) {
-        const se3di_tree_node *n = &tree->nodes[k];
-        if (n->angle >= 0) {
-            model->angles[n->angle].theta = tree->q[n->q + (n->type == SE3DI_TREE_PLANAR ? 2 : 0)];
-        }
+    for (uint32_t k = 0; k < tree->angle_count; ++k) {
+        const int32_t at = tree->counted[k];
+        model->angles[k].theta = at >= 0 ? tree->q[at] : se3di_angle_value(model, k);
     }
+    se3di_left_out_follow(model);
 }
 
 static void get(se3di_equations *equations, double *y)

@@ -7,6 +7,7 @@
 #include "force/friction.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
+#include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
@@ -170,8 +171,10 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
         SE3DI_TRY(se3di_state_project(equations, t, &header->scale, fmax(1e-15, rough), 0));
     }
     if (rough > 0.0) {
+        se3di_angles_accept(assembly->model);
         return se3di_state_conclude_motion(equations, work, t);
     }
     SE3DI_TRY(set_accelerations(integration, t, is_end ? 1.0 : (t - header->at.begin) / last));
+    se3di_angles_accept(assembly->model);
     return se3di_state_conclude(equations, work, t);
 }

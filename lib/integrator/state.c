@@ -562,12 +562,6 @@ static void take_works(se3di_model *model, const double *work, double t)
     model->work_valid = 1;
 }
 
-static void conclude(se3di_model *model, const double *work, double t)
-{
-    se3di_angles_accept(model);
-    take_works(model, work, t);
-}
-
 void se3di_state_conclude_step(se3di_equations *equations, const double *work, const double *power,
                                double t)
 {
@@ -582,7 +576,7 @@ void se3di_state_conclude_step(se3di_equations *equations, const double *work, c
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t)
 {
     se3di_model *model = equations->assembly.model;
-    conclude(model, work, t);
+    take_works(model, work, t);
     model->settled = SE3DI_SETTLED;
     SE3DI_TRY(se3di_state_check(equations, t));
     return se3di_loads_power(model, t, model->power);
@@ -590,7 +584,7 @@ se3d_status se3di_state_conclude(se3di_equations *equations, const double *work,
 
 se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t)
 {
-    conclude(equations->assembly.model, work, t);
+    take_works(equations->assembly.model, work, t);
     equations->assembly.model->settled = SE3DI_SETTLED | SE3DI_LACKING;
     return se3di_state_check(equations, t);
 }
@@ -611,9 +605,11 @@ se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *s
             se3di_state_project(equations, shown->t, shown->scale, fmax(1e-15, shown->rough), 0));
     }
     if (shown->rough > 0.0) {
+        se3di_angles_accept(equations->assembly.model);
         return se3di_state_conclude_motion(equations, work, shown->t);
     }
     SE3DI_TRY(se3di_acceleration_solve(equations, shown->t));
     se3di_contacts_renew_forces(equations->assembly.model);
+    se3di_angles_accept(equations->assembly.model);
     return se3di_state_conclude(equations, work, shown->t);
 }

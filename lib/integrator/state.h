@@ -134,9 +134,10 @@ double se3di_state_rough(const se3di_model *model, int shows_motion, double tole
 
 /* The model's state from y at t. */
 se3d_status se3di_state_publish(se3di_equations *equations, const se3di_shown *shown);
-/* The last part of it: frames, accelerations and multipliers are those at t already. */
+/* The last part of it: frames, accelerations and multipliers are those at t already, joint angles
+ * have been accepted. */
 se3d_status se3di_state_conclude(se3di_equations *equations, const double *work, double t);
-/* The same with the powers there, NULL: they follow; joint angles have been accepted. */
+/* The same with the powers there, NULL: they follow. */
 void se3di_state_conclude_step(se3di_equations *equations, const double *work, const double *power,
                                double t);
 /* The same where there are frames only. */

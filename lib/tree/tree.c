@@ -321,7 +321,7 @@ static void find_efforts(se3di_tree *tree)
 
 /* ---- memory ---- */
 
-#define TREE_STRUCTURE 4
+#define TREE_STRUCTURE 5
 #define TREE_VALUES    19
 
 static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
@@ -331,6 +331,7 @@ static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
         {(void **)&t->node_of, t->body_count, sizeof *t->node_of},
         {(void **)&t->tree_of, t->constraint_count, sizeof *t->tree_of},
         {(void **)&t->along, t->force_count, sizeof *t->along},
+        {(void **)&t->counted, t->angle_count, sizeof *t->counted},
     };
     _Static_assert(sizeof arrays == TREE_STRUCTURE * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -396,6 +397,20 @@ static se3d_status build(se3di_tree *tree)
     return se3di_arrays_alloc(allocator, values, TREE_VALUES);
 }
 
+/* Planar joints turn by their third coordinate. */
+static void find_counted(se3di_tree *tree)
+{
+    for (size_t k = 0; k < tree->angle_count; ++k) {
+        tree->counted[k] = -1;
+    }
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        if (n->angle >= 0) {
+            tree->counted[n->angle] = (int32_t)n->q + (n->type == SE3DI_TREE_PLANAR ? 2 : 0);
+        }
+    }
+}
+
 se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_states,
                             se3di_error *error)
 {
@@ -406,16 +421,15 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
                          .acts = 1,
                          .body_count = (uint32_t)model->body_slots.count,
                          .constraint_count = (uint32_t)model->constraint_slots.count,
-                         .force_count = (uint32_t)model->force_slots.count};
+                         .force_count = (uint32_t)model->force_slots.count,
+                         .angle_count = (uint32_t)model->angle_count};
     const se3d_status status = build(tree);
     if (status < 0) {
         se3di_tree_destroy(tree);
         return se3di_error_set(error, status, "no memory for the tree of %zu bodies",
                                model->body_slots.count);
     }
-    for (uint32_t k = 0; k < tree->count; ++k) {
-        tree->angle_count += tree->nodes[k].angle >= 0;
-    }
+    find_counted(tree);
     choose_core(tree);
     se3di_tree_refresh(tree);
     return SE3D_OK;

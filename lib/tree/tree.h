@@ -118,6 +118,7 @@ typedef struct se3di_tree {
     uint32_t constraint_count;
     uint32_t force_count; /* elements */
     int32_t *along;       /* [elements]: velocity of the coordinate that an effort acts on, or -1 */
+    int32_t *counted;     /* [angle_count]: place in q of what a turn counter counts, or -1 */
     int32_t has_efforts;  /* some effort acts on a coordinate of the tree, */
     int32_t has_others;   /* and some on none */
     int32_t moves_states; /* carriers of states may be nodes, */
@@ -138,7 +139,7 @@ typedef struct se3di_tree {
     double *armature;         /* [velocities]: inertia that turns with the coordinate alone */
     int32_t foreign_armature; /* a force element: armature on no coordinate of the tree; -1: none */
     int32_t keeps_turns;      /* q is integrated: see se3di_tree_match_turns */
-    uint32_t angle_count;     /* nodes with a turn counter */
+    uint32_t angle_count;     /* turn counters of the model */
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
