@@ -94,6 +94,9 @@ is "$(cksum <"$dir/piece/study.csv")" "$whole"
 mkdir "$dir/empty"
 expect 'no shards' 1 study -o "$dir/empty" --merge
 says 'has no shards'
+ln -s study.csv "$dir/empty/study.csv"
+expect 'a table that cannot be looked at' 1 study -o "$dir/empty" --merge
+says 'Too many levels of symbolic links'
 
 # The lock of a process that was killed lives as long as it does: it is waited for, not for ever.
 hold() {

@@ -279,7 +279,7 @@ static int list_shards(const char *folder, path_list *list)
     if (!dir) {
         return 0;
     }
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+    for (const struct dirent *entry; errno = 0, (entry = readdir(dir)) != NULL;) {
         if (!is_shard(entry->d_name)) {
             continue;
         }
@@ -296,11 +296,13 @@ static int list_shards(const char *folder, path_list *list)
         snprintf(path, size, "%s/%s", folder, entry->d_name);
         list->paths[list->count++] = path;
     }
+    const int failure = errno;
     closedir(dir);
     if (list->count > 0) {
         qsort(list->paths, list->count, sizeof *list->paths, compare_paths);
     }
-    return 1;
+    errno = failure;
+    return failure == 0;
 }
 
 static void put_problem(void *ctx, const se3d_model_error *error)
@@ -309,20 +311,24 @@ static void put_problem(void *ctx, const se3d_model_error *error)
     complain("%s\n", error->message);
 }
 
-/* The only part of one is the table itself: it is looked at, and if it is whole that is all. */
-static void list_table(const job *j, path_list *list)
+/* The only part of one is the table itself: it is looked at, and if it is whole that is all.
+ * @return false: errno says why; no table at all is none. */
+static int list_table(const job *j, path_list *list)
 {
     struct stat about;
     const size_t size = strlen(j->path) + 1;
-    if (list->count == 0 && stat(j->path, &about) == 0) {
-        list->paths = malloc(sizeof *list->paths);
-        char *path = list->paths ? malloc(size) : NULL;
-        if (path) {
-            memcpy(path, j->path, size);
-            list->paths[list->count++] = path;
-        }
+    if (stat(j->path, &about) != 0) {
+        return errno == ENOENT || errno == ENOTDIR;
     }
-    errno = 0;
+    list->paths = malloc(sizeof *list->paths);
+    char *path = list->paths ? malloc(size) : NULL;
+    if (!path) {
+        errno = ENOMEM;
+        return 0;
+    }
+    memcpy(path, j->path, size);
+    list->paths[list->count++] = path;
+    return 1;
 }
 
 static int merge(job *j)
@@ -332,18 +338,14 @@ static int merge(job *j)
     uint64_t failed = 0;
     char message[PATH_SIZE + 200];
     int code = EXIT_FAILED;
-    errno = 0;
-    const int listed = list_shards(j->folder, &list);
+    int listed = list_shards(j->folder, &list);
     const int has_parts = list.count > 0;
-    if (listed) {
-        list_table(j, &list);
-    }
+    listed = listed && (has_parts || list_table(j, &list));
+    const char *why = listed ? "has no shards, study.K-of-N.csv" : strerror(errno);
     how.report = put_problem;
     how.partial = j->o->partial && has_parts;
     if (!listed || list.count == 0) {
-        snprintf(message, sizeof message, "%s: %s", j->folder,
-                 list.count == 0 && errno == 0 ? "has no shards, study.K-of-N.csv"
-                                               : strerror(errno));
+        snprintf(message, sizeof message, "%s: %s", j->folder, why);
         code = fail(j, message);
     } else {
         const se3d_status status = se3d_study_merge(j->study, (const char *const *)list.paths,
