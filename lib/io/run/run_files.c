@@ -118,13 +118,21 @@ static void put_sums_head(se3di_output_file *file)
     }
 }
 
+static bool has_checkpoints(const se3di_runner *r)
+{
+    return r->options->checkpoint > 0.0 || r->options->resume;
+}
+
 /* The file of the next output. */
 static se3d_status open_csv(const se3di_runner *r, se3di_csv *csv, const char *path, size_t columns)
 {
     se3di_iopool *pool = &r->run->pool;
-    return r->resume ? se3di_csv_continue(csv, pool, path, columns,
-                                          se3di_checkpoint_get_mark(r, r->file_count))
-                     : se3di_csv_open(csv, pool, path, columns);
+    const se3d_status status = r->resume
+                                   ? se3di_csv_continue(csv, pool, path, columns,
+                                                        se3di_checkpoint_get_mark(r, r->file_count))
+                                   : se3di_csv_open(csv, pool, path, columns);
+    csv->keeps_hash = has_checkpoints(r);
+    return status;
 }
 
 void se3di_files_give_up(const se3di_runner *r, se3di_csv *csv)
@@ -232,6 +240,7 @@ static se3d_status open_events(se3di_runner *r)
     }
     const se3d_status status = se3di_event_list_open(
         events, &r->run->pool, path, r->resume ? se3di_checkpoint_get_events(r) : NULL);
+    events->csv.keeps_hash = has_checkpoints(r);
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
@@ -538,7 +547,7 @@ se3d_status se3di_files_close_all(se3di_runner *r, se3d_status status)
 
 se3d_status se3di_files_begin(se3di_runner *r)
 {
-    if (r->options->checkpoint > 0.0 || r->options->resume) {
+    if (has_checkpoints(r)) {
         if (!se3di_checkpoint_listen(r)) {
             return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
         }

@@ -34,7 +34,9 @@ void se3di_csv_flush(se3di_csv *csv)
             ++csv->lines;
             csv->whole = csv->written + (uint64_t)(end - csv->buffer);
         }
-        csv->hash = se3di_hash_bytes(csv->hash, csv->buffer, written);
+        if (csv->keeps_hash) {
+            csv->hash = se3di_hash_bytes(csv->hash, csv->buffer, written);
+        }
         csv->written += written;
     }
     csv->used = 0;
@@ -97,6 +99,7 @@ se3d_status se3di_csv_continue(se3di_csv *csv, se3di_iopool *pool, const char *p
     csv->lines = mark->lines;
     csv->rows = mark->rows;
     csv->hash = mark->hash;
+    csv->keeps_hash = true;
     return take_file(csv, se3di_partial_continue(path, mark->bytes, mark->hash));
 }
 

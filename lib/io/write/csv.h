@@ -21,7 +21,8 @@ typedef struct se3di_csv {
     uint64_t written; /* bytes on disk */
     uint64_t whole;   /* of them, bytes of whole lines */
     uint64_t lines;   /* that are whole */
-    uint64_t hash;    /* of what is on disk */
+    uint64_t hash;    /* of what is on disk, if it is kept */
+    bool keeps_hash;  /* set before the first flush: the file may be marked */
 } se3di_csv;
 
 /* How far a file has come: it can be gone on with from there. */
@@ -35,7 +36,8 @@ se3d_status se3di_csv_open(se3di_csv *csv, se3di_iopool *pool, const char *path,
  * NO_MEMORY; on failure what is there stays. */
 se3d_status se3di_csv_continue(se3di_csv *csv, se3di_iopool *pool, const char *path, size_t columns,
                                const se3di_csv_mark *mark);
-/* Write what is there, with `sync` so that it survives a machine that stops, and say how far it is.
+/* Write what is there, with `sync` so that it survives a machine that stops, and say how far it is,
+ * of a file that keeps its hash.
  * @return false: that failed. */
 bool se3di_csv_mark_here(se3di_csv *csv, bool sync, se3di_csv_mark *mark);
 /* The last row, which may still be replaced: the same for each file of as many columns. */

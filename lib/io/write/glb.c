@@ -71,11 +71,26 @@ void se3di_glb_put_number(se3di_glb *glb, se3di_iobytes *bytes, double value)
     se3di_glb_put_bytes(glb, bytes, text, length);
 }
 
-static void put_little(se3di_glb *glb, uint32_t value, size_t size)
+/* Numbers on their way into the binary chunk, many at a time. */
+typedef struct batch {
+    se3di_glb *glb;
+    size_t used;
+    unsigned char bytes[1024];
+} batch;
+
+static void flush(batch *b)
 {
-    const unsigned char bytes[4] = {(unsigned char)value, (unsigned char)(value >> 8),
-                                    (unsigned char)(value >> 16), (unsigned char)(value >> 24)};
-    se3di_glb_put_bytes(glb, &glb->binary, bytes, size);
+    se3di_glb_put_bytes(b->glb, &b->glb->binary, b->bytes, b->used);
+    b->used = 0;
+}
+
+static void put_little(batch *b, uint32_t value, size_t size)
+{
+    if (b->used + size > sizeof b->bytes) {
+        flush(b);
+    }
+    se3di_little_put(b->bytes + b->used, value, size);
+    b->used += size;
 }
 
 /* Up to a multiple of four bytes. */
@@ -100,7 +115,11 @@ static long begin(se3di_glb *glb, size_t size, int target)
 /* The nearest 32-bit number; 0 if it is none. */
 static float to_float(double value)
 {
-    return isfinite(value) ? (float)fmax(-(double)FLT_MAX, fmin((double)FLT_MAX, value)) : 0.0F;
+    const double most = (double)FLT_MAX;
+    if (!isfinite(value)) {
+        return 0.0F;
+    }
+    return value > most ? FLT_MAX : value < -most ? -FLT_MAX : (float)value;
 }
 
 static void put_range(se3di_glb *glb, const double *values, size_t count, size_t width)
@@ -133,12 +152,14 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
 {
     const size_t width = (size_t)type;
     const long view = begin(glb, count * width * 4, target);
+    batch numbers = {.glb = glb};
     for (size_t k = 0; k < count * width; ++k) {
         const float value = to_float(values[k]);
         uint32_t bits = 0;
         memcpy(&bits, &value, sizeof bits);
-        put_little(glb, bits, 4);
+        put_little(&numbers, bits, 4);
     }
+    flush(&numbers);
     describe(glb, view, NUMBER_FLOAT, count, type == SE3DI_GLB_SCALAR ? "SCALAR" : "VEC3");
     put_range(glb, values, count, width);
     se3di_glb_put(glb, &glb->accessors, "}");
@@ -148,10 +169,12 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
 long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
 {
     const long view = begin(glb, count * 8, 0);
+    batch numbers = {.glb = glb};
     for (size_t k = 0; k < 4 * count; ++k) {
         const long value = lround(32767.0 * fmax(-1.0, fmin(1.0, values[k])));
-        put_little(glb, (uint32_t)(value & 0xffff), 2);
+        put_little(&numbers, (uint32_t)(value & 0xffff), 2);
     }
+    flush(&numbers);
     describe(glb, view, NUMBER_SHORT, count, "VEC4");
     se3di_glb_put(glb, &glb->accessors, ",\"normalized\":true}");
     return view;
@@ -171,9 +194,11 @@ static void add_unit(se3di_glb *glb, se3di_unit_shape mesh)
         glb->unit[mesh][1] =
             se3di_glb_add_floats(glb, m->normals, m->points_count, SE3DI_GLB_VEC3, 34962);
         glb->unit[mesh][2] = begin(glb, m->indices_count * 2, 34963);
+        batch numbers = {.glb = glb};
         for (size_t k = 0; k < m->indices_count; ++k) {
-            put_little(glb, m->indices[k], 2);
+            put_little(&numbers, m->indices[k], 2);
         }
+        flush(&numbers);
         describe(glb, glb->unit[mesh][2], NUMBER_INDEX, m->indices_count, "SCALAR");
         se3di_glb_put(glb, &glb->accessors, "}");
     }
@@ -296,9 +321,11 @@ static long add_indices(se3di_glb *glb, const size_t *vertex, size_t count, size
 {
     const size_t size = most > UINT16_MAX ? 4 : 2;
     const long view = begin(glb, count * size, 34963);
+    batch numbers = {.glb = glb};
     for (size_t k = 0; k < count; ++k) {
-        put_little(glb, (uint32_t)vertex[k], size);
+        put_little(&numbers, (uint32_t)vertex[k], size);
     }
+    flush(&numbers);
     describe(glb, view, size == 4 ? NUMBER_LONG_INDEX : NUMBER_INDEX, count, "SCALAR");
     se3di_glb_put(glb, &glb->accessors, "}");
     return view;
