@@ -24,31 +24,33 @@ enum {
     SE3DI_CONVEX_IMPACT  /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
 };
 
-/* A point of contact in the step under way. */
+/* A point of contact in the step under way. What the passes over all contacts of an island need
+ * comes first, and what they need together stands together. */
 typedef struct se3di_convex_contact {
-    const se3di_body_contact *record; /* of the state that the step begins with */
-    int32_t free[2];             /* its bodies, -1: fixed; while a step is solved their places */
-    int32_t coupling;            /* of the two, -1: one is fixed */
-    int32_t way;                 /* SE3DI_CONVEX_ */
-    double normal[3], arm[2][3]; /* from the bodies to the point, ground frame */
-    double lever[2][9]; /* a turning of the body, in its frame, to the velocity of the point */
-    double turn[2][9];  /* an impulse on the point to the turning of the body: J^-1 lever^T */
-    double response[2]; /* of the velocity to an impulse: along the normal; at most across it */
-    double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
-    double rise, steepness;           /* p_n = rise - steepness v_n, if it is linear */
-    double xi[3];                     /* stretch of the spring that sticks */
-    double drift[3];                  /* velocity of surface j on its body less that of i, */
-    double shift[3];                  /* and what the point will have moved to half a step on */
+    int32_t free[2];         /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling;        /* of the two, -1: one is fixed */
+    int32_t way;             /* SE3DI_CONVEX_ */
+    double lever[2][9];      /* a turning of the body, in its frame, to the velocity of the
+                                        point */
+    double v[3], change[3];  /* velocity of the point: now, of the search */
+    double normal[3], xi[3]; /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
-    double tangential, drag;           /* k_t; -dy/dv_t */
-    double friction, bound, wanted;    /* mu, the cap in use, that of p_n */
-    double wanted_before, gap;         /* at the last look; wanted - bound */
-    double before[3], v[3], change[3]; /* velocity of the point: at the start, now, of the search */
-    double impulse[3];                 /* on j */
-    double now[9];                     /* minus the derivative of the impulse, */
-    double slope[9];                   /* that which the matrix has */
-    double held;                       /* energy of its springs at the start of the step */
+    double tangential, drag, bound; /* k_t; -dy/dv_t; the cap in use */
+    double impulse[3];              /* on j */
+    double slope[9];                /* minus its derivative, that which the matrix has */
+    double drift[3];                /* velocity of surface j on its body less that of i, */
+    double shift[3];                /* and what the point will have moved to half a step on */
+    double friction;
+    double rise, steepness; /* p_n = rise - steepness v_n, if it is linear */
+    double response[2];     /* of the velocity to an impulse: along the normal; at most across it */
+    double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
+    double wanted;    /* the cap of p_n, */
+    double wanted_before, gap;        /* at the last look; wanted - bound */
+    double before[3];                 /* velocity of the point at the start */
+    double arm[2][3];                 /* from the bodies to the point, ground frame */
+    double held;                      /* energy of its springs at the start of the step */
+    const se3di_body_contact *record; /* of the state that the step begins with */
 } se3di_convex_contact;
 
 /* Bodies that contacts, or constraints, connect: a problem of its own. */

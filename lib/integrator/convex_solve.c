@@ -20,6 +20,7 @@
 #define MAY_FOLLOW  0.1  /* of impulses: what is left where they do */
 #define ACCURACY    1e-9 /* of impulses */
 #define CAP_CHANGE  3e-4 /* of the largest cap: it needs no other iteration */
+#define IS_NEAR     1e-5 /* of impulses: this iteration may be the last */
 #define GO_AHEAD    1e-3 /* of impulses: what is left where caps go on as they went, */
 #define AHEAD_MOST  4.0  /* at most so many times */
 #define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
@@ -252,17 +253,6 @@ static void clear_gradient(se3di_convex *c, const se3di_convex_island *island)
            6 * (island->body_end - island->body) * sizeof *c->gradient);
 }
 
-/* Impulses and gradient at v. */
-static void evaluate(se3di_convex *c, const se3di_convex_island *island)
-{
-    clear_gradient(c, island);
-    for (size_t k = island->contact; k < island->contact_end; ++k) {
-        se3di_convex_contact *contact = se3di_convex_at(c, k);
-        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse, contact->now);
-        subtract_impulse(contact, c->gradient);
-    }
-}
-
 /* Whether `change` of a slope is small, along the normal beside what is along it and across it
  * beside what is across: one may be a thousand times the other. */
 static int is_small(const se3di_convex_contact *contact, const double change[9])
@@ -296,6 +286,33 @@ static void set_slope(se3di_convex *c, se3di_convex_contact *contact, const doub
     memcpy(contact->slope, slope, sizeof contact->slope);
     add_contact(c, contact, change);
     ++c->changed;
+}
+
+/* Impulses and gradient at v; with the matrix, if another iteration is sure to follow. */
+static void evaluate(se3di_convex *c, const se3di_convex_island *island, int with_slopes)
+{
+    clear_gradient(c, island);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        double slope[9];
+        se3di_convex_impulse(contact, c->h, contact->v, contact->impulse,
+                             with_slopes ? slope : NULL);
+        subtract_impulse(contact, c->gradient);
+        if (with_slopes) {
+            set_slope(c, contact, slope);
+        }
+    }
+}
+
+/* The matrix at v. */
+static void evaluate_slopes(se3di_convex *c, const se3di_convex_island *island)
+{
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        double slope[9], impulse[3];
+        se3di_convex_impulse(contact, c->h, contact->v, impulse, slope);
+        set_slope(c, contact, slope);
+    }
 }
 
 /* What normal impulses make of the caps of friction, and how that differs from those in use.
@@ -519,6 +536,15 @@ static void move(se3di_convex *c, const se3di_convex_island *island, double s)
     }
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
+        se3di_add_scaled(s, contact->change, contact->v);
+    }
+}
+
+/* The velocities of points for v. */
+static void see(const se3di_convex *c, const se3di_convex_island *island)
+{
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
         se3di_convex_slip(contact, c->v, contact->v);
     }
 }
@@ -555,9 +581,7 @@ static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_i
     mul_mass(c, assembly, island, c->change, c->moved);
     clear_blocks(c, island);
     c->changed = island->contact_end - island->contact + 1; /* all */
-    memset(c->change + first, 0, count * sizeof *c->change);
-    memset(c->carried + first, 0, count * sizeof *c->carried);
-    move(c, island, 0.0);
+    see(c, island);
     return is_far;
 }
 
@@ -580,10 +604,10 @@ static double foresee(se3di_convex *c, const se3di_convex_island *island)
     clear_gradient(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        double ahead[3], less[3];
+        double ahead[3], less[3], slope[9];
         far = se3di_larger(far, se3di_convex_foresee(c, contact, ahead));
-        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, contact->now);
-        set_slope(c, contact, contact->now);
+        se3di_convex_impulse(contact, c->h, ahead, contact->impulse, slope);
+        set_slope(c, contact, slope);
         largest = fmax(largest, se3di_norm(contact->impulse));
         se3di_sub(contact->v, ahead, ahead);
         se3di_mul(contact->slope, ahead, less);
@@ -650,10 +674,6 @@ static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
                            const se3di_convex_island *island, int is_first, double share)
 {
     const se3di_assembly *assembly = &equations->assembly;
-    for (size_t k = island->contact; k < island->contact_end; ++k) {
-        se3di_convex_contact *contact = se3di_convex_at(c, k);
-        set_slope(c, contact, contact->now);
-    }
     if (assembly->row_count > 0) {
         SE3DI_TRY(solve_bound(c, equations, island));
     } else {
@@ -691,7 +711,8 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
             follow(c, island, k > 0 && rest <= GO_AHEAD);
             se3di_convex_gyrate(c, island);
         }
-        evaluate(c, island);
+        const int with_slopes = k > 0 && rest > IS_NEAR;
+        evaluate(c, island, with_slopes);
         const double before = rest;
         rest = measure(c, equations, island);
         const int stays = k >= FOLLOWING && rest <= ENOUGH && rest >= 0.5 * before;
@@ -699,9 +720,12 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
             (!waits || k >= FOLLOWING)) {
             return SE3D_OK;
         }
+        if (!with_slopes) {
+            evaluate_slopes(c, island);
+        }
         SE3DI_TRY(iterate(c, equations, island, k == 0, share_of(rest, before)));
     }
-    evaluate(c, island);
+    evaluate(c, island, 0);
     return rest <= ENOUGH ? SE3D_OK : fail(c, equations, rest);
 }
 
