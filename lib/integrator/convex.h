@@ -40,7 +40,8 @@ typedef struct se3di_convex_contact {
     double impulse[3];              /* on j */
     double slope[9];                /* minus its derivative, that which the matrix has */
     double drift[3];                /* velocity of surface j on its body less that of i, */
-    double shift[3];                /* and what the point will have moved to half a step on */
+    double ahead[3]; /* of that what it does not have at the start, but half a step on, */
+    double shift[3]; /* and what the point will have moved to half a step on */
     double friction;
     double rise, steepness; /* p_n = rise - steepness v_n, if it is linear */
     double response[2];     /* of the velocity to an impulse: along the normal; at most across it */

@@ -218,18 +218,22 @@ static void set_drift(se3di_convex_contact *c, const se3di_model *model, double 
     for (int k = 0; k < 2; ++k) {
         const se3di_shape *s = &model->shapes[k ? r->shape_j : r->shape_i];
         const se3di_frame *frame = &model->frames[s->body];
-        double arm[3], local[3], half[3], u[3], spin[3];
+        double arm[3], local[3], half[3], u[3], now[3], spin[3];
         if (!se3di_surface_moves(s)) {
             continue;
         }
         se3di_sub(r->point, frame->r, arm);
+        se3di_surface_velocity(s, frame->A, arm, now, spin);
         se3di_mul_transposed(frame->A, arm, local);
         se3di_surface_carry(s, 0.5 * h, local, half);
         se3di_mul(frame->A, half, arm);
         se3di_surface_velocity(s, frame->A, arm, u, spin);
         se3di_add_scaled(k ? 1.0 : -1.0, u, c->drift);
+        se3di_sub(u, now, u);
+        se3di_add_scaled(k ? 1.0 : -1.0, u, c->ahead);
     }
     se3di_add_scaled(-se3di_dot(c->drift, c->normal), c->normal, c->drift);
+    se3di_add_scaled(-se3di_dot(c->ahead, c->normal), c->normal, c->ahead);
 }
 
 /* What loads alone make of the velocities of the two points in the step, along the normal: of each
@@ -367,19 +371,42 @@ static void set_anchors(const se3di_model *model, se3di_body_contact *r, const d
     }
 }
 
+/* What a surface that turns on its body has at the point, more than where the point of the step's
+ * beginning was carried to: a ball on a turntable rolls from place to place of it. */
+static void surface_wander(const se3di_convex_contact *c, const se3di_shape *s, int side,
+                           const se3di_frame *frame, const double arm[3], double h, double more[3])
+{
+    double w[3], turned[3], local[3], carried[3], u[3], spin[3];
+    se3di_mul(frame->A, frame->w, w);
+    se3di_cross(w, c->arm[side], turned);
+    se3di_scale(h, turned, turned);
+    se3di_add(turned, c->arm[side], turned);
+    se3di_mul_transposed(frame->A, turned, local);
+    se3di_surface_carry(s, h, local, carried);
+    se3di_mul(frame->A, carried, turned);
+    se3di_surface_velocity(s, frame->A, turned, u, spin);
+    se3di_surface_velocity(s, frame->A, arm, more, spin);
+    se3di_sub(more, u, more);
+}
+
 /* How the velocity of the two surfaces at the point changes as the point wanders on them, and turns
  * with them: w x d(arm)/dt, of j less that of i. A point that jumps says nothing of it. */
 static void set_wander(const se3di_convex_contact *c, const se3di_model *model, double h,
                        se3di_body_contact *r)
 {
     for (int k = 0; k < 2; ++k) {
-        const se3di_frame *frame = &model->frames[model->shapes[k ? r->shape_j : r->shape_i].body];
-        double arm[3], w[3], moved[3], rate[3];
+        const se3di_shape *shape = &model->shapes[k ? r->shape_j : r->shape_i];
+        const se3di_frame *frame = &model->frames[shape->body];
+        double arm[3], w[3], moved[3], rate[3], more[3];
         se3di_sub(r->point, frame->r, arm);
         se3di_sub(arm, c->arm[k], moved);
         if (se3di_norm(moved) < WANDER_MOST * se3di_norm(arm)) {
             se3di_mul(frame->A, frame->w, w);
             se3di_cross(w, moved, rate);
+            if (se3di_surface_moves(shape)) {
+                surface_wander(c, shape, k, frame, arm, h, more);
+                se3di_add(rate, more, rate);
+            }
             se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->roll);
         }
     }

@@ -15,11 +15,13 @@
 
 #include <math.h>
 
-/* What the impulse takes from the bodies. */
+/* What the impulse takes from the bodies, and from what moves surfaces on them: half a step before
+ * and half a step on they have what they have at the start on the average. */
 static double taken_by(const se3di_convex_contact *c)
 {
     return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v) -
-                   se3di_dot(c->impulse, c->shift));
+                   se3di_dot(c->impulse, c->shift)) +
+           se3di_dot(c->impulse, c->ahead);
 }
 
 /* What of it springs may hold: an impact lifts its bodies, too. */
@@ -63,7 +65,8 @@ double se3di_convex_fed(const se3di_convex *convex)
 {
     double sum = 0.0;
     for (size_t k = 0; k < convex->contact_count; ++k) {
-        sum -= se3di_dot(convex->contacts[k].impulse, convex->contacts[k].drift);
+        const se3di_convex_contact *c = &convex->contacts[k];
+        sum -= se3di_dot(c->impulse, c->drift) - se3di_dot(c->impulse, c->ahead);
     }
     return sum;
 }
