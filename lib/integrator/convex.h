@@ -17,6 +17,7 @@
 
 #include "integrator/integrator.h"
 #include "linsol/block_cg.h"
+#include "math/vec3.h"
 
 /* How a contact acts in a step. */
 enum {
@@ -123,10 +124,30 @@ void se3di_convex_destroy(se3di_convex *convex, const se3d_allocator *allocator)
  * known. @return OK, NO_MEMORY, UNSUPPORTED */
 se3d_status se3di_convex_collect(se3di_convex *c, const se3di_assembly *assembly,
                                  se3di_error *error);
-/* The velocity of a point for velocities `v` [unknowns] of the bodies, with that of surfaces on
- * them; without. */
-void se3di_convex_slip(const se3di_convex_contact *contact, const double *v, double out[3]);
-void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3]);
+/* The velocity of a point for velocities `v` [unknowns] of the bodies, */
+static inline void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v,
+                                         double out[3])
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            const double *body = v + 6 * (size_t)contact->free[k];
+            double turning[3];
+            se3di_mul(contact->lever[k], body + 3, turning);
+            se3di_add(turning, body, turning);
+            se3di_add_scaled(k ? 1.0 : -1.0, turning, sum);
+        }
+    }
+    se3di_copy(sum, out);
+}
+/* with that of surfaces on them. */
+static inline void se3di_convex_slip(const se3di_convex_contact *contact, const double *v,
+                                     double out[3])
+{
+    se3di_convex_velocity(contact, v, out);
+    se3di_add(out, contact->drift, out);
+    se3di_add(out, contact->shift, out);
+}
 /* The impulse at a velocity of the point, and minus its derivative [3 x 3]; `slope` may be NULL. */
 void se3di_convex_impulse(const se3di_convex_contact *contact, double h, const double v[3],
                           double impulse[3], double *slope);

@@ -23,27 +23,6 @@
 #define WANDER_MOST 0.3  /* of its arm: what a point may move in a step on its way */
 #define PASSED_ON   0.1  /* of what loads do across the normal: others may make it so along it */
 
-void se3di_convex_velocity(const se3di_convex_contact *contact, const double *v, double out[3])
-{
-    out[0] = out[1] = out[2] = 0.0;
-    for (int k = 0; k < 2; ++k) {
-        if (contact->free[k] >= 0) {
-            const double *body = v + 6 * (size_t)contact->free[k];
-            double turning[3];
-            se3di_mul(contact->lever[k], body + 3, turning);
-            se3di_add(turning, body, turning);
-            se3di_add_scaled(k ? 1.0 : -1.0, turning, out);
-        }
-    }
-}
-
-void se3di_convex_slip(const se3di_convex_contact *contact, const double *v, double out[3])
-{
-    se3di_convex_velocity(contact, v, out);
-    se3di_add(out, contact->drift, out);
-    se3di_add(out, contact->shift, out);
-}
-
 double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, double *slope)
 {
     *slope = 0.0;
