@@ -86,56 +86,52 @@ double se3di_servo_wanted(const se3di_servo *servo)
     return servo->area > 0.0 ? servo->load * servo->area : servo->load;
 }
 
-/* Stiffnesses and dampings of what presses a wall, and their sums over all processes. */
-typedef struct total {
-    double K, C;
-    se3di_exact exact[2]; /* of a set that is spread */
-} total;
+/* Stiffness and damping of what presses a wall: its bonds and what may touch it. */
+enum { BONDS_K, BONDS_C, TOUCHES_K, TOUCHES_C, TOTALS };
 
-static void add(const se3di_particles *set, total *sum, double K, double C)
+typedef struct totals {
+    double sum[TOTALS];
+    se3di_exact exact[TOTALS]; /* of a set that is spread, over all processes */
+} totals;
+
+static void add(const se3di_particles *set, int what, double value, totals *out)
 {
-    sum->K += K;
-    sum->C += C;
+    out->sum[what] += value;
     if (se3di_share_is_spread(set)) {
-        se3di_exact_add(&sum->exact[0], K);
-        se3di_exact_add(&sum->exact[1], C);
+        se3di_exact_add(&out->exact[what], value);
     }
 }
 
-static void unite(const se3di_particles *set, total *sum)
+/* Once for all: each time all processes wait for each other. */
+static void unite(const se3di_particles *set, totals *out)
 {
     if (se3di_share_is_spread(set)) {
-        se3di_share_add_exactly(set, 2, sum->exact);
-        sum->K = se3di_exact_get(&sum->exact[0]);
-        sum->C = se3di_exact_get(&sum->exact[1]);
+        se3di_share_add_exactly(set, TOTALS, out->exact);
+        for (int k = 0; k < TOTALS; ++k) {
+            out->sum[k] = se3di_exact_get(&out->exact[k]);
+        }
     }
 }
 
-/* Of what is bonded to the wall, in whatever direction. */
-static double bond_resistance(const se3di_particles *set, const se3di_servo *servo, double h)
+/* What is bonded to the wall, in whatever direction. */
+static void add_bonds(const se3di_particles *set, const se3di_servo *servo, totals *out)
 {
-    total sum = {0.0, 0.0, {{{0.0}}}};
     for (size_t k = 0; k < set->bond_count; ++k) {
         const se3di_bond *bond = &set->bonds[k];
         const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
         const uint32_t sphere = set->bond_ends[bond->end[0]].id;
         if (end->id == SE3DI_NO_INDEX && is_same(end->shape, servo->shape) &&
             !se3di_share_is_ghost(set, set->index_of[sphere])) {
-            add(set, &sum, fmax(bond->stiffness[0], bond->stiffness[1]),
-                fmax(bond->damping[0], bond->damping[1]));
+            add(set, BONDS_K, fmax(bond->stiffness[0], bond->stiffness[1]), out);
+            add(set, BONDS_C, fmax(bond->damping[0], bond->damping[1]), out);
         }
     }
-    unite(set, &sum);
-    return STEPS * h * sum.K + DAMPS * sum.C;
 }
 
-/* How much the force grows with the speed in a step, if all particles that are near carry it. */
-static double resistance(const se3di_particles *set, const se3di_servo *servo, double force,
-                         double h)
+/* All particles that are near. */
+static void add_touches(const se3di_particles *set, const se3di_servo *servo, totals *out)
 {
     const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
-    const double bonds = bond_resistance(set, servo, h);
-    total sum = {0.0, 0.0, {{{0.0}}}};
     for (size_t k = 0; set->list_valid && k < set->near_count; ++k) {
         const uint32_t i = set->near_walls[k].i & ~SE3DI_LIST_ACTIVE;
         const se3di_wall *wall = &set->walls[set->near_walls[k].wall];
@@ -144,15 +140,27 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
             const se3di_pair *pair =
                 &set->pairs[set->spins[i].material * set->stuff_count + wall->material];
             const double root = hertz ? sqrt(g->radius) : 1.0;
-            add(set, &sum, pair->kn * root, pair->dn * sqrt(root / g->inverse_mass));
+            add(set, TOUCHES_K, pair->kn * root, out);
+            add(set, TOUCHES_C, pair->dn * sqrt(root / g->inverse_mass), out);
         }
     }
-    unite(set, &sum);
-    if (hertz && sum.K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
-        const double root = se3di_pow(force / sum.K, 1.0 / 3.0);
-        return bonds + STEPS * h * 1.5 * sum.K * root + DAMPS * sum.C * sqrt(root);
+}
+
+/* How much the force grows with the speed in a step, if all these carry it. */
+static double resistance(const se3di_particles *set, const se3di_servo *servo, double force,
+                         double h)
+{
+    totals of = {{0.0}, {{{0.0}}}};
+    add_bonds(set, servo, &of);
+    add_touches(set, servo, &of);
+    unite(set, &of);
+    const double K = of.sum[TOUCHES_K], C = of.sum[TOUCHES_C];
+    const double bonds = STEPS * h * of.sum[BONDS_K] + DAMPS * of.sum[BONDS_C];
+    if (set->law == SE3DI_LAW_HERTZ_MINDLIN && K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
+        const double root = se3di_pow(force / K, 1.0 / 3.0);
+        return bonds + STEPS * h * 1.5 * K * root + DAMPS * C * sqrt(root);
     }
-    return bonds + STEPS * h * sum.K + DAMPS * sum.C;
+    return bonds + STEPS * h * K + DAMPS * C;
 }
 
 static double choose_speed(const se3di_particles *set, const se3di_servo *servo, double h)
