@@ -7,6 +7,8 @@
 
 #include "particles/set.h"
 
+#define SE3DI_CLUMP_LANES 8 /* clumps that are moved side by side */
+
 /* clump_mass.c: what a template's balls (r in the frame of the definition) weigh together: fills
  * volume, centre, mass, inertia and axes for density 1, and turns the balls into the principal
  * axes. With `given`, mass, centre and J {xx, yy, zz, xy, yz, xz} are those that the template has.

@@ -42,7 +42,7 @@ void se3di_clump_loads(const se3di_particles *set, const se3di_clump *clump, dou
 
 /* Clumps that turn side by side: each operation waits for the one before, and those of one clump
  * leave the processor idle. */
-#define LANES 8
+#define LANES SE3DI_CLUMP_LANES
 
 typedef struct top {
     double q[4][LANES], L[3][LANES];

@@ -187,11 +187,19 @@ typedef struct pass_work {
     haste most[SE3DI_PARTS];
 } pass_work;
 
+/* Of a part: in whole groups, which are moved side by side. */
+static size_t first_clump(size_t clumps, size_t part)
+{
+    const size_t groups = (clumps + SE3DI_CLUMP_LANES - 1) / SE3DI_CLUMP_LANES;
+    const size_t first = SE3DI_CLUMP_LANES * se3di_part_begin(groups, part);
+    return first < clumps ? first : clumps;
+}
+
 static void pass_part(se3di_particles *set, size_t c, void *ctx)
 {
     pass_work *w = ctx;
     const size_t count = set->count, clumps = se3di_share_clumps(set);
-    const size_t first = se3di_part_begin(clumps, c), end = se3di_part_begin(clumps, c + 1);
+    const size_t first = first_clump(clumps, c), end = first_clump(clumps, c + 1);
     w->most[c] =
         move_range(set, se3di_part_begin(count, c), se3di_part_begin(count, c + 1), w->motion);
     if (set->flow_count > 0) {

@@ -585,6 +585,61 @@ static void fills_turn_at_random(void)
     bed_close(&b);
 }
 
+/* Clumps of one, two and three spheres in turn that fall on a floor, far apart: those in [first,
+ * end). Returns their states, one after the other. */
+enum { FALLING = 21, FALLING_STATE = 13 };
+
+static void run_falling(int first, int end, double *states)
+{
+    static const double r[9] = {0.0, 0.0, 0.0, 0.004, 0.0, 0.0, 0.0, 0.003, 0.002},
+                        radii[3] = {0.004, 0.003, 0.0025}, up[3] = {0.0, 0.0, 1.0};
+    se3d_particles_def set = se3d_particles_def_default();
+    se3d_material_def stuff = se3d_material_def_default();
+    bed b;
+    set.step = 2e-5;
+    stuff.density = 2500.0;
+    stuff.stiffness = 2e4;
+    stuff.friction = 0.4;
+    stuff.restitution = 0.6;
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, &set, &stuff);
+    (void)bed_add_plane(&b, none, up);
+    for (uint32_t k = 1; k <= 3; ++k) {
+        se3d_clump_def def = se3d_clump_def_default();
+        def.count = k;
+        def.r = r;
+        def.radius = radii;
+        CHECK(se3d_particles_add_clump_template(b.particles, &def, NULL) == SE3D_OK);
+    }
+    for (int k = first; k < end; ++k) {
+        const double x[3] = {0.05 * k, 0.0, 0.012}, v[3] = {0.1, 0.03 * k, -0.2};
+        const double e[4] = {0.8, 0.0, 0.6, 0.0}, w[3] = {3.0 * k, 20.0, -5.0};
+        CHECK(se3d_particles_add_clumps(b.particles, (uint32_t)(k % 3), b.material, 1, x, e, v,
+                                        w) == SE3D_OK);
+    }
+    CHECK(se3d_particles_step(b.particles, 3000) == SE3D_OK);
+    const size_t count = (size_t)(end - first);
+    double *to = states;
+    CHECK(se3d_particles_get_clumps(b.particles, count, to, to + 3 * count, to + 7 * count,
+                                    to + 10 * count) == SE3D_OK);
+    bed_close(&b);
+}
+
+/* Some are moved side by side, whatever they are made like. */
+static void clumps_beside_others_move_as_alone(void)
+{
+    double all[FALLING_STATE * FALLING], alone[FALLING_STATE];
+    static const int begin[4] = {0, 3, 7, 10}, size[4] = {3, 4, 3, 3}; /* of r, e, v, w */
+    run_falling(0, FALLING, all);
+    for (int k = 0; k < FALLING; ++k) {
+        run_falling(k, k + 1, alone);
+        CHECK(alone[2] < 0.012);
+        for (int part = 0; part < 4; ++part) {
+            CHECK(memcmp(all + begin[part] * FALLING + size[part] * k, alone + begin[part],
+                         (size_t)size[part] * sizeof *all) == 0);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(overlapping_spheres_count_once);
@@ -599,5 +654,6 @@ int main(void)
     RUN(a_heap_comes_to_rest);
     RUN(clumps_leave_whole);
     RUN(fills_turn_at_random);
+    RUN(clumps_beside_others_move_as_alone);
     return check_finish();
 }
