@@ -91,7 +91,7 @@ static int has_object(const functions *f, const layout_function *call)
 {
     const layout_item *first = &call->parameters[0];
     int has = call->parameter_count == 0 || first->kind != LAYOUT_OWNER || first->pointer;
-    for (size_t k = 0; k < f->object_count; ++k) {
+    for (size_t k = 0; k < f->object_count && !has; ++k) {
         has |= f->objects[k].lives && f->objects[k].kind == first->number;
     }
     return has;
