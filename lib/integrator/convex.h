@@ -28,13 +28,12 @@ enum {
 /* A point of contact in the step under way. What the passes over all contacts of an island need
  * comes first, and what they need together stands together. */
 typedef struct se3di_convex_contact {
-    int32_t free[2];         /* its bodies, -1: fixed; while a step is solved their places */
-    int32_t coupling;        /* of the two, -1: one is fixed */
-    int32_t way;             /* SE3DI_CONVEX_ */
-    double lever[2][9];      /* a turning of the body, in its frame, to the velocity of the
-                                        point */
-    double v[3], change[3];  /* velocity of the point: now, of the search */
-    double normal[3], xi[3]; /* from i to j; stretch of the spring that sticks */
+    int32_t free[2];    /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling;   /* of the two, -1: one is fixed */
+    int32_t way;        /* SE3DI_CONVEX_ */
+    double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
+    double v[3], change[3];           /* velocity of the point: now, of the search */
+    double normal[3], xi[3];          /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double damping, rebound;
     double tangential, drag, bound; /* k_t; -dy/dv_t; the cap in use */

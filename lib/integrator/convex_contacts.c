@@ -350,22 +350,24 @@ static void set_anchors(const se3di_model *model, se3di_body_contact *r, const d
     }
 }
 
-/* What a surface that turns on its body has at the point, more than where the point of the step's
- * beginning was carried to: a ball on a turntable rolls from place to place of it. */
-static void surface_wander(const se3di_convex_contact *c, const se3di_shape *s, int side,
-                           const se3di_frame *frame, const double arm[3], double h, double more[3])
+/* What a surface that turns on its body has at the point, arm [2] before and after the step, more
+ * than where the point before was carried to: a ball on a turntable rolls from place to place of it.
+ * Along the normal n it does not move: a roller turns under what lies on it. */
+static void surface_wander(const se3di_shape *s, const se3di_frame *frame,
+                           const double *const arm[2], const double n[3], double h, double more[3])
 {
     double w[3], turned[3], local[3], carried[3], u[3], spin[3];
     se3di_mul(frame->A, frame->w, w);
-    se3di_cross(w, c->arm[side], turned);
+    se3di_cross(w, arm[0], turned);
     se3di_scale(h, turned, turned);
-    se3di_add(turned, c->arm[side], turned);
+    se3di_add(turned, arm[0], turned);
     se3di_mul_transposed(frame->A, turned, local);
     se3di_surface_carry(s, h, local, carried);
     se3di_mul(frame->A, carried, turned);
     se3di_surface_velocity(s, frame->A, turned, u, spin);
-    se3di_surface_velocity(s, frame->A, arm, more, spin);
+    se3di_surface_velocity(s, frame->A, arm[1], more, spin);
     se3di_sub(more, u, more);
+    se3di_add_scaled(-se3di_dot(more, n), n, more);
 }
 
 /* How the velocity of the two surfaces at the point changes as the point wanders on them, and turns
@@ -383,7 +385,8 @@ static void set_wander(const se3di_convex_contact *c, const se3di_model *model, 
             se3di_mul(frame->A, frame->w, w);
             se3di_cross(w, moved, rate);
             if (se3di_surface_moves(shape)) {
-                surface_wander(c, shape, k, frame, arm, h, more);
+                const double *const arms[2] = {c->arm[k], arm};
+                surface_wander(shape, frame, arms, r->normal, h, more);
                 se3di_add(rate, more, rate);
             }
             se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->roll);

@@ -113,6 +113,44 @@ static void a_ball_on_a_turntable_rolls_in_circles(void)
     }
 }
 
+/* A box on two rollers that turn against each other: its points of contact stay, what the rollers
+ * have there turns on. Without friction it lies as on rollers at rest. */
+static void a_box_lies_on_rollers_that_turn(void)
+{
+    static const double steps[] = {1e-3, 4e-3}, rates[] = {0.0, 5.0, 50.0};
+    static const double size[3] = {0.2, 0.2, 0.2};
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; ++k) {
+        double z[3][3], v[3];
+        for (size_t r = 0; r < 3; ++r) {
+            scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.0, 0.1, 1e6);
+            const double at[3] = {0.0, 0.0, 0.1};
+            se3d_work work;
+            for (int side = -1; side <= 1; side += 2) {
+                se3d_shape_def def = scene_shape(&s, scene_ground(&s));
+                se3d_shape roller;
+                def.radius = 0.05;
+                def.length = 0.4;
+                def.position[0] = 0.06 * side;
+                def.position[2] = -0.05;
+                def.orientation[0] = sqrt(0.5); /* its axis is y */
+                def.orientation[1] = -sqrt(0.5);
+                def.surface_spin[1] = -side * rates[r];
+                CHECK(se3d_shape_create_cylinder(s.system, &def, &roller) == SE3D_OK);
+            }
+            se3d_body box = scene_box(&s, size, 3.2, at, scene_zero);
+            scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, steps[k], 0.0);
+            CHECK(scene_run(&s, 0.5));
+            CHECK(se3d_body_get_position(s.system, box, z[r]) == SE3D_OK);
+            CHECK(se3d_body_get_velocity(s.system, box, v) == SE3D_OK);
+            CHECK(se3d_system_get_work(s.system, &work) == SE3D_OK);
+            CHECK_NEAR(z[r][2], z[0][2], 1e-9);
+            CHECK(fabs(v[2]) < 1e-6);
+            CHECK(work.dissipated > 0.0 && fabs(work.actuators) < 1e-9);
+            scene_end(&s);
+        }
+    }
+}
+
 /* Once round, by steps of 1 to 4 ms of convex: it is as fast as at the start and where it was, and
  * nothing is dissipated, as the drive gives and takes the same. The spring that sticks lets it lag.
  */
@@ -315,6 +353,7 @@ int main(void)
     RUN(a_box_on_a_turntable_stays_on_its_circle);
     RUN(a_ball_on_a_turntable_rolls_in_circles);
     RUN(a_ball_on_a_turntable_comes_back);
+    RUN(a_box_lies_on_rollers_that_turn);
     RUN(a_box_stays_where_a_surface_that_moves_and_turns_is_at_rest);
     RUN(a_belt_of_a_file_goes_on_from_a_snapshot);
     return check_finish();
