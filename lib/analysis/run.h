@@ -51,8 +51,8 @@ typedef struct se3di_run {
     const se3di_integrator *told_held;   /* that the motion is stiff, */
     const se3di_integrator *told_crowd;  /* that many bodies touch, */
     const se3di_integrator *told_shaken; /* and that it follows a vibration */
-    uint64_t shaken_steps; /* since vibrations were last looked for, */
-    double shaken_time;    /* and how long these took [s] */
+    uint64_t shaken_steps;               /* since vibrations were last looked for, */
+    double shaken_time;                  /* and how long these took [s] */
 } se3di_run;
 
 /* Set up for an analysis; allocates nothing yet. `system`: for the callbacks of events. */

@@ -351,8 +351,8 @@ static void set_anchors(const se3di_model *model, se3di_body_contact *r, const d
 }
 
 /* What a surface that turns on its body has at the point, arm [2] before and after the step, more
- * than where the point before was carried to: a ball on a turntable rolls from place to place of it.
- * Along the normal n it does not move: a roller turns under what lies on it. */
+ * than where the point before was carried to: a ball on a turntable rolls from place to place of
+ * it. Along the normal n it does not move: a roller turns under what lies on it. */
 static void surface_wander(const se3di_shape *s, const se3di_frame *frame,
                            const double *const arm[2], const double n[3], double h, double more[3])
 {
