@@ -431,6 +431,7 @@ static se3d_status run_method(se3di_run *run, double t_end)
 {
     se3di_integration *integration = &run->integration;
     integration->settings.step_most = longest_step(integration);
+    integration->end = fmax(t_end, run->horizon);
     double step = integration->settings.step > 0.0
                       ? integration->settings.step
                       : fmin(STEP_DEFAULT, integration->settings.step_most);
@@ -559,6 +560,7 @@ static se3d_status run_step(se3di_run *run, double h)
     se3di_integration *integration = &run->integration;
     const se3di_model *model = run->model;
     const double t_end = model->time + h;
+    integration->end = t_end;
     SE3DI_TRY(begin_dynamics(run, h, -HUGE_VAL));
     while (model->time < t_end) {
         double end = t_end;

@@ -454,13 +454,16 @@ static se3d_status publish(se3di_explicit *m, int at_end)
     return show(m, at_end ? m->y1 : m->y0, t, 0);
 }
 
-/* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step. */
+/* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step,
+ * which does not go beyond the run: what acts there need not be defined. */
 static se3d_status choose_first(se3di_explicit *m, double *first)
 {
     double d1 = se3di_explicit_measure(m, m->f1);
     double limit = m->step.integration->settings.step;
+    const double rest = m->step.integration->end - m->past->at.time;
     double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
     h0 = limit > 0.0 ? fmin(h0, limit) : h0;
+    h0 = rest > 0.0 ? fmin(h0, rest) : h0;
     se3di_error ignored = {0};
     se3di_error *error = m->equations->error;
     m->equations->error = &ignored;

@@ -116,6 +116,7 @@ struct se3di_integration {
     double *work;
     double error;        /* of the last step, relative to the tolerance, if it is controlled */
     double fraction;     /* of a step that was refused, to where an impact begins; 0: none */
+    double end;          /* of the call or, if it is known, of those that go on [s] */
     se3di_newton newton; /* of implicit methods */
     struct se3di_convex *convex; /* of that method; NULL: none yet */
     se3di_saved before_trials;   /* of steps whose length is chosen */
