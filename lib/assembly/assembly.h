@@ -57,7 +57,7 @@ typedef struct se3di_assembly {
     double *wrench;      /* [dense bodies * 6] */
     double power[2];     /* of gravity and elements with it: dissipated, fed in [W] */
     const double *push;  /* the same, from outside the model's elements (particles); NULL: none */
-    double time;         /* of the last functions of time */
+    double time;         /* of the last evaluation, and of its functions of time */
     uint32_t user_count; /* constraints with a callback */
     uint32_t reserved;
     int32_t levels; /* H weighs all bodies alike: for motions that the constraints determine */

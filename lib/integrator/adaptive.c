@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "integrator/adaptive.h"
 
+#include "assembly/user.h"
 #include "contact/bodies/pace.h"
 #include "integrator/kink_step.h"
 #include "integrator/pulse_step.h"
@@ -82,7 +83,7 @@ static se3d_status try_steps(se3di_adaptive *step, double next)
     }
 }
 
-se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
+static se3d_status advance(se3di_adaptive *step, double t_end)
 {
     const se3di_adaptive_history before = *step->at;
     const double rest = t_end - before.time;
@@ -107,4 +108,40 @@ se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
         step->at->next = fmax(paced, step->at->next);
     }
     return SE3D_OK;
+}
+
+static int has_failed_beyond(const se3di_equations *equations, se3d_status status, double t_end)
+{
+    const se3di_user_failure *failure = &equations->assembly.model->user_failure;
+    if (status == SE3D_ERR_INTERRUPTED || status == SE3D_ERR_NO_MEMORY) {
+        return 0;
+    }
+    return failure->status == SE3D_ERR_CALLBACK
+               ? status < 0 && failure->time > t_end
+               : status == SE3D_ERR_CALLBACK && equations->assembly.time > t_end;
+}
+
+int se3di_adaptive_may_cut(se3di_equations *equations, se3d_status status, double t_end,
+                           const se3di_error *told)
+{
+    if (!has_failed_beyond(equations, status, t_end)) {
+        return 0;
+    }
+    *equations->error = *told;
+    se3di_user_begin(equations->assembly.model);
+    ++equations->counters.rejected;
+    return 1;
+}
+
+se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end)
+{
+    se3di_equations *equations = step->integration->equations;
+    const se3di_error told = *equations->error;
+    const int may_pass = !step->ends && t_end > step->at->time;
+    const se3d_status status = advance(step, t_end);
+    if (!may_pass || !se3di_adaptive_may_cut(equations, status, t_end, &told)) {
+        return status;
+    }
+    step->ends = 1;
+    return advance(step, t_end);
 }

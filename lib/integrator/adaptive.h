@@ -41,8 +41,14 @@ struct se3di_adaptive {
     int32_t ends;  /* it may not go past the end of the run */
 };
 
-/* One accepted step; towards t_end, not past it if step->ends; none at a kink
- * (integrator/kink_step.h). */
+/* Whether a step has failed because a callback reports a failure at a time beyond t_end, where it
+ * need not be defined: one that ends at t_end does without. The failure is forgotten then, and the
+ * message is `told` again, the one of before the step. */
+int se3di_adaptive_may_cut(se3di_equations *equations, se3d_status status, double t_end,
+                           const se3di_error *told);
+
+/* One accepted step; towards t_end, not past it if step->ends, or if a callback fails there; none
+ * at a kink (integrator/kink_step.h). */
 se3d_status se3di_adaptive_advance(se3di_adaptive *step, double t_end);
 
 /* Whether a shorter step may do what one that failed did not; a callback that returns a failure

@@ -432,6 +432,7 @@ static se3d_status evaluate_tree(se3di_equations *equations, double t, double *d
 {
     se3di_tree *tree = equations->tree;
     ++equations->counters.evaluations;
+    equations->assembly.time = t;
     if (falls(equations)) {
         return evaluate_fall(equations, t, derivative);
     }

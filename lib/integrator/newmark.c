@@ -123,7 +123,14 @@ static se3d_status place_start(se3di_integration *integration, double h)
         copy(past.a, past.vdot, assembly->unknown_count);
         return SE3D_OK;
     }
-    SE3DI_TRY(estimate_jerk(integration, h, past.vdot, past.a));
+    const se3di_error told = *integration->equations->error;
+    const double rest = integration->end - integration->equations->assembly.model->time;
+    se3d_status status = estimate_jerk(integration, h, past.vdot, past.a);
+    if (rest > 0.0 && rest < h &&
+        se3di_adaptive_may_cut(integration->equations, status, integration->end, &told)) {
+        status = estimate_jerk(integration, rest, past.vdot, past.a);
+    }
+    SE3DI_TRY(status);
     for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
         past.a[k] = past.vdot[k] + shift * h * past.a[k];
     }
@@ -646,6 +653,21 @@ static se3d_status advance_by_error(se3di_integration *integration, double t_end
     return se3di_adaptive_advance(&s.step, t_end);
 }
 
+/* Not past t_end if `ends`, or if a callback fails there. */
+static se3d_status advance_to_end(se3di_integration *integration, double t_end, int ends)
+{
+    se3di_equations *equations = integration->equations;
+    const double rest = t_end - header_of(integration)->end;
+    const se3di_error told = *equations->error;
+    const se3d_status status = advance_equally(integration, ends ? rest : HUGE_VAL);
+    if (ends || !se3di_adaptive_may_cut(equations, status, t_end, &told)) {
+        return status;
+    }
+    const se3di_newmark_history past = se3di_newmark_get_history(&equations->assembly);
+    load(&equations->assembly, &past);
+    return advance_equally(integration, rest);
+}
+
 se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
 {
     se3di_assembly *assembly = &integration->equations->assembly;
@@ -663,8 +685,7 @@ se3d_status se3di_newmark_advance(se3di_integration *integration, double t_end)
     }
     load(assembly, &past);
     const int ends = se3di_adaptive_ends(integration, &header->at);
-    const double longest = ends ? t_end - header->end : HUGE_VAL;
-    return integration->settings.step > 0.0 ? advance_equally(integration, longest)
+    return integration->settings.step > 0.0 ? advance_to_end(integration, t_end, ends)
                                             : advance_by_error(integration, t_end, ends);
 }
 
