@@ -105,12 +105,15 @@ class _Raised(threading.local):
 
     def __init__(self):
         super().__init__()
-        self.list = []
+        self.list = []   # (exception, whether a call that goes well did without what failed)
+        self.depth = 0   # of callbacks under way
 
-    def take(self):
-        """Return the first one and forget all, None if there is none."""
-        first = self.list[0] if self.list else None
-        self.list.clear()
+    def take(self, failed=True):
+        """Return the first one that is to be raised after a call, and forget all; None if there is
+        none. One that goes well within a callback forgets nothing: the outer call may fail."""
+        first = next((raised for raised, spared in self.list if failed or not spared), None)
+        if failed or first or self.depth == 0:
+            self.list.clear()
         return first
 
 
@@ -120,18 +123,21 @@ _raised = _Raised()
 def _guard(call):
     """Keep the exceptions of a callback; the library is told by a status."""
     def guarded(*arguments):
+        _raised.depth += 1
         try:
             return call(*arguments)
         except BaseException as exception:  # pylint: disable=broad-exception-caught
-            _raised.list.append(exception)
+            _raised.list.append((exception, isinstance(exception, Exception)))
             return lib.SE3D_ERR_CALLBACK
+        finally:
+            _raised.depth -= 1
     guarded.__name__ = call.__name__
     return guarded
 
 
 def check(status, system=ffi.NULL):
     """Raise Error if a status is a failure, or what a callback raised; return the status."""
-    exception = _raised.take()
+    exception = _raised.take(status < 0)
     if exception:
         raise exception
     if status < 0:
@@ -244,7 +250,7 @@ def se3d_python_log(ctx, level, _kind, message):
     try:
         ffi.from_handle(ctx)(("info", "warning", "error")[level], text(message))
     except BaseException as exception:  # pylint: disable=broad-exception-caught
-        _raised.list.append(exception)
+        _raised.list.append((exception, False))
 
 
 def _asked(call):
@@ -252,7 +258,7 @@ def _asked(call):
     try:
         return 1 if call() else 0
     except BaseException as exception:  # pylint: disable=broad-exception-caught
-        _raised.list.append(exception)
+        _raised.list.append((exception, False))
         return 1
 
 

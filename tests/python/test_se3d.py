@@ -313,6 +313,26 @@ class Wrong(unittest.TestCase):
             system.force_callback(lambda *_: [1, 2], system.ground, bar)
             self.assertRaises(ValueError, solver.run, 0.2)
 
+    def test_exceptions_beyond_the_end_of_a_run_are_its_own_affair(self):
+        def known(time, _i, _j, end=0.1, error=KeyError):
+            if time > end:
+                raised.append(time)
+                raise error("beyond")
+            return [0.0] * 12
+
+        raised = []
+        with se3d.System() as system:
+            bar, _ = pendulum(system)
+            element = system.force_callback(known, system.ground, bar)
+            solver = se3d.Solver(system, method="dop853")
+            solver.run(0.1)
+            self.assertTrue(raised)
+            self.assertEqual(system.time, 0.1)
+            self.assertRaises(KeyError, solver.run, 0.2)
+            element.destroy()
+            system.force_callback(lambda *a: known(*a, 0.3, KeyboardInterrupt), system.ground, bar)
+            self.assertRaises(KeyboardInterrupt, solver.run, 0.3)
+
     def test_nan_of_a_callback_ends_the_run(self):
         with se3d.System() as system:
             bar, _ = pendulum(system)
