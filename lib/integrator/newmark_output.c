@@ -5,12 +5,15 @@
 
 #include "assembly/loads.h"
 #include "force/friction.h"
+#include "math/larger.h"
 #include "math/quaternion.h"
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 
 #include <math.h>
 #include <string.h>
+
+#define BALANCE 48.0 /* h^2/48 (a off by h^2 a''/8): h^4 a''/384, as cubics are off by */
 
 static void copy(double *to, const double *from, size_t count)
 {
@@ -113,6 +116,79 @@ static int are_plausible(const se3di_equations *equations, const double *guess,
     return off <= change + 1e-6 * size;
 }
 
+/* What is out of balance of M vdot + Phi_q^T lambda = Q at the model's state into equations->b, and
+ * how far positions are off their constraints into ->phi. */
+static se3d_status eval_balance(se3di_equations *equations, double t, const double *vdot,
+                                double *size)
+{
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_assembly_follow_mass(assembly);
+    se3di_assembly_eval_jacobian(assembly);
+    SE3DI_TRY(se3di_assembly_eval_forces(assembly, t, equations->b, equations->error));
+    se3di_assembly_add_transposed(assembly, -1.0, assembly->model->lambda, equations->b);
+    se3di_assembly_subtract_mass(assembly, vdot, equations->b);
+    se3di_assembly_eval_phi(assembly, equations->phi);
+    *size = 0.0;
+    for (uint32_t k = 0; k < assembly->unknown_count; ++k) {
+        *size = se3di_larger(*size, fabs(equations->b[k]));
+    }
+    return SE3D_OK;
+}
+
+/* The displacement z by which the forces balance the accelerations vdot, over `weight`, into
+ * equations->x, and multipliers into ->l: (M/weight + K) z + Phi_q^T l = b, Phi_q z = -Phi. */
+static se3d_status find_balance(se3di_integration *integration, double t, const double *vdot,
+                                double weight)
+{
+    se3di_equations *equations = integration->equations;
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_newton_weights weights = {.position = weight};
+    double *none = integration->work + assembly->unknown_count;
+    memset(none, 0, assembly->unknown_count * sizeof *none);
+    SE3DI_TRY(se3di_newton_factor(&integration->newton, t, vdot, assembly->model->lambda, none,
+                                  &weights));
+    for (uint32_t k = 0; k < assembly->row_count; ++k) {
+        equations->c[k] = -equations->phi[k] / weight;
+    }
+    return se3di_newton_solve_displacement(&integration->newton);
+}
+
+/* Velocities that ring bend the cubics of positions, by nothing that is seen in the motion, but
+ * stiff forces make much of it: the positions of the model's state are moved to where forces
+ * balance the accelerations vdot, along the stiff directions; along others by no more than what
+ * cubics are off by. If that makes nothing better, the state is left as it was. */
+static se3d_status balance(se3di_integration *integration, double t, const double *vdot)
+{
+    se3di_equations *equations = integration->equations;
+    se3di_assembly *assembly = &equations->assembly;
+    se3di_model *model = assembly->model;
+    const se3di_newmark_header *header = se3di_newmark_get_history(assembly).header;
+    const double last = header->end - header->at.begin, weight = last * last / BALANCE;
+    double *lambda = integration->work + 7 * (size_t)assembly->unknown_count;
+    double before, after;
+    se3di_equations_save(equations);
+    copy(lambda, model->lambda, assembly->row_count);
+    se3d_status status = eval_balance(equations, t, vdot, &before);
+    status = status < 0 ? status : find_balance(integration, t, vdot, weight);
+    for (size_t k = 0; status >= 0 && k < assembly->body_count; ++k) {
+        double dq[6];
+        for (size_t c = 0; c < 6; ++c) {
+            dq[c] = weight * equations->x[6 * k + c];
+        }
+        assembly->formulation->move(&model->frames[assembly->free_body[k]], dq);
+    }
+    for (uint32_t k = 0; status >= 0 && k < assembly->row_count; ++k) {
+        model->lambda[k] += equations->l[k];
+    }
+    status = status < 0 ? status : se3di_state_project(equations, t, &header->scale, 1e-15, 0);
+    status = status < 0 ? status : eval_balance(equations, t, vdot, &after);
+    if (status < 0 || !(after < before)) {
+        se3di_equations_restore(equations);
+        copy(model->lambda, lambda, assembly->row_count);
+    }
+    return status;
+}
+
 /* Accelerations and multipliers of the model's state at t, a part s on the way from the beginning
  * of the last step to its end. @return OK, or what the user's code or the memory has failed with */
 static se3d_status set_accelerations(se3di_integration *integration, double t, double s)
@@ -130,14 +206,9 @@ static se3d_status set_accelerations(se3di_integration *integration, double t, d
     }
     equations->error = &ignored;
     const int solves = !remembers(model);
-    const se3d_status status = solves ? se3di_acceleration_solve(equations, t) : SE3D_OK;
+    se3d_status status = solves ? se3di_acceleration_solve(equations, t) : SE3D_OK;
     const int is_exact =
         solves && status >= 0 && (s >= 1.0 || are_plausible(equations, guess, &past));
-    equations->error = error;
-    if (status == SE3D_ERR_CALLBACK || status == SE3D_ERR_NO_MEMORY) {
-        return ignored.status == status ? se3di_error_set(error, status, "%s", ignored.message)
-                                        : status;
-    }
     if (!is_exact) {
         for (uint32_t k = 0; k < assembly->row_count; ++k) {
             model->lambda[k] =
@@ -148,6 +219,14 @@ static se3d_status set_accelerations(se3di_integration *integration, double t, d
         if (model->shows_before) {
             se3di_frictions_take_loads(model, model->lambda);
         }
+        if (solves && status >= 0 && s > 0.0) {
+            status = balance(integration, t, guess);
+        }
+    }
+    equations->error = error;
+    if (status == SE3D_ERR_CALLBACK || status == SE3D_ERR_NO_MEMORY) {
+        return ignored.status == status ? se3di_error_set(error, status, "%s", ignored.message)
+                                        : status;
     }
     return SE3D_OK;
 }
@@ -164,8 +243,10 @@ se3d_status se3di_newmark_publish(se3di_integration *integration, double t)
     se3di_newmark_interpolate(integration, is_end ? end : t, y);
     se3di_forces_show(assembly->model, !is_end);
     se3di_state_set(assembly, y);
-    const double rough = se3di_state_rough(assembly->model, integration->shows_motion,
-                                           integration->settings.tolerance);
+    const int is_bent = !is_end && se3di_loads_are_stiff(assembly->model); /* `balance` */
+    const double rough = is_bent ? 0.0
+                                 : se3di_state_rough(assembly->model, integration->shows_motion,
+                                                     integration->settings.tolerance);
     const double *work = y + se3di_state_count(assembly) - SE3DI_STATE_WORK;
     if (!is_end && t > header->at.begin) { /* not the end of the step before */
         SE3DI_TRY(se3di_state_project(equations, t, &header->scale, fmax(1e-15, rough), 0));
