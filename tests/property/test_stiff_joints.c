@@ -363,8 +363,77 @@ static void accelerations_are_those_of_the_motion_however_fast_a_force_is(void)
     }
 }
 
+/* A bar held by an element that its weight has just been laid on. */
+#define LAID                                                                                       \
+    "gravity: [0, 0, -9.81]\n"                                                                     \
+    "bodies: [{name: a, mass: 2, inertia: [0.02, 0.02, 0.02], position: [1, 0, 0]}]\n"
+#define LAID_PIN                                                                                   \
+    LAID "joints: [{name: q, type: revolute, body_i: ground, body_j: a, at: [0, 0, 0], "           \
+         "axis: [0, 1, 0]}]\n"
+#define SHOWN(channel)                                                                             \
+    "analysis: {type: dynamics, duration: 1}\n"                                                    \
+    "output: [{file: a.csv, every: 0.1, channels: [" channel "]}]\n"
+
+static const struct laid {
+    const char *name, *text;
+    double force;
+    size_t part;
+} laid[] = {
+    {"tsda",
+     LAID_PIN "forces: [{name: s, type: tsda, body_i: ground, body_j: a, at: [0, 0, 1], at_2: "
+              "[1, 0, 0], k: k, l0: sqrt(2)}]\n" SHOWN("s.force"),
+     27.746869895772, 0},
+    {"rsda", LAID_PIN "forces: [{name: s, type: rsda, joint: q, k: k}]\n" SHOWN("s.torque"), 19.62,
+     0},
+    {"bushing",
+     LAID "forces: [{name: s, type: bushing, body_i: ground, body_j: a, at: [0, 0, 0], K: [k, k, "
+          "k, k, k, k]}]\n" SHOWN("s.force"),
+     19.62, 2},
+};
+
+/* @return how far it is off the weight between steps, at most [N, N m] */
+static double weigh(const struct laid *l, double k, int32_t method, int32_t formulation,
+                    int32_t shown)
+{
+    char text[1500];
+    double off = 0.0;
+    (void)snprintf(text, sizeof text, "se3d: 1\nparameters: {k: %g}\n%s", k, l->text);
+    text_model m = text_model_open(text, method, formulation, 0.0);
+    CHECK(!se3d_solver_set_shown(m.solver, shown));
+    for (int row = 0; row < 9; ++row) {
+        CHECK(text_model_run(&m, 0.2 + 0.1 * row));
+        off = fmax(off, fabs(fabs(text_model_get(&m, 0, l->part)) - l->force));
+    }
+    text_model_close(&m);
+    return off;
+}
+
+/* The force of an element is its stiffness times what positions are off by: between steps, too, it
+ * is the weight, or, if it still swings about that, no more than twice. */
+static void forces_between_steps_of_the_newmark_family_are_those_of_the_motion(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT};
+    static const int32_t formulations[] = {SE3D_FORMULATION_ROMEGA, SE3D_FORMULATION_RP};
+    for (size_t k = 0; k < sizeof laid / sizeof *laid; ++k) {
+        for (int way = 0; way < 32; ++way) {
+            const int32_t method = methods[way % 2], formulation = formulations[way / 2 % 2];
+            const int32_t shown = way / 4 % 2 ? SE3D_SHOWN_MOTION : SE3D_SHOWN_ALL;
+            const double stiffness = pow(10.0, 9 + 2 * (way / 8));
+            const double most = stiffness < 1e13 ? 1.1 * laid[k].force : 1e-2 + 1e-15 * stiffness;
+            const double off = weigh(&laid[k], stiffness, method, formulation, shown);
+            CHECK(off <= most);
+            if (!(off <= most) || getenv("SE3D_SHOW")) {
+                fprintf(stderr, "%s of %g by %s, formulation %d, shown %d: off by %.2g\n",
+                        laid[k].name, stiffness, se3d_method_get_name(method), (int)formulation,
+                        (int)shown, off);
+            }
+        }
+    }
+}
+
 int main(void)
 {
+    RUN(forces_between_steps_of_the_newmark_family_are_those_of_the_motion);
     RUN(accelerations_are_those_of_the_motion_however_fast_a_force_is);
     RUN(bushings_with_dampers_are_as_good_as_joints);
     RUN(vibrations_that_make_steps_short_are_named);
