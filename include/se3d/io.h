@@ -352,8 +352,8 @@ typedef struct se3d_run_options {
     int32_t resume;    /* not 0: go on from run.checkpoint in `directory`, if it is there */
     int32_t estimate;  /* not 0: a copy of the system follows dynamics with a given equal step, in
                           steps twice as long, to estimate its error (se3d_run_analysis). That takes
-                          half as much time again; the log is told of errors above 1e-3. Not with
-                          convex, particles, `fmus`, nor with checkpoints */
+                          half as much time again; the log is told of errors above 1e-3. By convex
+                          until bodies touch. Not with particles, `fmus`, nor with checkpoints */
     se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
     const char *temporary; /* folder in which packed units (`fmus`) are unpacked, into a private one
                               that is removed with the end of their analysis; NULL: /tmp */

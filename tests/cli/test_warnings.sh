@@ -50,6 +50,10 @@ has "$dir/out" '"error_velocity": 0.0'
 # shellcheck disable=SC2086
 expect 'coarse steps, no estimate' 0 "$program" $coarse --no-estimate
 is "$(lines 'err by\|by comparison')" 0
+expect 'coarse steps of order 1' 0 "$program" run "$models/fourbar.yaml" -o "$dir/r" --method convex --step 4e-3
+has "$dir/err" 'fourbar.yaml: warning: t = 10 s: equal steps of 0.004 s err by about 0.02'
+expect 'steps amid contacts' 0 "$program" run "$models/conveyor.yaml" -o "$dir/r" --duration 0.1
+has "$dir/out" 'equal steps of 0.002 s, whose error is not known: convex is compared until bodies touch'
 expect 'fine steps' 0 "$program" run "$models/fourbar.yaml" -o "$dir/r" --duration 1
 is "$(lines 'err by')" 0
 is "$(lines 'by comparison with 0.002 s off by about')" 1

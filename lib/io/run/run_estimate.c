@@ -32,6 +32,7 @@ struct se3di_estimate {
     double extent;         /* of the bodies' centres at the start [m] */
     double ratio;          /* steps of the run to one of the copy, at the last comparison */
     double cpu;            /* [s] */
+    bool is_convex;        /* of order 1, until something touches */
     bool waits;            /* the copy passes the next row */
     bool is_lost;          /* the two have nothing in common any more */
     char problem[200];     /* why the copy could not follow */
@@ -61,14 +62,18 @@ static double measure_extent(const double *r, size_t count)
 static bool is_wanted(const se3di_runner *r, const se3di_analysis_entry *entry)
 {
     double step = 0.0, tolerance = 0.0;
-    const char *method = "";
     const se3d_model *model = r->model;
     return r->options->estimate && !r->watch && !(r->options->checkpoint > 0.0) &&
            !r->options->resume && r->solver && !r->guests && model->guest_count == 0 &&
            !model->particles && entry->solver.analysis == SE3D_ANALYSIS_DYNAMICS &&
            entry->solver.step > 0.0 && se3d_solver_get_step(r->solver, &step) >= 0 && step > 0.0 &&
-           se3d_solver_get_tolerance(r->solver, &tolerance) >= 0 && !(tolerance > 0.0) &&
-           se3d_solver_get_method(r->solver, &method) >= 0 && strcmp(method, "convex") != 0;
+           se3d_solver_get_tolerance(r->solver, &tolerance) >= 0 && !(tolerance > 0.0);
+}
+
+static double get_order(const se3di_estimate *e, const char *method, int32_t order)
+{
+    const bool is_fourth = order == 4 && strcmp(method, "rattle") == 0;
+    return e->is_convex ? 1.0 : is_fourth ? 4.0 : 2.0;
 }
 
 static bool reserve(se3di_runner *r, se3di_estimate *e)
@@ -159,7 +164,8 @@ se3d_status se3di_estimate_begin(se3di_runner *r, const se3di_analysis_entry *en
     e->solver = r->solver;
     e->system = r->model->system;
     e->step = entry->solver.step;
-    e->order = entry->solver.order == 4 && strcmp(method, "rattle") == 0 ? 4.0 : 2.0;
+    e->is_convex = strcmp(method, "convex") == 0;
+    e->order = get_order(e, method, entry->solver.order);
     const se3d_status status = reserve(r, e) ? copy_system(r, entry, e) : SE3D_ERR_NO_MEMORY;
     if (status == SE3D_ERR_NO_MEMORY) {
         leave(e);
@@ -289,12 +295,23 @@ static se3d_status follow(se3di_estimate *e, double time)
     return SE3D_OK;
 }
 
+/* By convex, what touches a step later has another velocity for a step: no matter of orders. */
+static bool touches(const se3di_estimate *e)
+{
+    return e->is_convex && se3d_system_count_contacts(e->system) > 0;
+}
+
 se3d_status se3di_estimate_meet(se3di_estimate *e, double time, bool ends)
 {
     if (!e || !e->copy || !(time > e->met)) {
         return SE3D_OK;
     }
     se3d_status status = SE3D_OK;
+    if (touches(e)) {
+        snprintf(e->problem, sizeof e->problem, "convex is compared until bodies touch");
+        leave(e);
+        return status;
+    }
     note_motion(e, e->system, e->r, e->v, e->w);
     e->waits = !e->waits; /* rows as close as the steps would halve those of the copy */
     if (!e->waits || ends) {
