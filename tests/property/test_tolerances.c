@@ -308,9 +308,10 @@ static uint64_t count_steps(const mechanism *m, int32_t method, int formulation,
 static void check_steps(const mechanism *m, int32_t method, int formulation)
 {
     const uint64_t loose = count_steps(m, method, formulation, 1e-5);
+    const uint64_t most = (method == SE3D_METHOD_RK4 ? 40 : 20) * loose + 100;
     for (int power = 8; power <= 12; power += 2) {
         const uint64_t tight = count_steps(m, method, formulation, pow(10.0, -power));
-        const int holds = tight <= 20 * loose + 100;
+        const int holds = tight <= most;
         CHECK(holds);
         if (!holds) {
             fprintf(stderr, "%s by %s, formulation %d: %llu steps at 1e-5, %llu at 1e-%d\n",
@@ -322,8 +323,8 @@ static void check_steps(const mechanism *m, int32_t method, int formulation)
 
 static void rounding_makes_no_steps_short(void)
 {
-    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45, SE3D_METHOD_RADAU,
-                                      SE3D_METHOD_BDF, SE3D_METHOD_GAUSS};
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45, SE3D_METHOD_RK4,
+                                      SE3D_METHOD_RADAU,  SE3D_METHOD_BDF,  SE3D_METHOD_GAUSS};
     for (size_t k = 0; k < sizeof one_sided / sizeof *one_sided; ++k) {
         for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
             for (int formulation = 0; formulation < 3; ++formulation) {
@@ -333,7 +334,28 @@ static void rounding_makes_no_steps_short(void)
     }
 }
 
-/* Errors over tolerances from 1e-4 on, and steps. */
+/* The smaller the body, the more a filter of redundant rows leaves of what the others ask for; at
+ * times it was refined no further, and rk4 took 54,000 steps for 58. */
+static void small_bodies_in_redundant_hinges_make_no_steps_short(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_DOP853, SE3D_METHOD_RK45, SE3D_METHOD_RK4};
+    for (int k = 0; k < 9; ++k) {
+        char text[600];
+        const double inertia = 0.2 * pow(0.1, k / 3);
+        snprintf(text, sizeof text,
+                 HEAD "bodies: [{name: a, mass: 40, inertia: [%g, %g, %g]}]\n"
+                      "joints:\n"
+                      "  - {name: j, type: revolute, body_i: ground, body_j: a, at: [1, 0, 0], "
+                      "axis: [1, 0, 0]}\n"
+                      "  - {type: revolute, body_i: ground, body_j: a, at: [-1, 0, 0], axis: "
+                      "[1, 0, 0]}\n"
+                      "drivers: [{joint: j, value: 3*t}]\n",
+                 inertia, inertia, inertia);
+        const mechanism m = {"is small", text, 1.0};
+        check_steps(&m, methods[k % 3], k / 3 % 2);
+    }
+}
+
 /* At rest with its arm horizontal, and there again, the estimate of rk4 is zero to higher order
  * than the error; so are others where a motion of one freedom turns, or is steady. */
 static const mechanism swings[] = {
@@ -396,6 +418,7 @@ static void zeros_of_an_estimate_make_no_steps_long(void)
     }
 }
 
+/* Errors over tolerances from 1e-4 on, and steps. */
 static void print_row(const mechanism *m, const struct bound *bound, int last, const path *truth)
 {
     static path got;
@@ -432,6 +455,7 @@ int main(int argc, char **argv)
     RUN(the_error_is_about_the_tolerance);
     RUN(loose_tolerances_on_trees_are_kept);
     RUN(rounding_makes_no_steps_short);
+    RUN(small_bodies_in_redundant_hinges_make_no_steps_short);
     RUN(zeros_of_an_estimate_make_no_steps_long);
     return check_finish();
 }
