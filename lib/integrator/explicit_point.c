@@ -16,6 +16,8 @@
 #define GAUSS_PART  0.3   /* of the tolerance, instead of SE3DI_EXPLICIT_PART, where all is plain */
 #define WORK_WEIGHT 0.1   /* of the error of works: it disturbs nothing but the audit of energy */
 #define WIDE        1e-8  /* regularisation of short steps */
+#define BROAD       3e-9  /* of rk45, at this tolerance and above; below, it falls with the root */
+#define BROAD_FROM  3e-7
 
 #define VECTORS (3 + SE3DI_EXPLICIT_FORMS)
 
@@ -64,13 +66,16 @@ double se3di_gauss_get_reach(const se3di_integration *integration, const se3di_m
 
 /* See se3di_state_begin. The tightest tolerances need accelerations with less noise near singular
  * positions; elsewhere a wider filter costs steps and accuracy. The short steps of rk4 end within
- * a narrow one by the hundred, and what they err by there adds up in the velocity. */
+ * a narrow one by the hundred, those of rk45 at loose tolerances often enough, and what they err by
+ * there adds up in the velocity. */
 static double regularisation(const se3di_integrator *method, int is_controlled, double tolerance)
 {
     if (is_controlled && method->tag == SE3D_METHOD_RK4) {
         return WIDE;
     }
-    return fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
+    const double eps = fmin(1e-9, fmax(1e-10, 1e-10 * (1e-11 / tolerance)));
+    const int is_broad = is_controlled && method->tag == SE3D_METHOD_RK45;
+    return is_broad ? fmax(eps, BROAD * sqrt(fmin(1.0, tolerance / BROAD_FROM))) : eps;
 }
 
 /* The violation of constraints that does not matter: near a singular position velocities magnify it

@@ -301,6 +301,16 @@ static void rk4_keeps_to_its_branch(void)
     }
 }
 
+/* A narrow filter had made 2.7e-3 m of a tolerance of 1e-5, and 1.2e-4 m of 1e-6. */
+static void rk45_errs_by_its_tolerance(void)
+{
+    static const double tolerances[] = {1e-4, 1e-5, 1e-6};
+    for (int k = 0; k < 9; ++k) {
+        const trial t = {SE3D_METHOD_RK45, formulations[k % 3], tolerances[k / 3], 0.0};
+        try_all(&t, k % 3, fmax(1e-5, 3.0 * t.tolerance), fmax(1e-5, t.tolerance));
+    }
+}
+
 static void implicit_methods_keep_to_their_branch(void)
 {
     static const int32_t methods[] = {SE3D_METHOD_BDF, SE3D_METHOD_RADAU,
@@ -417,6 +427,7 @@ int main(void)
 {
     RUN(explicit_methods_keep_to_their_branch);
     RUN(rk4_keeps_to_its_branch);
+    RUN(rk45_errs_by_its_tolerance);
     RUN(implicit_methods_keep_to_their_branch);
     RUN(equal_steps_keep_to_their_branch);
     RUN(rattle_and_verlet_keep_to_their_branch_or_say_so);
