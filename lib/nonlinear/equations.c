@@ -9,6 +9,7 @@
 #include "nonlinear/against.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define RATES_MAX         10   /* Newton steps for velocities */
@@ -445,6 +446,37 @@ static se3d_status check_values(se3di_equations *equations)
     return SE3D_OK;
 }
 
+/* The movable body of the least mass or moment of inertia: its block is the one that has no inverse
+ * if one has none. */
+static uint32_t find_lightest(const se3di_assembly *assembly)
+{
+    double least = HUGE_VAL;
+    uint32_t lightest = 0;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        const uint32_t index = assembly->free_body[k];
+        const se3di_body *body = &assembly->model->bodies[index];
+        const double moment = fmin(body->J[0], fmin(body->J[1], body->J[2]));
+        const double size = body->state == 0 ? fmin(body->mass, moment) : HUGE_VAL;
+        lightest = size < least ? index : lightest;
+        least = fmin(least, size);
+    }
+    return lightest;
+}
+
+static se3d_status report_singular(se3di_equations *equations, double t)
+{
+    const se3di_model *model = equations->assembly.model;
+    const uint32_t index = find_lightest(&equations->assembly);
+    const se3di_body *body = &model->bodies[index];
+    char number[32];
+    snprintf(number, sizeof number, "number %u", (unsigned)index);
+    return se3di_error_set(
+        equations->error, SE3D_ERR_SINGULAR,
+        "t = %g s: the mass matrix of a body is singular; body %.100s has the least "
+        "of mass, %g kg, and moments of inertia, %g, %g, %g kg m^2",
+        t, body->name ? body->name : number, body->mass, body->J[0], body->J[1], body->J[2]);
+}
+
 se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, int is_checked)
 {
     if (is_checked) {
@@ -453,12 +485,13 @@ se3d_status se3di_equations_factor_values(se3di_equations *equations, double t, 
     const se3di_kkt_values values = se3di_equations_values(equations);
     ++equations->counters.factorizations;
     const se3d_status status = se3di_kkt_factor(equations->kkt, &values, NULL);
+    if (status == SE3D_ERR_SINGULAR && is_checked) {
+        return report_singular(equations, t);
+    }
     if (status < 0) {
-        const char *what = !is_checked ? "the equations are singular or not finite"
-                           : status == SE3D_ERR_NOT_FINITE
-                               ? "the equations are not finite: an angle has no direction, or the "
-                                 "state has diverged"
-                               : "the mass matrix of a body is singular";
+        const char *what = is_checked ? "the equations are not finite: an angle has no direction, "
+                                        "or the state has diverged"
+                                      : "the equations are singular or not finite";
         return se3di_error_set(equations->error, status, "t = %g s: %s", t, what);
     }
     return status;

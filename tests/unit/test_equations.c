@@ -307,6 +307,29 @@ static void curvatures_that_are_not_finite_are_refused(void)
     se3d_model_destroy(read);
 }
 
+/* Inputs are refused before it comes to that. */
+static void the_body_of_a_singular_mass_matrix_is_named(void)
+{
+    for (int named = 0; named < 2; ++named) {
+        world w;
+        se3d_solver *solver;
+        se3d_solver_def how = se3d_solver_def_default();
+        world_init(&w, 3);
+        how.formulation = SE3D_FORMULATION_ROMEGA;
+        how.method = SE3D_METHOD_DOP853;
+        CHECK(!se3d_solver_create(w.system, &how, &solver));
+        se3di_body *body = &w.system->model.bodies[2];
+        memset(body->J, 0, sizeof body->J);
+        char *const name = body->name, odd[] = "odd";
+        body->name = named ? odd : NULL;
+        CHECK(se3d_solver_run(solver, 0.1) == SE3D_ERR_SINGULAR);
+        CHECK(strstr(se3d_system_get_error(w.system), named ? "body odd" : "body number 2"));
+        body->name = name;
+        se3d_solver_destroy(solver);
+        world_destroy(&w);
+    }
+}
+
 int main(void)
 {
     RUN(a_driver_whose_function_fails_has_no_equation);
@@ -318,5 +341,6 @@ int main(void)
     RUN(violations_of_user_constraints_are_those_of_their_rows);
     RUN(rows_are_measured_by_the_size_of_the_model);
     RUN(curvatures_that_are_not_finite_are_refused);
+    RUN(the_body_of_a_singular_mass_matrix_is_named);
     return check_finish();
 }
