@@ -476,7 +476,9 @@ static se3d_status run_dynamics(se3di_run *run, double t_end)
         status = run_method(run, t_end);
     }
     se3di_run_tell_held(run);
-    se3di_run_tell_shaken(run, begin, steps);
+    if (status >= 0 ? status != SE3D_INFO_EVENT : status == SE3D_ERR_STEP_COUNT) {
+        se3di_run_tell_shaken(run, begin, steps);
+    }
     if (status < 0 || status == SE3D_INFO_EVENT) { /* whose callback may have changed the model */
         return status;
     }

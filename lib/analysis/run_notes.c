@@ -9,6 +9,7 @@
 #include "force/force.h"
 #include "nonlinear/ranks.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #define SHAKEN_STEPS 500  /* on which the average of the steps is taken */
@@ -108,7 +109,7 @@ void se3di_run_tell_shaken(se3di_run *run, double begin, uint64_t steps)
     const se3di_model *model = run->model;
     const se3di_force *force;
     run->shaken_steps += run->equations.counters.steps - steps;
-    run->shaken_time += model->time - begin;
+    run->shaken_time += fabs(model->time - begin);
     if (run->shaken_steps < SHAKEN_STEPS || run->told_shaken == integration->method) {
         return;
     }
@@ -120,8 +121,8 @@ void se3di_run_tell_shaken(se3di_run *run, double begin, uint64_t steps)
         run->told_shaken = integration->method;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: the steps of %s are %.2g s on the average, as short as to "
-                        "follow a vibration of %.2g rad/s: %s \"%s\" is stiff and hardly damped; "
-                        "damp it, or take a joint in its place",
+                        "follow a vibration of %.2g rad/s; it may be that of %s \"%s\", which is "
+                        "stiff and hardly damped: damp it, or take a joint in its place",
                         model->time, integration->method->name, h, rate,
                         se3di_force_class_of(force)->name, force->name ? force->name : "");
     }

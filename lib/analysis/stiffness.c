@@ -81,7 +81,8 @@ double se3di_stiffness_vibration(const se3di_model *model, const se3di_force **f
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         double rate, square;
         measure_element(model, &model->forces[k], &rate, &square);
-        if (square > fastest * fastest && rate * rate < square) {
+        if (model->forces[k].type != SE3DI_FORCE_TYRE && square > fastest * fastest &&
+            rate * rate < square) {
             fastest = sqrt(square);
             *force = &model->forces[k];
         }

@@ -13,7 +13,8 @@ double se3di_stiffness_angle(const se3di_model *model, double h);
  * present state; infinite if there is none. */
 double se3di_stiffness_step(const se3di_model *model);
 /* The spring-damper or bushing that vibrates fastest, its bodies free, of those that damp the
- * vibration less than half critically. @return its rate [rad/s]; 0: there is none */
+ * vibration less than half critically; no tyre, in whose place nothing could be.
+ * @return its rate [rad/s]; 0: there is none */
 double se3di_stiffness_vibration(const se3di_model *model, const se3di_force **force);
 /* The rate of the motion that one wants to see [1/s]: of a pendulum as long as the model is large,
  * and of the spins; 1 at least, as a spin by rounding is none. */

@@ -2,7 +2,9 @@
 /* A spring so stiff that the joint across which it acts is as good as fixed: rounding of positions
  * makes forces, and vibrations are a million times too fast for the step. The methods for stiff
  * motions choose steps as if there were none, and the motion is that of the fixed joint. */
+#include "analysis/stiffness.h"
 #include "support/text_model.h"
+#include "system/system_internal.h"
 
 #define HEAD                                                                                       \
     "gravity: [0, 0, -9.81]\n"                                                                     \
@@ -215,10 +217,29 @@ static void vibrations_that_make_steps_short_are_named(void)
                 fprintf(stderr, "row %zu, element %d: %s\n", row, element, n.last);
             }
             if (s->told[element]) {
+                CHECK_CONTAINS(n.last, "it may be that of");
                 CHECK_CONTAINS(n.last, "\"rubber\"");
             }
         }
     }
+}
+
+/* Nothing could take the place of a tyre: to damp it is no advice. */
+static void no_tyre_is_named_as_a_vibration(void)
+{
+    static const char text[] =
+        "se3d: 1\nbodies: [{name: rim, mass: 10, inertia: [1e5, 1e5, 1e5], "
+        "position: [0, 0, 0.29981], velocity: [50, 0, 0]}]\n"
+        "joints: [{type: planar, body_i: ground, body_j: rim, at: [0, 0, 0], axis: [0, 1, 0]}]\n"
+        "forces:\n"
+        "  - {name: hard, type: tyre, body: rim, radius: 0.3, k: 1e9, mu: 0.9, "
+        "slip_stiffness: 5e4, cornering_stiffness: 4e4}\n"
+        "  - {type: force, body: rim, value: [0, 0, -1e5]}\n" TAIL;
+    const se3di_force *force;
+    text_model m = text_model_open(text, SE3D_METHOD_BDF, SE3D_FORMULATION_ROMEGA, 0.0);
+    CHECK(se3d_solver_run(m.solver, 1e-4) >= 0);
+    CHECK(se3di_stiffness_vibration(&m.system->model, &force) == 0.0 && force == NULL);
+    text_model_close(&m);
 }
 
 /* A strong spring against as strong a damper: what creeps back within a second is no error to be
@@ -437,6 +458,7 @@ int main(void)
     RUN(accelerations_are_those_of_the_motion_however_fast_a_force_is);
     RUN(bushings_with_dampers_are_as_good_as_joints);
     RUN(vibrations_that_make_steps_short_are_named);
+    RUN(no_tyre_is_named_as_a_vibration);
     RUN(what_creeps_against_a_damper_is_followed);
     RUN(states_within_steps_of_radau_do_not_feel_what_the_spring_is_off_by);
     RUN(chosen_steps_of_the_newmark_family_are_those_of_the_slow_motion);
