@@ -48,6 +48,21 @@ void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
     }
 }
 
+/* As se3di_householder_mirror, where v[1 + i] are zeros for i below `from`, a multiple of eight,
+ * and from `to` on: a sum without these is the same to the bit. */
+static inline void mirror_part(size_t from, size_t to, double tau, const double *restrict v,
+                               double *restrict x)
+{
+    const double f = tau * (x[0] + dot(v + 1 + from, x + 1 + from, to - from));
+    if (f == 0.0) {
+        return;
+    }
+    x[0] -= f;
+    for (size_t i = from; i < to; ++i) {
+        x[1 + i] -= f * v[1 + i];
+    }
+}
+
 void se3di_householder(size_t rows, size_t columns, double *A, double *tau)
 {
     for (size_t k = 0; k < rows && k < columns; ++k) {
@@ -71,7 +86,7 @@ static void swap_columns(size_t rows, double *a, double *b)
 /* The length of a column below its first entry, from that of all: now, and when last measured. */
 static void shorten(size_t n, const double *column, double *now, double *measured)
 {
-    double part = fabs(column[0]) / *now, left = fmax(0.0, (1.0 + part) * (1.0 - part));
+    double part = fabs(column[0]) / *now, left = (1.0 + part) * (1.0 - part);
     double since = *now / *measured;
     if (left * since * since > worn) {
         *now *= sqrt(left);
@@ -103,8 +118,16 @@ void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *
         }
         double *column = A + k * rows + k;
         tau[k] = se3di_householder_reflect(rows - k, column);
+        size_t from = 0, to = rows - k - 1;
+        while (to > 0 && column[to] == 0.0) {
+            --to;
+        }
+        while (from < to && column[1 + from] == 0.0) {
+            ++from;
+        }
+        from -= from % 8;
         for (size_t j = k + 1; j < columns; ++j) {
-            se3di_householder_mirror(rows - k, tau[k], column, A + j * rows + k);
+            mirror_part(from, to, tau[k], column, A + j * rows + k);
             if (now[j] > 0.0) {
                 shorten(rows - k, A + j * rows + k, &now[j], &measured[j]);
             }
