@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* KKT solver on chains: nanoseconds per link for factor and solve, minimum of several runs. */
-#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+#define _POSIX_C_SOURCE 200112L /* clock_gettime */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "linsol/kkt.h"
+#include "linsol/kkt_lanes.h"
 
 static double now_ns(void)
 {
@@ -137,6 +138,63 @@ static void measure(const char *name, int32_t links, int32_t rows, int32_t n, bo
     chain_free(&s);
 }
 
+/* The same numbers of `width` states, each a little other than the one before. */
+static double *spread(const double *from, size_t count, int32_t width)
+{
+    const size_t w = (size_t)width;
+    double *to = aligned_alloc(64, (count * w * sizeof *to + 64) / 64 * 64);
+    if (!to) {
+        exit(1);
+    }
+    for (size_t i = 0; i < count * w; ++i) {
+        to[i] = from[i / w] * (1.0 + 0.01 * (double)(i % w));
+    }
+    return to;
+}
+
+/* Factor and solve of as many states at once as fit, nanoseconds per link and state. */
+static void measure_lanes(const char *name, int32_t links, int32_t rows, bool mass, int32_t width)
+{
+    chain s;
+    chain_init(&s, links, rows, 6, mass, true);
+    const se3d_allocator allocator = se3di_alloc_default();
+    se3di_kkt *kkt;
+    se3di_kkt_lanes *lanes;
+    if (SE3D_FAILED(se3di_kkt_create(&allocator, &s.pattern, SE3DI_KKT_STRUCTURED, NULL, &kkt)) ||
+        SE3D_FAILED(se3di_kkt_lanes_create(&allocator, kkt, width, &lanes))) {
+        exit(1);
+    }
+    const size_t count = (size_t)links, m = (size_t)rows;
+    double *wide[] = {
+        spread(s.body, count * 36, width), spread(s.joint, (2 * count - 1) * m * 6, width),
+        spread(s.b, count * 6, width),     spread(s.c, count * m, width),
+        spread(s.x, count * 6, width),     spread(s.l, count * m, width)};
+    const se3di_kkt_values values = {.body = wide[0], .joint = wide[1]};
+    se3di_kkt_lanes_info info;
+    double best = 1e300;
+    const int repeat = 4096 / links / width + 1;
+    for (int run = 0; run < 25; ++run) {
+        const double start = now_ns();
+        for (int k = 0; k < repeat; ++k) {
+            se3di_kkt_lanes_solve(lanes, &values, wide[2], wide[3], wide[4], wide[5], &info);
+        }
+        const double each = (now_ns() - start) / repeat / links / width;
+        best = each < best ? each : best;
+    }
+    int alone = 0;
+    for (int32_t k = 0; k < width; ++k) {
+        alone += info.is_alone[k];
+    }
+    printf("%-22s %5d links: %d states at once, both %6.1f ns/link and state (%d alone)\n", name,
+           (int)links, (int)width, best, alone);
+    for (size_t k = 0; k < sizeof wide / sizeof *wide; ++k) {
+        free(wide[k]);
+    }
+    se3di_kkt_lanes_destroy(lanes);
+    se3di_kkt_destroy(kkt);
+    chain_free(&s);
+}
+
 int main(void)
 {
     const int32_t lengths[] = {1, 8, 64, 512};
@@ -150,6 +208,11 @@ int main(void)
         measure("r-p, 5 rows", n, 5, 8, false, true, SE3DI_KKT_LEVEL_AUTO);
         measure("unsymmetric, 5 rows", n, 5, 6, false, false, SE3DI_KKT_LEVEL_AUTO);
         measure("unsymmetric r-p", n, 5, 8, false, false, SE3DI_KKT_LEVEL_AUTO);
+        for (int32_t width = se3di_kkt_lanes_widest(); width > 1; width /= 2) {
+            measure_lanes("mass, 5 rows", n, 5, true, width);
+            measure_lanes("full, 5 rows", n, 5, false, width);
+            width = width == 4 ? 1 : width;
+        }
     }
     return 0;
 }

@@ -21,6 +21,12 @@
 /* Relative pivots of rows that are not even nearly dependent. */
 #define KKT_FAR_FROM_DEPENDENT 1e-3
 
+/* E of a row is that of all, unless the row's weight is further away than this. */
+#define SE3DI_KKT_WEIGHT_RANGE 1e4
+/* The largest weight over pivot of rows of which no pivot is small; of a wide filter. */
+#define KKT_NONE_SMALL      1e6
+#define KKT_NONE_SMALL_WIDE (1.0 / KKT_FAR_FROM_DEPENDENT)
+
 /* Arrays of the caller's values. */
 enum {
     KKT_BASE_BODY = 0,
@@ -198,6 +204,18 @@ se3d_status se3di_kkt_symbolic_build(se3di_kkt *kkt);
 se3d_status se3di_kkt_symbolic_take(se3di_kkt *kkt);
 /* Give back all of its own arrays. */
 void se3di_kkt_give_back(se3di_kkt *kkt);
+
+/* What pivots say of the solutions: E / w, the least relative pivot, that which is not clearly a
+ * dependent row's, rows that are dependent or nearly so, negative ones of bodies. */
+typedef struct se3di_kkt_pivots {
+    double eps, least, least_clear;
+    int32_t dependent, negative;
+} se3di_kkt_pivots;
+
+/* kkt_solve.c: E / w that a factorisation begins with, below 0 if a wide one is tried before, */
+double se3di_kkt_first_eps(const se3di_kkt *kkt);
+/* and how many refinements a solution takes, -1: the residual tells. */
+int32_t se3di_kkt_count_refinements(const se3di_kkt *kkt, const se3di_kkt_pivots *pivots);
 
 /* kkt_dense.c */
 se3d_status se3di_kkt_dense_create(se3di_kkt *kkt);

@@ -16,7 +16,6 @@ static const double pivot_is_safe = 1e-11;  /* the same if bodies go before thei
 static const double row_rounding = 4e-16;   /* of the terms of a row */
 static const double noise_matters = 1e3;    /* times the tolerance of solutions: rounding / pivot */
 static const double part_noise = 1e-14;     /* of multipliers, in the dependent directions */
-static const double weight_range = 1e4;
 static const double raised_residual = 1e-9; /* of forces, with bodies that are raised */
 static const int32_t raised_refinements = 12;
 static const double wide_eps = 1e-7; /* where rows are known to be redundant */
@@ -73,8 +72,8 @@ static void set_regularisation(se3di_kkt *kkt, double eps)
     for (size_t i = 0; i < kkt->layout.row_count; ++i) {
         double w = kkt->weight[i], e = kkt->middle;
         if (w > 0.0) {
-            e = e < w / weight_range ? w / weight_range : e;
-            e = e > w * weight_range ? w * weight_range : e;
+            e = e < w / SE3DI_KKT_WEIGHT_RANGE ? w / SE3DI_KKT_WEIGHT_RANGE : e;
+            e = e > w * SE3DI_KKT_WEIGHT_RANGE ? w * SE3DI_KKT_WEIGHT_RANGE : e;
         }
         kkt->e[i] = eps * e;
     }
@@ -142,12 +141,24 @@ static bool factor_widely(se3di_kkt *kkt, const se3di_kkt_values *values)
     return true;
 }
 
+/* Whether E = 0 is tried first. */
+static bool begins_plainly(const se3di_kkt *kkt)
+{
+    const se3di_kkt_settings *s = &kkt->settings;
+    const bool late = s->regularise == SE3DI_KKT_REGULARISE_LATE ||
+                      (s->regularise == SE3DI_KKT_REGULARISE_AUTO && !kkt->has_loop);
+    return late && kkt->kind == SE3DI_KKT_STRUCTURED;
+}
+
+double se3di_kkt_first_eps(const se3di_kkt *kkt)
+{
+    return begins_plainly(kkt) ? 0.0 : may_widen(kkt) ? -1.0 : kkt->settings.eps;
+}
+
 static void factor_suitably(se3di_kkt *kkt, const se3di_kkt_values *values)
 {
     const se3di_kkt_settings *s = &kkt->settings;
-    bool late = s->regularise == SE3DI_KKT_REGULARISE_LATE ||
-                (s->regularise == SE3DI_KKT_REGULARISE_AUTO && !kkt->has_loop);
-    if (late && kkt->kind == SE3DI_KKT_STRUCTURED) {
+    if (begins_plainly(kkt)) {
         factor_once(kkt, values, 0.0, false);
         if (plain_is_enough(kkt)) {
             return;
@@ -482,21 +493,20 @@ static double least_good_pivot(const se3di_kkt *kkt)
  * nearly cancels (a lever that is long beside the radius of gyration). With E > 0 a solution leaves
  * eps / sigma of the error. A row that is not known to be redundant and seems dependent is nearly
  * so: sigma is small. */
-static int32_t count_refinements(const se3di_kkt *kkt)
+int32_t se3di_kkt_count_refinements(const se3di_kkt *kkt, const se3di_kkt_pivots *pivots)
 {
     const se3di_kkt_settings *s = &kkt->settings;
-    if (s->always_check || kkt->negative_pivots > 0 || kkt->kind == SE3DI_KKT_DENSE) {
+    if (s->always_check || pivots->negative > 0 || kkt->kind == SE3DI_KKT_DENSE) {
         return -1;
     }
-    if (!(kkt->eps > 0.0)) {
-        return kkt->min_pivot > least_good_pivot(kkt) ? 0 : -1;
+    if (!(pivots->eps > 0.0)) {
+        return pivots->least > least_good_pivot(kkt) ? 0 : -1;
     }
-    const int32_t dependent = kkt->dependent_rows + kkt->near_dependent;
-    if (dependent > (s->any_multipliers ? s->redundant_rows : 0) ||
+    if (pivots->dependent > (s->any_multipliers ? s->redundant_rows : 0) ||
         !(s->any_multipliers || is_filter(s))) {
         return -1;
     }
-    double rate = kkt->eps / kkt->least_clear, error = rate;
+    double rate = pivots->eps / pivots->least_clear, error = rate;
     for (int32_t count = 0; count <= s->max_refinements; ++count) {
         if (error <= s->tolerance) {
             return count;
@@ -504,6 +514,14 @@ static int32_t count_refinements(const se3di_kkt *kkt)
         error *= rate;
     }
     return -1;
+}
+
+static int32_t count_refinements(const se3di_kkt *kkt)
+{
+    const se3di_kkt_pivots pivots = {kkt->eps, kkt->min_pivot, kkt->least_clear,
+                                     kkt->dependent_rows + kkt->near_dependent,
+                                     kkt->negative_pivots};
+    return se3di_kkt_count_refinements(kkt, &pivots);
 }
 
 /* Rows that are dependent at eps may be nearly dependent only; then refinement is slow, and a
