@@ -214,6 +214,8 @@ static uint64_t run_all(const uint8_t *data, size_t size)
     c.memory.left = -1;
     c.trace = SE3DI_HASH_START;
     c.solver_def = se3d_solver_def_default();
+    c.solver_def.interrupt = fuzz_interrupt;
+    c.solver_def.interrupt_ctx = &c.patience;
     def.allocator = &allocator;
     FUZZ_MUST(!se3d_system_create(&def, &c.system));
     FUZZ_MUST(!se3d_system_get_ground(c.system, &c.bodies[0]));

@@ -89,8 +89,11 @@ static const layout_function *choose_any(functions *f)
 /* Whether there is an object of the kind that it is called with. */
 static int has_object(const functions *f, const layout_function *call)
 {
+    if (call->parameter_count == 0) {
+        return 1;
+    }
     const layout_item *first = &call->parameters[0];
-    int has = call->parameter_count == 0 || first->kind != LAYOUT_OWNER || first->pointer;
+    int has = first->kind != LAYOUT_OWNER || first->pointer;
     for (size_t k = 0; k < f->object_count && !has; ++k) {
         has |= f->objects[k].lives && f->objects[k].kind == first->number;
     }
