@@ -365,6 +365,85 @@ static void check_formulation(const se3di_formulation *formulation)
     }
 }
 
+/* ---- d(Phi_q qdot)/dq ---- */
+
+/* Phi_q qdot at the velocities that there are. */
+static void get_rates(se3di_assembly *assembly, double *rates)
+{
+    double qdot[6 * BODIES];
+    for (size_t k = 0; k < BODIES; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        assembly->formulation->get_velocity(frame, qdot + 6 * k);
+    }
+    se3di_assembly_eval_jacobian(assembly);
+    se3di_assembly_mul(assembly, qdot, rates);
+}
+
+/* Column c of body k in the rows of C: of all equations. */
+static void get_column(const se3di_assembly *assembly, const double *rows, int k, int c,
+                       double *column)
+{
+    for (uint32_t joint = 0; joint < assembly->constraint_count; ++joint) {
+        const uint32_t first = assembly->model->constraints[joint].row_begin;
+        for (int32_t e = assembly->joint_begin[joint]; e < assembly->joint_begin[joint + 1]; ++e) {
+            for (int32_t r = 0; r < assembly->joint_rows[joint] && assembly->joint_body[e] == k;
+                 ++r) {
+                column[first + (uint32_t)r] = rows[assembly->block_offset[e] + (size_t)(6 * r + c)];
+            }
+        }
+    }
+}
+
+static double gradient_error(se3di_assembly *assembly, const double *rows, double h)
+{
+    double worst = 0.0;
+    se3di_frame kept[BODIES + 1];
+    memcpy(kept, assembly->model->frames, sizeof kept);
+    for (int k = 0; k < BODIES; ++k) {
+        for (int c = 0; c < 6; ++c) {
+            double plus[64], minus[64], given[64];
+            for (int r = 0; r < 64; ++r) {
+                given[r] = 0.1; /* equations of other bodies */
+            }
+            displace(assembly, k, c, h);
+            get_rates(assembly, plus);
+            memcpy(assembly->model->frames, kept, sizeof kept);
+            displace(assembly, k, c, -h);
+            get_rates(assembly, minus);
+            memcpy(assembly->model->frames, kept, sizeof kept);
+            get_column(assembly, rows, k, c, given);
+            for (size_t r = 0; r < assembly->row_count; ++r) {
+                const double slope = (plus[r] - minus[r]) / (2.0 * h);
+                worst = fmax(worst, fabs(0.7 * slope - (given[r] - 0.1)));
+            }
+        }
+    }
+    return worst;
+}
+
+/* What it is added to stays. */
+static void the_gradient_of_rates_agrees_with_differences(void)
+{
+    for (int trial = 0; trial < 5; ++trial) {
+        se3d_system *system = build(0);
+        se3di_assembly assembly;
+        CHECK(se3di_assembly_init(&assembly, &system->model, &se3di_formulation_romega, 1, NULL) ==
+              SE3D_OK);
+        double *rows = malloc(assembly.joint_value_count * sizeof *rows);
+        CHECK(rows && assembly.row_count > 10 && assembly.row_count <= 64);
+        for (size_t k = 0; k < assembly.joint_value_count; ++k) {
+            rows[k] = 0.1;
+        }
+        se3di_assembly_add_rate_gradient(&assembly, 0.7, rows);
+        const double coarse = gradient_error(&assembly, rows, 1e-3);
+        CHECK(coarse < 1e-3);
+        CHECK(gradient_error(&assembly, rows, 2.5e-4) < coarse / 12.0);
+        free(rows);
+        se3di_assembly_destroy(&assembly);
+        se3d_system_destroy(system);
+    }
+}
+
 /* A number of `a`, of time, and of two signals. */
 static se3d_function make_rate(se3d_system *system, const char *text, const se3d_signal signals[2])
 {
@@ -643,5 +722,6 @@ int main(void)
     RUN(newton_in_rp_converges_superlinearly);
     RUN(the_tangent_of_states_agrees_with_differences);
     RUN(the_tangent_of_slips_that_lag_agrees_with_differences);
+    RUN(the_gradient_of_rates_agrees_with_differences);
     return check_finish();
 }
