@@ -5,6 +5,17 @@
 
 #define SAME 1e-9 /* of a step: a kink is there already */
 
+/* The length of the step from t that ends at `end`, a little before a kink: methods add it to t,
+ * and rounding must not take them over the kink. */
+static double length_to(double t, double end)
+{
+    double before = end;
+    while (t + (before - t) > end) {
+        before = nextafter(before, t);
+    }
+    return before - t;
+}
+
 double se3di_kink_step(se3di_integration *integration, double t, double h, double ahead,
                        double *end)
 {
@@ -25,5 +36,5 @@ double se3di_kink_step(se3di_integration *integration, double t, double h, doubl
         return part;
     }
     *end = kink.t_before;
-    return rest;
+    return length_to(t, kink.t_before);
 }
