@@ -138,7 +138,8 @@ typedef enum se3d_shown {
  * many states are wanted, most of what they cost is accelerations and multipliers: with MOTION
  * they are left out, and the functions that read them, or reactions, efforts and violations, return
  * STATE until a run with ALL, or a step, has moved on. Steps are the same. Runs of dynamics whose
- * method interpolates leave them out, unless there are contacts, friction, stops or particles.
+ * method interpolates leave them out, unless there are contacts, friction, stops or particles, or,
+ * by generalized_alpha and hht, any force elements.
  * @param[in] shown  se3d_shown
  * @return OK, NULL, INVALID_ARGUMENT, STATE (the system is gone).
  * @since 0.1 */

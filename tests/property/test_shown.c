@@ -126,6 +126,12 @@ static const kind kinds[] = {
 };
 #define KINDS (sizeof kinds / sizeof *kinds)
 
+/* Between their steps these look at accelerations where there are forces, and show them. */
+static int shows_all(const kind *of)
+{
+    return of->method == SE3D_METHOD_GENERALIZED_ALPHA || of->method == SE3D_METHOD_HHT;
+}
+
 static void rows_of_the_motion_are_those_of_everything(const kind *of)
 {
     linkage all = make(of->method, of->formulation);
@@ -138,7 +144,7 @@ static void rows_of_the_motion_are_those_of_everything(const kind *of)
         left_out += !is_whole(&motion);
         CHECK(are_near(&all, &motion, TOLERANCE));
     }
-    CHECK(left_out == ROWS);
+    CHECK(left_out == (shows_all(of) ? 0 : ROWS));
     run(&all, SE3D_SHOWN_ALL, (ROWS + 1) * EVERY);
     run(&motion, SE3D_SHOWN_ALL, (ROWS + 1) * EVERY);
     CHECK(is_whole(&motion));
@@ -147,7 +153,7 @@ static void rows_of_the_motion_are_those_of_everything(const kind *of)
     CHECK(!se3d_solver_get_stats(all.solver, &stats[0]));
     CHECK(!se3d_solver_get_stats(motion.solver, &stats[1]));
     CHECK(stats[0].steps == stats[1].steps);
-    CHECK(stats[0].evaluations == stats[1].evaluations + ROWS);
+    CHECK(stats[0].evaluations == stats[1].evaluations + (shows_all(of) ? 0 : ROWS));
     drop(&all);
     drop(&motion);
 }
@@ -161,10 +167,10 @@ static void what_begins_behind_them_is_the_same(const kind *of)
     const double t = ROWS * EVERY;
     run(&all, SE3D_SHOWN_ALL, t);
     run(&motion, SE3D_SHOWN_MOTION, t);
-    CHECK(!is_whole(&motion));
+    CHECK(is_whole(&motion) == shows_all(of));
     CHECK(!se3d_system_set_gravity(all.system, gravity));
     CHECK(!se3d_system_set_gravity(motion.system, gravity));
-    CHECK(!is_whole(&motion));
+    CHECK(is_whole(&motion) == shows_all(of));
     run(&all, SE3D_SHOWN_ALL, 1.1 * t);
     run(&motion, SE3D_SHOWN_MOTION, 1.1 * t);
     CHECK(se3d_solver_step(all.solver, 1e-3) >= 0);
