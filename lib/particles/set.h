@@ -629,14 +629,14 @@ static inline const se3di_kernels *se3di_particles_get_kernels(const se3di_parti
 /* [count] How far each particle may move before the list is built anew. */
 static inline double *se3di_particles_reach(const se3di_particles *set)
 {
-    return set->origin + 3 * set->capacity;
+    return set->origin ? set->origin + 3 * set->capacity : NULL;
 }
 
 /* [count] The inverse square of the same for the active blocks; while they are being made, the
  * distance itself. */
 static inline double *se3di_particles_wear(const se3di_particles *set)
 {
-    return set->origin + 4 * set->capacity;
+    return set->origin ? set->origin + 4 * set->capacity : NULL;
 }
 
 /* Life time and editing: all-or-nothing; NO_MEMORY is the only failure. */
