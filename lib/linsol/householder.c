@@ -36,31 +36,24 @@ double se3di_householder_reflect(size_t n, double *column)
     return (beta - first) / beta;
 }
 
-void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
-{
-    double f = tau * (x[0] + dot(v + 1, x + 1, n - 1));
-    if (f == 0.0) {
-        return; /* most pairs of columns of a sparse matrix, at first */
-    }
-    x[0] -= f;
-    for (size_t i = 1; i < n; ++i) {
-        x[i] -= f * v[i];
-    }
-}
-
-/* As se3di_householder_mirror, where v[1 + i] are zeros for i below `from`, a multiple of eight,
- * and from `to` on: a sum without these is the same to the bit. */
+/* x -= tau v v^T x, v = (1, v[1 ..)), where v[1 + i] are zeros for i below `from`, a multiple of
+ * eight, and from `to` on: a sum without these is the same to the bit. */
 static inline void mirror_part(size_t from, size_t to, double tau, const double *restrict v,
                                double *restrict x)
 {
     const double f = tau * (x[0] + dot(v + 1 + from, x + 1 + from, to - from));
     if (f == 0.0) {
-        return;
+        return; /* most pairs of columns of a sparse matrix, at first */
     }
     x[0] -= f;
     for (size_t i = from; i < to; ++i) {
         x[1 + i] -= f * v[1 + i];
     }
+}
+
+void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
+{
+    mirror_part(0, n - 1, tau, v, x);
 }
 
 void se3di_householder(size_t rows, size_t columns, double *A, double *tau)
