@@ -208,10 +208,9 @@ int main(void)
         measure("r-p, 5 rows", n, 5, 8, false, true, SE3DI_KKT_LEVEL_AUTO);
         measure("unsymmetric, 5 rows", n, 5, 6, false, false, SE3DI_KKT_LEVEL_AUTO);
         measure("unsymmetric r-p", n, 5, 8, false, false, SE3DI_KKT_LEVEL_AUTO);
-        for (int32_t width = se3di_kkt_lanes_widest(); width > 1; width /= 2) {
+        for (int32_t width = se3di_kkt_lanes_widest(); width >= 4; width /= 2) {
             measure_lanes("mass, 5 rows", n, 5, true, width);
             measure_lanes("full, 5 rows", n, 5, false, width);
-            width = width == 4 ? 1 : width;
         }
     }
     return 0;
