@@ -12,6 +12,7 @@
 #include "check.h"
 #include "linsol/block_cg_core.h"
 #include "linsol/kkt_internal.h"
+#include "linsol/kkt_lanes_internal.h"
 #include "particles/set.h"
 #include "tree/core.h"
 #include "tree/lanes.h"
@@ -40,6 +41,8 @@ static int levels = 1;  /* that this machine has */
 AT_LEVEL(se3di_block_cg_core, block_cg_core_avx2, 1)
 AT_LEVEL(se3di_kkt_core, kkt_core_avx2, 1)
 AT_LEVEL(se3di_kkt_core, kkt_core_avx512, 2)
+AT_LEVEL(se3di_kkt_lane_core, kkt_lane_core_avx2, 1)
+AT_LEVEL(se3di_kkt_lane_core, kkt_lane_core_avx512, 2)
 AT_LEVEL(se3di_kernels, particle_kernels_fma, 0)
 AT_LEVEL(se3di_kernels, particle_kernels_avx2, 1)
 AT_LEVEL(se3di_kernels, particle_kernels_avx512, 2)
