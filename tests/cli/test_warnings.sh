@@ -155,6 +155,9 @@ has "$dir/err" ': bodies[2].shapes[0]: has no material: nothing touches it'
 has "$dir/err" ':19:45: drivers[1]: m2 drives what m1 drives already'
 has "$dir/err" 'bodies[0].mass: a has 1 kg and b has 1e+09 kg'
 is "$(wc -l <"$dir/err" | tr -d ' ')" 6
+sed '/^contact/d' "$dir/doubtful.yaml" >"$dir/untouched.yaml"
+expect 'materials alone' 0 "$program" check "$dir/untouched.yaml"
+has "$dir/err" 'nothing holds b: no joint, constraint, force or contact leads to the ground, it falls; materials touch in a model with `contact: {}`'
 expect 'strict' 1 "$program" check --strict "$dir/doubtful.yaml"
 has "$dir/err" "$dir/doubtful.yaml: --strict: 6 warnings, must be none"
 expect 'strict json' 1 "$program" check --strict --json "$dir/doubtful.yaml"

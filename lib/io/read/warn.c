@@ -198,11 +198,16 @@ static void join(const groups *g, size_t a, size_t b)
     g->of[i > j ? i : j] = i > j ? j : i;
 }
 
+static bool has_contact(const se3d_model *model)
+{
+    return se3di_node_get(model->root, "contact") || se3di_node_get(model->root, "particles");
+}
+
 /* With contact, a body whose shapes have no material goes through everything. */
 static void warn_of_shapes(const se3di_reader *reader, const groups *g)
 {
     const se3d_model *model = reader->model;
-    if (!se3di_node_get(model->root, "contact") && !se3di_node_get(model->root, "particles")) {
+    if (!has_contact(model)) {
         return;
     }
     for (size_t k = 0; k < model->shape_count; ++k) {
@@ -253,7 +258,7 @@ static void join_all(const groups *g, const se3d_system *system)
         const size_t body = entry_of(g, model->shapes[k].shape.body);
         const bool has_material = se3di_node_get(node, "material") != NULL;
         g->touches[body] |= has_material || se3di_node_get(node, "contact");
-        if (has_material) {
+        if (has_material && has_contact(model)) {
             join(g, body, 0);
         }
     }
@@ -282,8 +287,11 @@ static void warn_of_free_bodies(const se3di_reader *reader, const groups *g)
             se3di_reader_warn(
                 reader, model->bodies[k].node,
                 "nothing holds %.60s: no joint, constraint, force or contact leads to the ground, "
-                "it falls",
-                model->bodies[k].name);
+                "it falls%s",
+                model->bodies[k].name,
+                g->touches[k] && !has_contact(model)
+                    ? "; materials touch in a model with `contact: {}`"
+                    : "");
         }
     }
 }
