@@ -202,7 +202,8 @@ SE3D_API se3d_status se3d_study_eval_unknowns(se3d_study *study, const double *v
 
 /* Answer a request in JSON, {"id": 1, "parameters": {"m": 2}}, with {"id": 1, "measures": {"top":
  * 0.5}}; what fails has "error". Any parameter of the model may be given, in the units of its file;
- * those that are not are as in the file. {"id": 1, "sample": 7} runs a sample of the study.
+ * those that are not are as in the file, all of them in {"id": 1}. {"id": 1, "sample": 7} runs a
+ * sample of the study.
  * @param[in] request  [length] one object, UTF-8
  * @param[in] length   in bytes
  * @param[out] reply   the text, without a line break, owned by the study until the next call

@@ -218,8 +218,11 @@ static se3d_status run(request *q, const char *text, size_t length)
     q->id = se3di_node_get(root, "id");
     const se3di_node *sample = se3di_node_get(root, "sample");
     const se3di_node *parameters = se3di_node_get(root, "parameters");
-    if (!root || root->kind != SE3DI_NODE_MAP || !sample == !parameters) {
-        return fail(q, "a request is an object with `id` and `parameters` or `sample`");
+    if (!root || root->kind != SE3DI_NODE_MAP) {
+        return fail(q, "a request is an object such as {\"id\": 1, \"parameters\": {\"m\": 2}}");
+    }
+    if (sample && parameters) {
+        return fail(q, "a request has `parameters` or `sample`, not both");
     }
     for (const se3di_node *node = root->first; node; node = node->next) {
         if (node != q->id && node != sample && node != parameters) {
