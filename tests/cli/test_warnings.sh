@@ -182,4 +182,25 @@ for command in "check" "run -o $dir/far"; do
     has "$dir/err" 'more than its size, 1'
     expect 'moved far, strict' 1 "$program" $command "$dir/far.yaml" --strict
 done
+
+# Names that a spreadsheet takes for formulas.
+for sign in = + - @; do
+    cat >"$dir/formula.yaml" <<END
+se3d: 1
+bodies: [{name: a-=+@b, mass: 1, inertia: [1, 1, 1]}, {name: "${sign}1+1", mass: 1, inertia: [1, 1, 1]}]
+gravity: [0, 0, 0]
+analysis: {type: dynamics, duration: 0.01}
+END
+    expect "a name with $sign" 0 "$program" check "$dir/formula.yaml"
+    has "$dir/err" ":2:62: bodies[1].name: a spreadsheet takes \`${sign}1+1\` for a formula in files of results"
+    is "$(lines 'for a formula')" 1
+    cat >"$dir/formula.xml" <<END
+<mujoco><worldbody><body name="${sign}1+1"><freejoint/><geom size="1"/></body></worldbody></mujoco>
+END
+    if [ -n "${SE3D_HAS_EXPAT:-}" ]; then
+        expect "an import with $sign" 0 "$program" import "$dir/formula.xml" -o "$dir/imported$sign.yaml"
+        has "$dir/err" "is called \`_1+1\`"
+        is "$(grep -c 'name: _1+1' "$dir/imported$sign.yaml")" 1
+    fi
+done
 finish

@@ -44,6 +44,9 @@ typedef struct se3di_node {
     struct se3di_node *next; /* sibling */
 } se3di_node;
 
+/* Names that begin with one of these are formulas to spreadsheets, which open files of results. */
+#define SE3DI_FORMULA_SIGNS "=+-@"
+
 /* A file that a model file names. */
 typedef struct se3di_attached_file {
     const char *path;

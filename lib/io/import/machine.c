@@ -239,6 +239,9 @@ static void make_valid(const char *text, char name[NAME_MAX_LENGTH + 1])
     name[used] = '\0';
     const size_t blanks = strspn(name, " ");
     memmove(name, name + blanks, used - blanks + 1);
+    if (name[0] && strchr(SE3DI_FORMULA_SIGNS, name[0])) {
+        name[0] = '_';
+    }
 }
 
 static bool is_taken(const se3di_ionames *names, const char *name)

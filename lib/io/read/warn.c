@@ -122,6 +122,20 @@ static void tell_unused(const se3di_reader *reader, const se3di_node *root, cons
     }
 }
 
+/* Names stand in files of CSV as they are, heads of columns among them. */
+static void tell_formulas(const se3di_reader *reader, const se3di_node *node)
+{
+    const bool is_name = node->key && node->text && strcmp(node->key, "name") == 0;
+    if (is_name && node->text[0] && strchr(SE3DI_FORMULA_SIGNS, node->text[0])) {
+        se3di_reader_warn(reader, node,
+                          "a spreadsheet takes `%.60s` for a formula in files of results",
+                          node->text);
+    }
+    for (const se3di_node *child = node->first; child; child = child->next) {
+        tell_formulas(reader, child);
+    }
+}
+
 /* Each file and part once, however often it is included. */
 static bool warn_of_names(const se3di_reader *reader)
 {
@@ -131,8 +145,11 @@ static bool warn_of_names(const se3di_reader *reader)
         while (before->root != part->root) {
             before = before->next;
         }
-        if (before != part ||
-            (!se3di_node_get(part->root, "parameters") && !se3di_node_get(part->root, "points"))) {
+        if (before != part) {
+            continue;
+        }
+        tell_formulas(reader, part->root);
+        if (!se3di_node_get(part->root, "parameters") && !se3di_node_get(part->root, "points")) {
             continue;
         }
         if (!add_tree(reader, part->root, &words)) {
