@@ -411,6 +411,27 @@ static void impacts_that_stick_are_in_closed_form(void)
     }
 }
 
+/* Against the rings of Maw, Barber and Fawcett (tests/golden/impact_reference.py; nu = .3), from
+ * where sliding ends only as the two part. Those before, see docs/theory/contact-laws.md. */
+static void impacts_that_slide_almost_to_the_end_are_those_of_maw(void)
+{
+    static const double slips[3][2] = {{6.0, -0.994}, {7.0, -0.005}, {8.0, 0.994}}; /* /(mu vn) */
+    for (int k = 0; k < 3 * 3 * SPRINGS; ++k) {
+        const double *row = slips[k / (3 * SPRINGS)];
+        impact m = gentle(k, 0.3);
+        m.friction = 0.3;
+        const double unit = m.friction * m.into;
+        m.spin = -row[0] * unit / m.radius;
+        const motion out = outcome(&m);
+        const impact after = {.radius = m.radius,
+                              .other = m.other,
+                              .along = out.x[0] - out.x[1],
+                              .spin = out.spin[0],
+                              .spin_other = out.spin[1]};
+        CHECK_NEAR(slip_of(&after) / unit, row[1], 0.02);
+    }
+}
+
 /* Of hooke, whose tangential spring swings as fast as the normal one: who slips less than 7/2 mu vn
  * comes back with the opposite slip, who slips more slides to the end. */
 static void linear_impacts_are_in_closed_form(void)
@@ -440,6 +461,7 @@ int main(void)
     RUN(one_speed_into_the_plane_and_all_along_it);
     RUN(spins_on_a_plane_and_of_two_spheres);
     RUN(impacts_that_stick_are_in_closed_form);
+    RUN(impacts_that_slide_almost_to_the_end_are_those_of_maw);
     RUN(linear_impacts_are_in_closed_form);
     return check_finish();
 }
