@@ -11,6 +11,7 @@
  *     mesh=0        1: these planes are 48 triangles
  *     funnel=0      1: the box is a conical hopper of 192 triangles, opened below before the lead
  *     gate=0        1: it stays shut, a silo
+ *     drain=0       1: spheres that have left the hopper are taken away and counted
  *     clump=0       1: edge^3/2 dimers instead, two of these spheres half a diameter apart, from a
  *                   lattice above the box; without a state
  *     state=FILE    the settled state as a LAMMPS data file: read if there is one, written
@@ -40,6 +41,7 @@
 enum { FUNNEL_SIDES = 32, FUNNEL_RINGS = 4 };
 static const double funnel[FUNNEL_RINGS][2] = {
     {0.75, 1.5}, {0.75, 0.0}, {0.15, -0.6}, {0.15, -0.7}}; /* radius and height over the width */
+#define DRAIN 0.8 /* below the tube: how deep over the width */
 
 typedef struct bench {
     se3d_system *system;
@@ -50,7 +52,9 @@ typedef struct bench {
     double turned; /* angle of the drum */
     int hertz, reserved;
     double threads, settle, lead, steps, repeats, tilt, drum_rate, tiles, funnel;
-    double mesh, shut, clump;
+    double mesh, shut, clump, drain;
+    uint32_t sink;
+    uint32_t reserved_sink;
     se3d_shape gate;
     const char *file;
 } bench;
@@ -349,6 +353,12 @@ static void tilt(bench *b)
     if (b->funnel > 0.0 && !(b->shut > 0.0)) {
         must(b, se3d_shape_destroy(b->system, b->gate));
     }
+    if (b->drain > 0.0) {
+        se3d_particles_sink_def def = se3d_particles_sink_def_default();
+        def.point[2] = -DRAIN * width_of(b);
+        def.normal[2] = 1.0;
+        must(b, se3d_particles_add_sink(b->particles, &def, &b->sink));
+    }
     double angle = b->tilt * PI / 180.0;
     const double g[3] = {9.81 * sin(angle), 0.0, -9.81 * cos(angle)};
     must(b, se3d_system_set_gravity(b->system, g));
@@ -420,6 +430,11 @@ static void measure(bench *b)
         must(b, se3d_particles_get_energy(b->particles, &energy));
         printf("  kinetic energy %.4g J\n", energy.translation);
     }
+    if (b->drain > 0.0) {
+        uint64_t gone;
+        must(b, se3d_particles_get_sink_count(b->particles, b->sink, &gone));
+        printf("  %llu spheres have left the hopper\n", (unsigned long long)gone);
+    }
     if (after.threads == 1) {
         roofline(contacts, cpu_rate);
     }
@@ -433,7 +448,8 @@ static int parse(bench *b, const char *text)
     } numbers[] = {{"threads", &b->threads}, {"settle", &b->settle},   {"lead", &b->lead},
                    {"steps", &b->steps},     {"repeats", &b->repeats}, {"tilt", &b->tilt},
                    {"drum", &b->drum_rate},  {"tiles", &b->tiles},     {"funnel", &b->funnel},
-                   {"mesh", &b->mesh},       {"gate", &b->shut},       {"clump", &b->clump}};
+                   {"mesh", &b->mesh},       {"gate", &b->shut},       {"clump", &b->clump},
+                   {"drain", &b->drain}};
     const char *equals = strchr(text, '=');
     size_t length = equals ? (size_t)(equals - text) : 0;
     for (size_t k = 0; equals && k < sizeof numbers / sizeof numbers[0]; ++k) {

@@ -4,7 +4,8 @@
 they fall into a box and settle, from lattices here and at random there.
 
     compare.py BENCH [--quick] [--edges 20 32 50] [--laws hooke hertz] [--avalanche 20] [--drum 20]
-               [--funnel 21] [--silo 19] [--clump 14] [--repeats 3] [--processes 1 2] [--keep FOLDER]
+               [--funnel 21] [--drain 22] [--silo 19] [--clump 14] [--repeats 3]
+               [--processes 1 2] [--keep FOLDER]
 
 BENCH is bench_granular of a release build. Every round runs each program once; the least CPU time
 of all rounds counts. A peer's time is that of lead and steps less that of the lead alone, so that
@@ -78,11 +79,13 @@ def write_shell(name, radius, width):
 
 class Case:
     """A bed of edge^3 spheres: a column, an avalanche (gravity is tilted), a drum that turns, of
-    planes or of triangles, a hopper of triangles that empties, or a silo, which is one that does
-    not."""
+    planes or of triangles, a hopper of triangles that empties, for a short time or for a second
+    with what has left it counted, or a silo, which is one that does not."""
 
     LEADS = {"avalanche": 10000, "drum": 20000, "shell": 20000, "funnel": 5000, "silo": 300,
-             "clump": 40000}
+             "clump": 40000, "drain": 0}
+    DRAINED = 100000  # steps
+    DEPTH = 0.8  # over the width: who is deeper has left the hopper
     TILT = 45.0
     RATE = 2.0  # of the drum [rad/s]
 
@@ -91,8 +94,10 @@ class Case:
         self.count = edge ** 3
         self.lead = self.LEADS.get(kind, 300 if edge < 30 else 50)
         self.steps = max(100, self.LEADS.get(kind, 0) // 2, round(options.work / self.count))
+        if kind == "drain":
+            self.steps = self.DRAINED
         self.has_state = kind != "clump"
-        self.drum, self.hopper = kind in ("drum", "shell"), kind in ("funnel", "silo")
+        self.drum, self.hopper = kind in ("drum", "shell"), kind in ("funnel", "drain", "silo")
         bed = "drum" if self.drum else "funnel" if self.hopper else "column"
         self.state = os.path.join(options.keep, f"{bed}_{edge}_{law}.data")
         self.own = [options.bench, f"edge={edge}", f"law={law}"]
@@ -101,6 +106,7 @@ class Case:
         self.own += ["mesh=1"] if kind == "shell" else []
         self.own += ["funnel=1"] if self.hopper else []
         self.own += ["gate=1"] if kind == "silo" else []
+        self.own += ["drain=1"] if kind == "drain" else []
 
     def settle(self):
         if not self.has_state:
@@ -110,7 +116,11 @@ class Case:
             run(self.own + more + ["steps=1", "lead=0"])
         with open(self.state, encoding="ascii") as source, \
                 open(self.state + ".plain", "w", encoding="ascii") as target:
-            target.write(source.read().replace("Atoms # sphere", "Atoms"))
+            text = source.read().replace("Atoms # sphere", "Atoms")
+            if self.kind == "drain":  # who leaves the box is deleted there
+                bottom = f"{-self.DEPTH * self.edge * PITCH} \\1 zlo zhi"
+                text = re.sub(r"\S+ (\S+) zlo zhi", bottom, text)
+            target.write(text)
 
     def ours(self, threads):
         """CPU seconds, those of the lead, seconds, and the program's words."""
@@ -163,7 +173,8 @@ class Case:
             text, total = run(command + [str(self.steps)], cwd=work)
         wall = float(re.findall(r"Loop time of ([\d.e+-]+)", text)[-1])
         lost = self.count - int(re.findall(r"steps with (\d+) atoms", text)[-1])
-        return total, lead, wall, f"{lost} lost"
+        word = "have left the hopper" if self.kind == "drain" else "lost"
+        return total, lead, wall, f"{lost} {word}"
 
 
 def measure(case, programs, options):
@@ -199,8 +210,9 @@ def report(case, best, programs, processes):
     print()
     words = best["se3d", processes[0]][2].splitlines()
     for program in programs:
-        if program != "se3d" and best.get((program, processes[0]), "0 lost" * 3)[2] != "0 lost":
-            words.append(f"{program}: {best[program, processes[0]][2]}")
+        said = best.get((program, processes[0]), (0.0, 0.0, "0 lost"))[2]
+        if program != "se3d" and said != "0 lost":
+            words.append(f"{program}: {said}")
     print("\n".join("    " + line.strip() for line in words[1:]), flush=True)
 
 
@@ -213,6 +225,7 @@ def main():
     parser.add_argument("--avalanche", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--drum", type=int, nargs="*", default=[20], help="edges")
     parser.add_argument("--funnel", type=int, nargs="*", default=[21], help="edges")
+    parser.add_argument("--drain", type=int, nargs="*", default=[22], help="edges")
     parser.add_argument("--silo", type=int, nargs="*", default=[19], help="edges")
     parser.add_argument("--clump", type=int, nargs="*", default=[14], help="edges")
     parser.add_argument("--quick", action="store_true",
@@ -238,6 +251,7 @@ def main():
     cases += [("avalanche", e, l) for e in options.avalanche for l in options.laws]
     cases += [(kind, e, "hooke") for kind in ("drum", "shell") for e in options.drum]
     cases += [("funnel", e, "hooke") for e in options.funnel]
+    cases += [("drain", e, "hooke") for e in options.drain]
     cases += [("silo", e, "hooke") for e in options.silo]
     cases += [("clump", e, "hooke") for e in options.clump]
     for kind, edge, law in cases:
