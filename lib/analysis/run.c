@@ -16,6 +16,7 @@
 #include "contact/bodies/pace.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
+#include "integrator/motion.h"
 #include "integrator/step_list.h"
 #include "integrator/turns.h"
 #include "math/steps.h"
@@ -72,6 +73,27 @@ static void note_start(se3di_run *run, double t)
     }
 }
 
+/* The state is consistent already, with its accelerations and multipliers, on an open tree on which
+ * nothing but plain forces acts: nobody has moved since one was settled. What belongs to the model
+ * alone decides, so that any solver goes on alike. */
+static int is_settled(const se3di_run *run, double t)
+{
+    const se3di_equations *equations = &run->equations;
+    const se3di_model *model = run->model;
+    return model->settled == SE3DI_SETTLED && model->history_tag == 0 && !(model->time < t) &&
+           !(model->time > t) && run->analysis == SE3D_ANALYSIS_DYNAMICS &&
+           se3di_motion_find(equations)->are_all_plain(equations);
+}
+
+/* Of a settled state what acts is wanted alone. */
+static se3d_status solve_state(se3di_run *run, double t)
+{
+    se3di_equations *equations = &run->equations;
+    return is_settled(run, t)
+               ? se3di_assembly_eval_wrenches(&equations->assembly, t, equations->error)
+               : se3di_state_solve(equations, t);
+}
+
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
  * time. */
 static se3d_status settle(se3di_run *run, double t)
@@ -87,7 +109,7 @@ static se3d_status settle(se3di_run *run, double t)
         status = status < 0 ? status : se3di_equations_check_determined(equations);
         run->determined = status >= 0;
     }
-    status = status < 0 ? status : se3di_state_solve(equations, t);
+    status = status < 0 ? status : solve_state(run, t);
     equations->unfolds = 0;
     if (status >= 0 && !(run->model->settled & SE3DI_SETTLED)) {
         note_start(run, t);

@@ -365,11 +365,56 @@ static void gravity_that_begins_or_ends_to_vary_starts_nothing_anew(void)
     }
 }
 
+static uint64_t count_solutions(const se3d_solver *solver)
+{
+    se3d_solver_stats stats;
+    CHECK(!se3d_solver_get_stats(solver, &stats));
+    return stats.factorizations;
+}
+
+/* A run to the present makes the state consistent; what goes on from there, whoever does, leaves it
+ * as it is, unless somebody has set something since. */
+static void a_state_is_made_consistent_once(void)
+{
+    for (int changes = 0; changes < 3; ++changes) {
+        static const double gravity[3] = {0.0, 1.0, 0.0}, v[3] = {0.0, 1.0, 0.0};
+        se3d_system *systems[3] = {NULL};
+        se3d_body shafts[3];
+        CHECK(!se3d_system_create(NULL, &systems[0]));
+        add_shafts(systems[0], shafts);
+        se3d_solver *first = gauss_of(systems[0], SE3D_FORMULATION_JOINT, 1e-6);
+        CHECK(!se3d_system_clone(systems[0], &systems[2]));
+        CHECK(se3d_solver_run(first, 0.0) >= 0);
+        CHECK(!se3d_system_clone(systems[0], &systems[1]));
+        const uint64_t before = count_solutions(first);
+        CHECK(before > 0);
+        for (int k = 0; k < 3; ++k) {
+            CHECK(changes != 1 || !se3d_system_set_gravity(systems[k], gravity));
+            CHECK(changes != 2 || !se3d_body_set_velocity(systems[k], shafts[2], v));
+        }
+        CHECK(se3d_solver_run(first, 0.02) >= 0);
+        CHECK((count_solutions(first) == before) == (changes == 0));
+        for (int k = 1; k < 3; ++k) { /* in the last one nobody has been before */
+            se3d_solver *other = gauss_of(systems[k], SE3D_FORMULATION_JOINT, 1e-6);
+            CHECK(se3d_solver_run(other, 0.02) >= 0);
+            CHECK(se3d_system_hash(systems[k]) == se3d_system_hash(systems[0]) ||
+                  (k == 2 && changes > 0));
+            CHECK((count_solutions(other) == 0) == (k == 1 && changes == 0));
+            se3d_solver_destroy(other);
+        }
+        se3d_solver_destroy(first);
+        for (int k = 0; k < 3; ++k) {
+            se3d_system_destroy(systems[k]);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(whoever_continues_gets_the_same_bits);
     RUN(steps_of_loops_in_lanes_go_on_alike);
     RUN(gravity_that_begins_or_ends_to_vary_starts_nothing_anew);
     RUN(bodies_keep_the_sign_of_p);
+    RUN(a_state_is_made_consistent_once);
     return check_finish();
 }
