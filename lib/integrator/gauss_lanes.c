@@ -170,21 +170,25 @@ void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
     }
 }
 
-/* The states of all stages. */
-static void combine(const se3di_gauss_lanes *g, const double *y)
+/* Numbers first to first + count of the states of all stages. */
+static void combine(const se3di_gauss_lanes *g, const double *y, size_t first, size_t count)
 {
-    const size_t state = g->positions + g->velocities;
     for (size_t k = 0; k < g->stages / g->width; ++k) {
         const se3di_gauss_group *own = &g->groups[k];
-        g->core->combine(state, y, g->stages, own->weights, g->K, own->Y);
+        g->core->combine(count, y + first, g->stages, own->weights, g->K + first * g->stages,
+                         own->Y + first * g->width);
     }
 }
 
-/* Rates of positions from velocities of the derivatives as they are; then the states. */
+/* Velocities, and rates of positions from them; those of quaternions need the quaternions, by the
+ * derivatives as they are. */
 static void renew(const se3di_gauss_lanes *g, const double *y)
 {
     const size_t s = g->stages, w = g->width, at = g->positions * w;
-    combine(g, y);
+    combine(g, y, g->positions, g->velocities);
+    if (g->positions > g->velocities) {
+        combine(g, y, 0, g->positions);
+    }
     for (size_t k = 0; k < s / w; ++k) {
         const se3di_gauss_group *own = &g->groups[k];
         double *rates = s == w ? g->K : own->next;
@@ -264,7 +268,7 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
 {
     const size_t state = g->positions + g->velocities, at = g->positions * g->width;
     renew(g, m->y1);
-    combine(g, m->y1);
+    combine(g, m->y1, 0, g->positions);
     for (size_t i = 0; i < g->stages / g->width; ++i) {
         const se3di_gauss_group *own = &g->groups[i];
         const double *placed = place(g, own, k);

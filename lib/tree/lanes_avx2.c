@@ -28,6 +28,7 @@ typedef int64_t verdict __attribute__((vector_size(32)));
 #define KEEP_IF(verdict, a) ((number)((integers)(a) | ~(integers)(verdict)))
 #define PICK(verdict, a, b)                                                                        \
     ((number)(((integers)(a) & (integers)(verdict)) | ((integers)(b) & ~(integers)(verdict))))
+#define LARGER(a, b) ((number)_mm256_max_pd(b, a)) /* a where one is not a number */
 
 #include "tree/lanes.inc"
 

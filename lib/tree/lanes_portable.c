@@ -16,6 +16,7 @@ typedef int verdict;
 #define is_far(a)           (!((a) > -1e5 && (a) < 1e5))
 #define KEEP_IF(verdict, a) ((verdict) ? (a) : (double)NAN)
 #define PICK(verdict, a, b) ((verdict) ? (a) : (b))
+#define LARGER(a, b)        ((b) > (a) ? (b) : (a))
 
 #include "tree/lanes.inc"
 
