@@ -291,6 +291,18 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
     return se3di_explicit_size_of(m, most, end) + z;
 }
 
+void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2])
+{
+    double parts[2][4];
+    const size_t work = m->count - SE3DI_STATE_WORK;
+    const int can =
+        m->motion->measure && m->motion->measure(m->equations, error, m->bodies[0], parts);
+    for (int k = 0; k < 2; ++k) {
+        size[k] = can ? se3di_explicit_size_of(m, parts[k], error[k] + work)
+                      : se3di_explicit_size(m, error[k]);
+    }
+}
+
 double se3di_explicit_measure(const se3di_explicit *m, const double *error)
 {
     return se3di_explicit_size(m, error) / m->tolerance;

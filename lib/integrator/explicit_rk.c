@@ -35,13 +35,15 @@ static double estimate_error(se3di_explicit *m, double h)
     const se3di_rk_tableau *tableau = m->tableau;
     se3di_explicit_combine(m, m->K, NULL, h, tableau->error, tableau->stages + tableau->uses_end,
                            m->sum);
-    double error = se3di_explicit_measure(m, m->sum);
-    if (tableau->error3) {
-        se3di_explicit_combine(m, m->K, NULL, h, tableau->error3, tableau->stages, m->sum3);
-        double error3 = se3di_explicit_measure(m, m->sum3);
-        error = error > 0.0 ? error * error / sqrt(error * error + 0.01 * error3 * error3) : error;
+    if (!tableau->error3) {
+        return se3di_explicit_measure(m, m->sum);
     }
-    return error;
+    se3di_explicit_combine(m, m->K, NULL, h, tableau->error3, tableau->stages, m->sum3);
+    const double *const estimates[2] = {m->sum, m->sum3};
+    double sizes[2];
+    se3di_explicit_sizes(m, estimates, sizes);
+    const double error = sizes[0] / m->tolerance, error3 = sizes[1] / m->tolerance;
+    return error > 0.0 ? error * error / sqrt(error * error + 0.01 * error3 * error3) : error;
 }
 
 /* In the history: the derivative that the last step began with. */

@@ -116,6 +116,8 @@ void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const d
                             double h, const double *coefficients, int limit, double *out);
 /* The largest part of an error vector, relative to the scales; and to the tolerance. */
 double se3di_explicit_size(const se3di_explicit *m, const double *error);
+/* The same of two. */
+void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2]);
 /* The same from the largest squares of its parts (way, half the turn, changes of velocities) and
  * the works. */
 double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],

@@ -337,20 +337,30 @@ static void arrive(se3di_explicit *m, double h)
     se3di_explicit_combine(m, get_form(m, 0), m->y1, h, &whole, 1, m->y);
 }
 
-/* d_0 and d_1: what u' lacks at both ends. */
-static void find_defects(const se3di_explicit *m, double *begin, double *end)
+/* Of so many stages, which the compiler knows. */
+static inline void subtract_ends(const se3di_explicit *m, const int stages, double *restrict begin,
+                                 double *restrict end)
 {
-    const double *f0 = m->f1, *f1 = se3di_explicit_end(m);
-    for (size_t c = 0; c < m->count; ++c) {
-        const double *a = get_form(m, 0) + c;
+    const double *f0 = m->f1, *f1 = se3di_explicit_end(m), *a = get_form(m, 0);
+    const size_t count = m->count;
+    for (size_t c = 0; c < count; ++c) {
         double even = 0.0, odd = 0.0;
-        for (int k = 0; k < m->stages; k += 2) {
-            even += a[0];
-            odd += a[m->count];
-            a += 2 * m->count;
+        for (int k = 0; k < stages; k += 2) {
+            even += a[(size_t)k * count + c];
+            odd += a[(size_t)(k + 1) * count + c];
         }
         begin[c] = f0[c] - (even - odd);
         end[c] = f1[c] - (even + odd);
+    }
+}
+
+/* d_0 and d_1: what u' lacks at both ends. */
+static void find_defects(const se3di_explicit *m, double *begin, double *end)
+{
+    if (m->stages == 4) {
+        subtract_ends(m, 4, begin, end);
+    } else {
+        subtract_ends(m, 8, begin, end);
     }
 }
 
@@ -367,7 +377,10 @@ static double estimate_end(se3di_explicit *m, double h, double error)
     find_defects(m, m->sum, m->sum3);
     const double begin = length_of(m, m->sum), end = length_of(m, m->sum3);
     const double defect = fmax(begin, end), whole = length_of(m, get_form(m, 0));
-    const double size = h * fmax(se3di_explicit_size(m, m->sum), se3di_explicit_size(m, m->sum3));
+    const double *const defects[2] = {m->sum, m->sum3};
+    double sizes[2];
+    se3di_explicit_sizes(m, defects, sizes);
+    const double size = h * fmax(sizes[0], sizes[1]);
     const double part = defect < whole ? defect / whole : 1.0;
     if (!(size > 0.0)) {
         return size == 0.0 ? 0.0 : HUGE_VAL;

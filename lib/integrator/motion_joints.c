@@ -613,6 +613,18 @@ static const double *spread(se3di_equations *equations, const double *change, do
     return out;
 }
 
+/* Carriers of states are measured one by one. */
+static int measure(const se3di_equations *equations, const double *const change[2], double *room,
+                   double parts[2][4])
+{
+    const se3di_tree *tree = equations->tree;
+    if (tree->has_states) {
+        return 0;
+    }
+    se3di_tree_measure(tree, change, room, parts);
+    return 1;
+}
+
 static void show(se3di_equations *equations, const double *y, double *bodies)
 {
     se3di_tree *tree = equations->tree;
@@ -714,6 +726,7 @@ const se3di_motion se3di_motion_joints = {
     .derive = derive,
     .move = move,
     .spread = spread,
+    .measure = measure,
     .project = project,
     .measure_gap = measure_gap,
     .keep = keep,

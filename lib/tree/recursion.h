@@ -20,6 +20,14 @@ void se3di_tree_mul(se3di_tree *tree, const double *x, double *out);
 /* M [velocities x velocities], row-major, both triangles, armature included. */
 void se3di_tree_mass_matrix(se3di_tree *tree, double *M);
 
+#define SE3DI_TREE_CHANGES_ROOM 24
+
+/* The largest squares over all bodies of what two small changes of q and qdot [positions +
+ * velocities] are for a body: of the way of its centre of mass, of half the turn, of the changes of
+ * its velocities. No node carries a state; `room`: SE3DI_TREE_CHANGES_ROOM numbers for each. */
+void se3di_tree_measure(const se3di_tree *tree, const double *const change[2], double *room,
+                        double parts[2][4]);
+
 /* out[v] = what acts along each freedom: S^T of `wrench` [nodes * 6] about P and of the nodes
  * beyond; the forces of joints do no work. */
 void se3di_tree_project(se3di_tree *tree, const double *wrench, double *out);

@@ -618,6 +618,51 @@ static void all_instruction_levels_give_the_same_bits(void)
     }
 }
 
+/* The largest squares of velocities and angular velocities of the nodes' bodies. */
+static void find_largest(const se3di_tree *tree, double squares[2])
+{
+    squares[0] = squares[1] = 0.0;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_frame *frame = &tree->model->frames[tree->nodes[k].body];
+        squares[0] = fmax(squares[0], se3di_dot(frame->v, frame->v));
+        squares[1] = fmax(squares[1], se3di_dot(frame->w, frame->w));
+    }
+}
+
+/* From rest, velocities are a change of velocities, and the rates of positions by them are one of
+ * positions: both move the bodies alike. In either lane, beside one that is not a number. */
+static void changes_are_measured_at_the_bodies(void)
+{
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        double of_q[2 * NUMBERS] = {0.0}, of_qdot[2 * NUMBERS] = {0.0}, none[2 * NUMBERS];
+        double room[SE3DI_TREE_CHANGES_ROOM * TREE_BODIES_MAX], parts[2][4], squares[2];
+        begin(&c, seed);
+        for (int k = 0; k < 2 * NUMBERS; ++k) {
+            none[k] = (double)NAN;
+        }
+        find_largest(&c.tree, squares);
+        memcpy(c.tree.q, c.q, c.tree.q_count * sizeof *c.q);
+        se3di_tree_rates(&c.tree, c.q, c.qdot, of_q);
+        memcpy(of_qdot + c.tree.q_count, c.qdot, c.tree.v_count * sizeof *c.qdot);
+        const double *const both[2] = {of_q, of_qdot}, *const broken[2] = {none, of_q};
+        se3di_tree_measure(&c.tree, both, room, parts);
+        CHECK_NEAR(parts[0][0], squares[0], 1e-13 * squares[0]);
+        CHECK_NEAR(4.0 * parts[0][1], squares[1], 1e-13 * squares[1]);
+        CHECK(parts[0][2] == 0.0 && parts[0][3] == 0.0);
+        CHECK(parts[1][0] == 0.0 && parts[1][1] == 0.0);
+        CHECK_NEAR(parts[1][2], squares[0], 1e-13 * squares[0]);
+        CHECK_NEAR(parts[1][3], squares[1], 1e-13 * squares[1]);
+        const double before[2] = {parts[0][0], parts[0][1]};
+        se3di_tree_measure(&c.tree, broken, room, parts);
+        CHECK(parts[1][0] == before[0] && parts[1][1] == before[1]);
+        for (int k = 0; k < 4 && c.tree.v_count > 0; ++k) {
+            CHECK(isnan(parts[0][k]));
+        }
+        end(&c);
+    }
+}
+
 int main(void)
 {
     RUN(every_body_is_a_node_and_parents_come_first);
@@ -631,5 +676,6 @@ int main(void)
     RUN(redundant_loops_and_singular_positions_give_the_same_accelerations);
     RUN(corrections_are_the_least_ones);
     RUN(all_instruction_levels_give_the_same_bits);
+    RUN(changes_are_measured_at_the_bodies);
     return check_finish();
 }
