@@ -141,10 +141,10 @@ const double *se3di_explicit_get_rates(const se3di_explicit *m)
 /* Squares of the accelerations that a force and a torque (their squares) on a body would make. */
 static void grow_sums(const se3di_body *body, double force, double torque, double sums[2])
 {
-    const double J = fmax(body->J[0], fmax(body->J[1], body->J[2]));
+    const double J = se3di_raised(se3di_raised(body->J[0], body->J[1]), body->J[2]);
     if (!body->fixed && body->state == 0) {
-        sums[0] = fmax(sums[0], force / (body->mass * body->mass));
-        sums[1] = fmax(sums[1], torque / (J * J));
+        sums[0] = se3di_raised(sums[0], force / (body->mass * body->mass));
+        sums[1] = se3di_raised(sums[1], torque / (J * J));
     }
 }
 
@@ -188,12 +188,14 @@ static void grow_balance(se3di_explicit *m)
     }
 }
 
-void se3di_explicit_grow_scale(se3di_explicit *m)
+const double *se3di_explicit_grow_scale(se3di_explicit *m)
 {
     se3di_state_scale *scale = &m->past->scale;
-    se3di_state_scale_grow(m->assembly, se3di_explicit_get_rates(m), scale);
+    const double *rates = se3di_explicit_get_rates(m);
+    se3di_state_scale_grow(m->assembly, rates, scale);
     scale->energy = fmax(scale->energy, m->past->energy_least);
     grow_balance(m);
+    return rates;
 }
 
 typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));

@@ -18,7 +18,8 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration);
 se3di_explicit se3di_explicit_begin(se3di_integration *integration, int is_controlled);
 /* y'_1 as the bodies see it; y_1 was set last. */
 const double *se3di_explicit_get_rates(const se3di_explicit *m);
-void se3di_explicit_grow_scale(se3di_explicit *m);
+/* @return them */
+const double *se3di_explicit_grow_scale(se3di_explicit *m);
 /* Derivative at the state that was set last. */
 se3d_status se3di_explicit_differentiate(se3di_explicit *m, double t, double *derivative);
 /* What the velocities of the step that is tried are measured by: not below what rounding makes of

@@ -111,8 +111,10 @@ static void accept(se3di_explicit *m, double t)
         memcpy(m->f1, m->next, m->count * sizeof *m->f1);
     }
     m->past->unscaled = m->leaves_scale;
-    if (!m->leaves_scale) {
-        se3di_explicit_grow_scale(m);
+    const double *rates = m->leaves_scale ? NULL : se3di_explicit_grow_scale(m);
+    if (rates && m->step.methods) { /* a run, whose next step begins with these accelerations */
+        se3di_state_set_rates(m->assembly, rates);
+        m->has_rates = 1;
     }
     if (!(m->past->wide > 0.0)) { /* else one with little part in its dependence may seem clear */
         const double dependent = m->motion->count_dependent(m->equations);
@@ -260,10 +262,10 @@ static double largest_growth(const se3di_explicit *m)
     const se3di_assembly *assembly = m->assembly;
     double largest = 0.0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        const size_t body = assembly->free_body[k];
-        largest = fmax(largest, se3di_norm(assembly->model->acceleration + 6 * body + 3));
+        const double *wdot = assembly->model->acceleration + 6 * assembly->free_body[k] + 3;
+        largest = se3di_raised(largest, se3di_dot(wdot, wdot));
     }
-    return 2.0 * largest;
+    return 2.0 * sqrt(largest);
 }
 
 /* The run is to end at the forward state. */
@@ -365,7 +367,10 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     se3di_forces_show(model, 0);
     stand_at_begin(m);
     SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
-    se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
+    if (!m->has_rates) {
+        se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
+    }
+    m->has_rates = 0;
     if (m->step.integration->repeat) {
         return repeat(m);
     }

@@ -102,6 +102,7 @@ struct se3di_explicit {
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
     int stands;         /* the frames are at y_1: a step of this call has ended there */
+    int has_rates;      /* the accelerations of the model are those at y_1 */
     int has_stages;     /* K is that of the last step: it was made in this call */
     int leaves_scale;   /* the scale grows when errors are measured again */
     int waits;          /* y'_1, and what the model shows of it, is computed when it is needed */

@@ -443,7 +443,7 @@ static double body_energy(const se3di_assembly *assembly, uint32_t body, const d
     const se3di_body *b = &assembly->model->bodies[body];
     const se3di_frame *frame = &assembly->model->frames[body];
     const double *wrench = assembly->wrench + 6 * (size_t)body;
-    double J = fmax(b->J[0], fmax(b->J[1], b->J[2]));
+    double J = se3di_raised(se3di_raised(b->J[0], b->J[1]), b->J[2]);
     double v2 = se3di_dot(frame->v, frame->v) + se3di_norm(derivative + 7) * length;
     double w2 = se3di_dot(frame->w, frame->w) + se3di_norm(derivative + 10);
     double applied = se3di_norm(wrench) * length + se3di_norm(wrench + 3);
@@ -502,10 +502,10 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
         if (assembly->model->bodies[assembly->free_body[k]].state != 0) {
             continue;
         }
-        v = fmax(v, se3di_dot(frame->v, frame->v));
-        w = fmax(w, se3di_dot(frame->w, frame->w));
-        a = fmax(a, se3di_dot(derivative + 7, derivative + 7));
-        wdot = fmax(wdot, se3di_dot(derivative + 10, derivative + 10));
+        v = se3di_raised(v, se3di_dot(frame->v, frame->v));
+        w = se3di_raised(w, se3di_dot(frame->w, frame->w));
+        a = se3di_raised(a, se3di_dot(derivative + 7, derivative + 7));
+        wdot = se3di_raised(wdot, se3di_dot(derivative + 10, derivative + 10));
         energy += body_energy(assembly, assembly->free_body[k], derivative, scale->length);
     }
     v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
