@@ -74,24 +74,16 @@ static void note_start(se3di_run *run, double t)
 }
 
 /* The state is consistent already, with its accelerations and multipliers, on an open tree on which
- * nothing but plain forces acts: nobody has moved since one was settled. What belongs to the model
- * alone decides, so that any solver goes on alike. */
+ * nothing but plain forces acts: nobody has moved, or changed or broken anything since one was
+ * settled. What belongs to the model alone decides, so that any solver goes on alike. */
 static int is_settled(const se3di_run *run, double t)
 {
     const se3di_equations *equations = &run->equations;
     const se3di_model *model = run->model;
-    return model->settled == SE3DI_SETTLED && model->history_tag == 0 && !(model->time < t) &&
+    return model->settled == SE3DI_SETTLED && model->history_tag == 0 &&
+           (model->ranks_known || model->row_count == 0) && !(model->time < t) &&
            !(model->time > t) && run->analysis == SE3D_ANALYSIS_DYNAMICS &&
            se3di_motion_find(equations)->are_all_plain(equations);
-}
-
-/* Of a settled state what acts is wanted alone. */
-static se3d_status solve_state(se3di_run *run, double t)
-{
-    se3di_equations *equations = &run->equations;
-    return is_settled(run, t)
-               ? se3di_assembly_eval_wrenches(&equations->assembly, t, equations->error)
-               : se3di_state_solve(equations, t);
 }
 
 /* A new state: positions, velocities, accelerations and multipliers made consistent at the model's
@@ -99,6 +91,7 @@ static se3d_status solve_state(se3di_run *run, double t)
 static se3d_status settle(se3di_run *run, double t)
 {
     se3di_equations *equations = &run->equations;
+    const int is_there = is_settled(run, t);
     se3di_state_accept(equations);
     equations->hold = run->analysis == SE3D_ANALYSIS_ASSEMBLY;
     equations->unfolds = 1;
@@ -109,7 +102,10 @@ static se3d_status settle(se3di_run *run, double t)
         status = status < 0 ? status : se3di_equations_check_determined(equations);
         run->determined = status >= 0;
     }
-    status = status < 0 ? status : solve_state(run, t);
+    if (status >= 0) {
+        status = is_there ? se3di_assembly_eval_wrenches(&equations->assembly, t, equations->error)
+                          : se3di_state_solve(equations, t);
+    }
     equations->unfolds = 0;
     if (status >= 0 && !(run->model->settled & SE3DI_SETTLED)) {
         note_start(run, t);
