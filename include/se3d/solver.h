@@ -69,8 +69,8 @@ typedef struct se3d_solver_def {
     int32_t method;      /* se3d_method, dynamics only, default AUTO */
     /* bdf: 1..5, rattle: 2, 4, gauss: 8, 16, others: the one they have. 0: the default, of gauss 16
      * for tolerances below 1e-6; where only constant gravity acts on what it integrates in joint
-     * coordinates in lanes, below 3e-6 on open trees of 8 freedoms or more, and at every tolerance
-     * on smaller ones and on loops; else, and where its iterations have failed, 8 */
+     * coordinates in lanes, below 3e-6 on open trees of 8 freedoms or more, below 1e-3 on smaller
+     * ones, and at every tolerance on loops; else, and where its iterations have failed, 8 */
     int32_t order;
     /* Of generalized_alpha, hht, rattle, verlet, convex: fixed; of the others: the largest one;
      * >= 1e-15 [s]; 0: chosen by the error. What a fixed one errs by nobody knows before it is

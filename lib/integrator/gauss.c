@@ -19,10 +19,12 @@
 #include <string.h>
 
 #define MANY_FROM       1e-6 /* 8 stages for tolerances below, if they come one by one, */
-#define MANY_IN_LANES   3e-6 /* in lanes, on open trees of this many freedoms, elsewhere always: */
+#define MANY_IN_LANES   3e-6 /* in lanes, on open trees of this many freedoms, */
 #define LARGE           8
-#define CONTRACTION_AIM 0.3 /* of the iterations: fewer, longer steps cost more iterations */
-#define CONTRACTION_MAX 0.7 /* above, the step is given up */
+#define MANY_OF_FEW     1e-3 /* and on those of fewer; of loops in lanes always */
+#define CONTRACTION_AIM 0.3  /* of the iterations: fewer, longer steps cost more iterations */
+#define CONTRACTION_MAX 0.7  /* above, the step is given up, */
+#define FIRST_MAX       1.2  /* above this by the first two changes: one is that of the guess */
 #define ITERATIONS_MAX  12
 #define EXACT_MAX       100   /* iterations to rounding, for a step that is not controlled */
 #define ROUNDING        1e-14 /* a relative change that is only noise */
@@ -82,8 +84,10 @@ static double many_from(const se3di_explicit *m)
     if (!se3di_gauss_lanes_suit(m)) {
         return MANY_FROM;
     }
-    const int is_large = m->equations->is_open_tree && m->equations->tree->v_count >= LARGE;
-    return is_large ? MANY_IN_LANES : HUGE_VAL;
+    if (!m->equations->is_open_tree) {
+        return HUGE_VAL;
+    }
+    return m->equations->tree->v_count >= LARGE ? MANY_IN_LANES : MANY_OF_FEW;
 }
 
 /* The stages of the next step; the history decides, so that clones go on alike. */
@@ -218,7 +222,7 @@ static int judge(const se3di_explicit *m, int iteration, double change, double r
     if (left <= LEFT * m->tolerance || change <= ROUNDING) {
         return 1;
     }
-    if (iteration > 0 && rate > CONTRACTION_MAX) {
+    if (iteration > 0 && rate > (iteration == 1 ? FIRST_MAX : CONTRACTION_MAX)) {
         return change <= NOISE * m->tolerance ? 1 : -1;
     }
     return iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
