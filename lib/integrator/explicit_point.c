@@ -254,22 +254,43 @@ se3di_state_scale se3di_explicit_measure_by(const se3di_explicit *m)
 {
     const double part = BALANCE / m->tolerance * m->h;
     se3di_state_scale scale = m->past->scale;
-    scale.speed = fmax(scale.speed, part * m->past->balance[0]);
-    scale.spin = fmax(scale.spin, part * m->past->balance[1]);
+    scale.speed = se3di_raised(scale.speed, part * m->past->balance[0]);
+    scale.spin = se3di_raised(scale.spin, part * m->past->balance[1]);
     return scale;
 }
 
-double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
-                              const double work[SE3DI_STATE_WORK])
+/* The same, and neither of the velocities below what rounding makes of the other. */
+static se3di_state_scale measure_both_by(const se3di_explicit *m)
 {
-    const se3di_state_scale scale = se3di_explicit_measure_by(m);
+    const se3di_state_scale own = se3di_explicit_measure_by(m);
     const double least = ROUNDING / m->tolerance;
-    const double speed = fmax(scale.speed, least * scale.spin * scale.length);
-    const double spin = fmax(scale.spin, least * scale.speed / scale.length);
-    const double r = sqrt(parts[0]) / scale.length + 2.0 * sqrt(parts[1]);
-    const double v = sqrt(parts[2]) / speed + sqrt(parts[3]) / spin;
-    const double e = se3di_norm(work) / scale.energy;
-    return r + v + WORK_WEIGHT * e;
+    se3di_state_scale scale = own;
+    scale.speed = se3di_raised(own.speed, least * own.spin * own.length);
+    scale.spin = se3di_raised(own.spin, least * own.speed / own.length);
+    return scale;
+}
+
+static double size_without_work(const se3di_state_scale *scale, const double parts[4])
+{
+    const double r = sqrt(parts[0]) / scale->length + 2.0 * sqrt(parts[1]);
+    const double v = sqrt(parts[2]) / scale->speed + sqrt(parts[3]) / scale->spin;
+    return r + v;
+}
+
+static double size_of(const se3di_state_scale *scale, const double parts[4],
+                      const double work[SE3DI_STATE_WORK])
+{
+    const double e = se3di_norm(work) / scale->energy;
+    return size_without_work(scale, parts) + WORK_WEIGHT * e;
+}
+
+void se3di_explicit_sizes_of(const se3di_explicit *m, size_t count, double (*parts)[4],
+                             double *sizes)
+{
+    const se3di_state_scale scale = measure_both_by(m);
+    for (size_t k = 0; k < count; ++k) {
+        sizes[k] = size_without_work(&scale, parts[k]);
+    }
 }
 
 double se3di_explicit_size(const se3di_explicit *m, const double *error)
@@ -290,7 +311,8 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
             most[c] = se3di_larger(most[c], parts[c]);
         }
     }
-    return se3di_explicit_size_of(m, most, end) + z;
+    const se3di_state_scale scale = measure_both_by(m);
+    return size_of(&scale, most, end) + z;
 }
 
 void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2])
@@ -299,9 +321,10 @@ void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2],
     const size_t work = m->count - SE3DI_STATE_WORK;
     const int can =
         m->motion->measure && m->motion->measure(m->equations, error, m->bodies[0], parts);
+    const se3di_state_scale scale = measure_both_by(m);
     for (int k = 0; k < 2; ++k) {
-        size[k] = can ? se3di_explicit_size_of(m, parts[k], error[k] + work)
-                      : se3di_explicit_size(m, error[k]);
+        size[k] =
+            can ? size_of(&scale, parts[k], error[k] + work) : se3di_explicit_size(m, error[k]);
     }
 }
 

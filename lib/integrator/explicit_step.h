@@ -119,10 +119,10 @@ void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const d
 double se3di_explicit_size(const se3di_explicit *m, const double *error);
 /* The same of two. */
 void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2]);
-/* The same from the largest squares of its parts (way, half the turn, changes of velocities) and
- * the works. */
-double se3di_explicit_size_of(const se3di_explicit *m, const double parts[4],
-                              const double work[SE3DI_STATE_WORK]);
+/* The same of `count` from the largest squares of their parts (way, half the turn, changes of
+ * velocities), without works. */
+void se3di_explicit_sizes_of(const se3di_explicit *m, size_t count, double (*parts)[4],
+                             double *sizes);
 double se3di_explicit_measure(const se3di_explicit *m, const double *error);
 /* Derivative at t at the state y; the model's frames may stay behind. */
 se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,

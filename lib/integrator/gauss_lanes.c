@@ -203,14 +203,17 @@ static void renew(const se3di_gauss_lanes *g, const double *y)
 static double size_of(const se3di_gauss_lanes *g, const se3di_explicit *m,
                       const se3di_gauss_rule *rule)
 {
-    static const double none[SE3DI_STATE_WORK] = {0.0};
     const size_t w = g->width;
-    double sum = 0.0;
+    double parts[SE3DI_GAUSS_MAX][4], sizes[SE3DI_GAUSS_MAX], sum = 0.0;
     for (size_t i = 0; i < g->stages; ++i) {
         const double *from = g->groups[i / w].parts + i % w;
-        const double parts[4] = {from[0], from[w], from[2 * w], from[3 * w]};
-        const double size = se3di_explicit_size_of(m, parts, none);
-        sum += rule->b[i] * size * size;
+        for (size_t k = 0; k < 4; ++k) {
+            parts[i][k] = from[k * w];
+        }
+    }
+    se3di_explicit_sizes_of(m, g->stages, parts, sizes);
+    for (size_t i = 0; i < g->stages; ++i) {
+        sum += rule->b[i] * sizes[i] * sizes[i];
     }
     return sqrt(sum);
 }
