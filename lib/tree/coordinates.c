@@ -69,7 +69,7 @@ static void triads_of(const se3di_model *model, const se3di_tree_node *n, double
                       double child[9])
 {
     static const double unit[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
-    if (n->type == SE3DI_TREE_FREE || n->type == SE3DI_TREE_SPHERICAL) {
+    if (n->constraint < 0 || n->type == SE3DI_TREE_SPHERICAL) {
         memcpy(parent, unit, sizeof unit);
         memcpy(child, unit, sizeof unit);
         return;
@@ -434,6 +434,12 @@ static void get_free(const se3di_frame *frame, double *q, double *qdot)
     memcpy(qdot + 3, frame->w, sizeof frame->w);
 }
 
+static void get_carrier(const se3di_frame *frame, double *q, double *qdot)
+{
+    q[0] = frame->r[0];
+    qdot[0] = frame->v[0];
+}
+
 static void get_spherical(const se3di_tree *tree, const se3di_tree_node *n,
                           const relative_motion *m, double *q, double *qdot)
 {
@@ -465,6 +471,10 @@ static void get_node(const se3di_tree *tree, const se3di_tree_node *n, double *q
     relative_motion m;
     if (n->type == SE3DI_TREE_FREE) {
         get_free(&model->frames[n->body], q, qdot);
+        return;
+    }
+    if (n->type == SE3DI_TREE_CARRIER) {
+        get_carrier(&model->frames[n->body], q, qdot);
         return;
     }
     measure(tree, n, &m);

@@ -235,7 +235,8 @@ static void add_node(builder *b, uint32_t body)
     *n = (se3di_tree_node){.body = body,
                            .parent = -1,
                            .constraint = joint,
-                           .type = SE3DI_TREE_FREE,
+                           .type = model->bodies[body].state != 0 ? SE3DI_TREE_CARRIER
+                                                                  : SE3DI_TREE_FREE,
                            .angle = -1,
                            .driver = -1,
                            .branch = -1,

@@ -24,6 +24,7 @@
  * are those of the joint (j relative to i), whichever side is the parent.
  *
  *     free         r (3), p (4);  v of the centre of mass, ground frame (3), w in the body (3)
+ *     carrier      x of the centre of mass, ground frame, where the carrier of a state slides
  *     fixed        none
  *     revolute     angle
  *     prismatic    displacement
@@ -34,6 +35,7 @@
  *     planar       two displacements along the parent's directions in the plane, angle */
 #define SE3DI_TREE_JOINT_LIST(X)                                                                   \
     X(FREE, free, 7, 6)                                                                            \
+    X(CARRIER, carrier, 1, 1)                                                                      \
     X(FIXED, fixed, 0, 0)                                                                          \
     X(REVOLUTE, revolute, 1, 1)                                                                    \
     X(PRISMATIC, prismatic, 1, 1)                                                                  \

@@ -5,6 +5,7 @@
 #include "support/tree_world.h"
 
 #include "assembly/loads.h"
+#include "model/state.h"
 #include "nonlinear/equations.h"
 #include "tree/core.h"
 #include "tree/loop_core.h"
@@ -14,7 +15,7 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-enum { MECHANISMS = 120, NUMBERS = 7 * TREE_BODIES_MAX };
+enum { MECHANISMS = 120, NUMBERS = 7 * (TREE_BODIES_MAX + 1) };
 
 static double largest(const double *values, size_t count)
 {
@@ -663,6 +664,40 @@ static void changes_are_measured_at_the_bodies(void)
     }
 }
 
+/* z' = f to the bit, with one coordinate beside those of the mechanism, whose accelerations stay. */
+static void a_state_is_a_node_of_one_coordinate(void)
+{
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        const se3d_state_def def = se3d_state_def_default();
+        se3d_state state;
+        double wrench[6 * (TREE_BODIES_MAX + 2)] = {0.0}, before[NUMBERS], qddot[NUMBERS];
+        begin(&c, seed);
+        const uint32_t q = c.tree.q_count, v = c.tree.v_count;
+        tree_vector(&c.world, wrench, 6 * (c.world.count - 1), 1.0);
+        se3di_tree_take_wrenches(&c.tree, c.model->frames, wrench);
+        CHECK(!se3di_tree_factor(&c.tree, NULL));
+        se3di_tree_accelerate(&c.tree, c.tree.e, before);
+        se3di_tree_destroy(&c.tree);
+        CHECK(!se3d_state_create(c.world.system, &def, &state));
+        CHECK(!se3di_tree_init(&c.tree, c.model, 1, NULL));
+        const uint32_t body = c.tree.nodes[c.tree.count - 1].body;
+        CHECK(c.tree.q_count == q + 1 && c.tree.v_count == v + 1);
+        CHECK(c.model->bodies[body].state != 0);
+        c.q[q] = 3.0;
+        c.qdot[v] = -2.0;
+        se3di_tree_place(&c.tree, c.q, c.qdot, c.model->frames);
+        se3di_tree_get(&c.tree, c.q, c.qdot);
+        CHECK(c.q[q] == 3.0 && c.qdot[v] == -2.0);
+        wrench[6 * body] = SE3DI_CARRIER_MASS * 0.7;
+        se3di_tree_take_wrenches(&c.tree, c.model->frames, wrench);
+        CHECK(!se3di_tree_factor(&c.tree, NULL));
+        se3di_tree_accelerate(&c.tree, c.tree.e, qddot);
+        CHECK(qddot[v] == 0.7 && memcmp(before, qddot, v * sizeof *qddot) == 0);
+        end(&c);
+    }
+}
+
 int main(void)
 {
     RUN(every_body_is_a_node_and_parents_come_first);
@@ -677,5 +712,6 @@ int main(void)
     RUN(corrections_are_the_least_ones);
     RUN(all_instruction_levels_give_the_same_bits);
     RUN(changes_are_measured_at_the_bodies);
+    RUN(a_state_is_a_node_of_one_coordinate);
     return check_finish();
 }
