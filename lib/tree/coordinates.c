@@ -7,6 +7,7 @@
 #include "math/vec3.h"
 #include "primitive/turn_counter.h"
 #include "tree/core.h"
+#include "tree/packs.h"
 
 #include <math.h>
 #include <string.h>
@@ -325,6 +326,7 @@ void se3di_tree_match_signs(se3di_tree *tree)
             n->B[c] *= sign;
         }
     }
+    se3di_tree_fill_packs(tree);
 }
 
 int32_t se3di_tree_component(const se3di_tree_node *node, int32_t coordinate)
@@ -378,6 +380,7 @@ void se3di_tree_refresh(se3di_tree *tree)
     for (uint32_t k = 0; k < tree->count; ++k) {
         refresh_node(tree, &tree->nodes[k]);
     }
+    se3di_tree_find_packs(tree);
     se3di_tree_get(tree, tree->q, tree->qdot);
     se3di_tree_match_signs(tree);
 }

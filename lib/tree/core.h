@@ -6,6 +6,7 @@
 #include "tree/tree.h"
 
 typedef struct se3di_tree_core {
+    int32_t has_packs, reserved; /* nodes side by side are placed together (tree/packs.h) */
     /* links, S and biases, and the frames of the bodies; without frames (NULL) links have neither
      * quaternions nor points */
     void (*place)(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);

@@ -3,6 +3,7 @@
 #include "tree/core.h"
 
 #include "base/target.h"
+#include "tree/packs.h"
 
 #if defined(SE3DI_TARGETS)
 #include <immintrin.h>
@@ -10,6 +11,7 @@
 SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 #define fma_of(a, b, c) __builtin_fma(a, b, c)
+#define PLACE_PACK      se3di_tree_place_pack_avx2
 
 #include "tree/core_one.inc"
 

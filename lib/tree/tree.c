@@ -10,6 +10,7 @@
 #include "model/state.h"
 #include "primitive/user.h"
 #include "tree/core.h"
+#include "tree/packs.h"
 
 #include <string.h>
 
@@ -323,7 +324,7 @@ static void find_efforts(se3di_tree *tree)
 /* ---- memory ---- */
 
 #define TREE_STRUCTURE 5
-#define TREE_VALUES    19
+#define TREE_VALUES    21
 
 static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
 {
@@ -361,6 +362,8 @@ static void list_values(se3di_tree *t, se3di_array list[TREE_VALUES])
         {(void **)&t->branches, t->branch_count, sizeof *t->branches},
         {(void **)&t->scratch, 12 * (size_t)t->count, number_size},
         {(void **)&t->frames, t->body_count, sizeof *t->frames},
+        {(void **)&t->steps, t->count, sizeof *t->steps},
+        {(void **)&t->keys, 4 * (size_t)t->count, sizeof *t->keys},
     };
     _Static_assert(sizeof arrays == TREE_VALUES * sizeof *arrays, "all of them");
     memcpy(list, arrays, sizeof arrays);
@@ -395,7 +398,10 @@ static se3d_status build(se3di_tree *tree)
     se3di_arrays_free(allocator, arrays, BUILDER_ARRAYS);
     SE3DI_TRY(status);
     list_values(tree, values);
-    return se3di_arrays_alloc(allocator, values, TREE_VALUES);
+    SE3DI_TRY(se3di_arrays_alloc(allocator, values, TREE_VALUES));
+    tree->pack_max = tree->core->has_packs ? se3di_tree_count_packs(tree) : 0;
+    tree->packs = se3di_alloc(allocator, tree->pack_max, sizeof *tree->packs);
+    return tree->packs ? SE3D_OK : SE3D_ERR_NO_MEMORY;
 }
 
 /* Planar joints turn by their third coordinate. */
@@ -424,6 +430,7 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
                          .constraint_count = (uint32_t)model->constraint_slots.count,
                          .force_count = (uint32_t)model->force_slots.count,
                          .angle_count = (uint32_t)model->angle_count};
+    choose_core(tree);
     const se3d_status status = build(tree);
     if (status < 0) {
         se3di_tree_destroy(tree);
@@ -431,7 +438,6 @@ se3d_status se3di_tree_init(se3di_tree *tree, se3di_model *model, int moves_stat
                                model->body_slots.count);
     }
     find_counted(tree);
-    choose_core(tree);
     se3di_tree_refresh(tree);
     return SE3D_OK;
 }
@@ -444,6 +450,7 @@ void se3di_tree_destroy(se3di_tree *tree)
     const se3d_allocator *allocator = &tree->model->allocator;
     se3di_array structure[TREE_STRUCTURE];
     se3di_array values[TREE_VALUES];
+    se3di_free(allocator, tree->packs, tree->pack_max, sizeof *tree->packs);
     list_values(tree, values);
     se3di_arrays_free(allocator, values, TREE_VALUES);
     list_structure(tree, structure);

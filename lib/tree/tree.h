@@ -104,6 +104,20 @@ typedef struct se3di_tree_inertia {
     double I[6], G[9], M[6], p[6];
 } se3di_tree_inertia;
 
+/* Four nodes that stand side by side in lanes: as deep in the tree, with joints of one type and the
+ * same flags SE3DI_TREE_ALIGNED_*. Their constants, lane by lane. */
+#define SE3DI_TREE_PACK 4
+
+typedef struct se3di_tree_pack {
+    uint32_t node[SE3DI_TREE_PACK];
+    int32_t type, flags; /* SE3DI_TREE_ALIGNED_* */
+    int32_t is_rooted;   /* their parents are the ground */
+    int32_t reserved;
+    double zero[SE3DI_TREE_PACK], lead[SE3DI_TREE_PACK], base[SE3DI_TREE_PACK];
+    double C[4 * SE3DI_TREE_PACK], T[9 * SE3DI_TREE_PACK], r[3 * SE3DI_TREE_PACK];
+    double B[4 * SE3DI_TREE_PACK], s[3 * SE3DI_TREE_PACK];
+} se3di_tree_pack;
+
 struct se3di_tree_core;
 
 typedef struct se3di_tree {
@@ -115,6 +129,11 @@ typedef struct se3di_tree {
     uint32_t body_count;  /* dense */
     uint32_t given_count; /* nodes whose coordinate is prescribed */
     se3di_tree_node *nodes;
+    uint32_t pack_count, pack_max; /* of nodes side by side (tree/packs.h), 0: none */
+    uint32_t step_count;
+    se3di_tree_pack *packs;
+    uint32_t *steps;  /* [step_count]: nodes, or count + a pack, parents before their children */
+    int32_t *keys;    /* [nodes * 4]: scratch of what finds packs */
     int32_t *node_of; /* [bodies] -1: fixed */
     int32_t *tree_of; /* [constraints]: node of a joint or driver, -1: a loop's */
     uint32_t constraint_count;

@@ -664,7 +664,83 @@ static void changes_are_measured_at_the_bodies(void)
     }
 }
 
-/* z' = f to the bit, with one coordinate beside those of the mechanism, whose accelerations stay. */
+/* Four bodies on the ground, each with one more, by joints of a kind (-1: none): `aligned`, along
+ * axes of the bodies where the kind can be. */
+static void build_rows_of_four(tree_world *w, int first, int second, int aligned)
+{
+    const int kinds[2] = {first, second};
+    *w = (tree_world){.count = 1, .seed = 7919u};
+    CHECK(!se3d_system_create(NULL, &w->system));
+    CHECK(!se3d_system_get_ground(w->system, &w->bodies[0]));
+    for (int k = 1; k <= 8; ++k) {
+        const int kind = kinds[k > 4], other = k > 4 ? k - 4 : 0;
+        const double upright[4] = {1.0, 0.0, 0.0, 0.0};
+        double at[3];
+        tree_add_body(w);
+        if (aligned) {
+            CHECK(!se3d_body_set_orientation(w->system, w->bodies[k], upright));
+        }
+        if (kind < 0) {
+            continue;
+        }
+        if (!aligned || tree_kinds[kind].square) {
+            tree_add_joint(w, other, k, &tree_kinds[kind]);
+            continue;
+        }
+        se3d_joint_def def = se3d_joint_def_default();
+        def.body_i = w->bodies[other];
+        def.body_j = w->bodies[k];
+        def.pitch = 0.2;
+        CHECK(!se3d_body_get_position(w->system, w->bodies[k], at));
+        CHECK(!se3d_joint_def_set_frame(w->system, &def, at, (double[]){0.0, 0.0, 1.0}, NULL));
+        CHECK(!tree_kinds[kind].create(w->system, &def, &w->joints[w->joint_count++]));
+    }
+}
+
+/* What a core places, into copies: links, freedoms, frames (NULL: none are wanted). */
+static void place_by(const se3di_tree_core *core, case_of *c, int wants_frames,
+                     se3di_tree_link *links, double *S, se3di_frame *frames)
+{
+    se3di_tree *tree = &c->tree;
+    memset(tree->links, 0, tree->count * sizeof *tree->links);
+    memset(tree->S, 0, 6 * tree->v_count * sizeof *tree->S);
+    memset(frames, 0, tree->body_count * sizeof *frames);
+    tree->core = core;
+    se3di_tree_place(tree, c->q, c->qdot, wants_frames ? frames : NULL);
+    memcpy(links, tree->links, tree->count * sizeof *links);
+    memcpy(S, tree->S, 6 * tree->v_count * sizeof *S);
+}
+
+/* Also with an angle beyond where lanes find its sine themselves. */
+static void nodes_side_by_side_have_the_bits_of_nodes_alone(void)
+{
+    uint32_t packs = 0;
+    for (int n = 0; n < 2 * 9 * 8 * 2; ++n) {
+        case_of c;
+        se3di_tree_link links[2][TREE_BODIES_MAX];
+        double S[2][6 * NUMBERS];
+        se3di_frame frames[2][TREE_BODIES_MAX + 1];
+        build_rows_of_four(&c.world, n / 4 % 9 - 1, n / 36, n % 2);
+        c.model = &c.world.system->model;
+        CHECK(!se3di_tree_init(&c.tree, c.model, 1, NULL));
+        shake(&c.world, &c.tree, c.q, c.qdot);
+        c.q[c.tree.nodes[3].q] += n / 2 % 2 ? 2e5 : 0.0;
+        const se3di_tree_core *const best = c.tree.core;
+        for (int frame = 0; frame < 2; ++frame) {
+            place_by(se3di_tree_core_portable(), &c, frame, links[0], S[0], frames[0]);
+            place_by(best, &c, frame, links[1], S[1], frames[1]);
+            CHECK(memcmp(links[0], links[1], c.tree.count * sizeof *links[0]) == 0);
+            CHECK(memcmp(S[0], S[1], 6 * c.tree.v_count * sizeof *S[0]) == 0);
+            CHECK(memcmp(frames[0], frames[1], c.tree.body_count * sizeof *frames[0]) == 0);
+        }
+        packs += c.tree.pack_count;
+        CHECK(c.tree.pack_count <= c.tree.pack_max && c.tree.pack_max == 2);
+        end(&c);
+    }
+    CHECK(!se3di_tree_core_avx2() || packs > 500);
+}
+
+/* z' = f to the bit, by one coordinate more; the accelerations of the others stay. */
 static void a_state_is_a_node_of_one_coordinate(void)
 {
     for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
@@ -712,6 +788,7 @@ int main(void)
     RUN(corrections_are_the_least_ones);
     RUN(all_instruction_levels_give_the_same_bits);
     RUN(changes_are_measured_at_the_bodies);
+    RUN(nodes_side_by_side_have_the_bits_of_nodes_alone);
     RUN(a_state_is_a_node_of_one_coordinate);
     return check_finish();
 }
