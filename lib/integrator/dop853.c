@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* dop853: the 12-stage method of order 8 of Dormand and Prince with the error estimates of order 5
  * and 3 and the dense output of order 7 of Hairer, Norsett and Wanner (1993, sec. II.5 and II.10).
+ * Steps for which that is accurate enough are interpolated by order 6, without its extra stages.
  * docs/theory/explicit-runge-kutta.md */
 #include "integrator/explicit_rk.h"
 
@@ -160,6 +161,46 @@ static const double d[4][SE3DI_RK_MAX] = {
      [15] = -149.72683625798562581},
 };
 
+/* Interpolation of order 6 by the stages of the step alone, with the derivatives of the step at its
+ * ends. The conditions of the orders up to 6 leave one direction open, in which the residuals of
+ * those of order 7 have the least sum of squares. */
+static const double free_d[4][SE3DI_RK_MAX] = {
+    {[0] = -5.2673159994883315107,
+     [5] = 329.38234379530685586,
+     [6] = 142.91680076449692068,
+     [7] = -458.20712727869897163,
+     [8] = 11.621372721449774720,
+     [9] = -20.641626073647132832,
+     [10] = -0.58887998928009705040,
+     [11] = 1.1177653931943132342,
+     [12] = -0.33333333333333147159},
+    {[0] = 6.1622590664236030685,
+     [5] = -969.25635966773170130,
+     [6] = -321.89757888681703733,
+     [7] = 1241.2433610480151308,
+     [8] = -102.53786758416681014,
+     [9] = 145.56789936376290822,
+     [10] = -2.5260216183531939463,
+     [11] = -3.7556917211328883401,
+     [12] = 6.9999999999999889943},
+    {[0] = 10.254609257726513986,
+     [5] = -1321.5893736307737771,
+     [6] = -513.18765071201413051,
+     [7] = 1793.4105356006282603,
+     [8] = -47.198596663297356185,
+     [9] = 73.852950022558920949,
+     [10] = 7.1513381561568026352,
+     [11] = 0.41729908012588176676,
+     [12] = -3.1111111111111157612},
+    {[0] = -15.837022053885787651,
+     [5] = 4299.8211519498769059,
+     [6] = 1327.0801153792181170,
+     [7] = -5415.0627557477831939,
+     [8] = 451.26049321111571717,
+     [9] = -630.10708046475427719,
+     [10] = -17.154902273787485390},
+};
+
 static const se3di_rk_tableau tableau = {
     .stages = 12,
     .total = 16,
@@ -172,6 +213,8 @@ static const se3di_rk_tableau tableau = {
     .error = e5,
     .error3 = e3,
     .d = d,
+    .free = free_d,
+    .free_error = 1.2e-3,
 };
 
 const se3di_integrator se3di_integrator_dop853 = {

@@ -20,6 +20,7 @@
 #define LOOP_AT    (SE3DI_EXPLICIT_PART * 1e-6) /* at this tolerance */
 #define TIMES      1e-8 /* of the time: shorter steps are not known to the digits that this takes */
 #define SHORTEST   0.05 /* of steps in this one, before which the second estimate is rounding */
+#define FREE_PART  0.1  /* of the error of a step: that of an interpolation without more stages */
 #define GROWTH     3.0  /* largest, of a step: one small error may be chance */
 
 static se3d_status evaluate_stage(se3di_explicit *m, double t, double h, int stage)
@@ -307,18 +308,9 @@ static se3d_status remake_stages(se3di_explicit *m)
     return se3di_explicit_evaluate(m, m->past->at.time, m->y, se3di_explicit_end(m));
 }
 
-/* The interpolation of the last step. */
-static se3d_status build_dense(se3di_explicit *m)
+/* F_0 to F_2, which the ends give. */
+static void make_end_forms(se3di_explicit *m, double h)
 {
-    const se3di_rk_tableau *tableau = m->tableau;
-    double h = m->past->at.time - m->past->at.begin;
-    se3di_forces_show(m->assembly->model, 1);
-    if (!m->has_stages) {
-        SE3DI_TRY(remake_stages(m));
-    }
-    for (int k = tableau->stages + 1; k < tableau->total; ++k) {
-        SE3DI_TRY(evaluate_stage(m, m->past->at.begin, h, k));
-    }
     const double *f0 = m->K, *f1 = se3di_explicit_end(m);
     double *F0 = m->forms, *F1 = F0 + m->count, *F2 = F1 + m->count;
     for (size_t k = 0; k < m->count; ++k) {
@@ -326,10 +318,50 @@ static se3d_status build_dense(se3di_explicit *m)
         F1[k] = h * f0[k] - F0[k];
         F2[k] = 2.0 * F0[k] - h * (f0[k] + f1[k]);
     }
-    for (int row = 0; row < tableau->dense_rows; ++row) {
-        se3di_explicit_combine(m, m->K, NULL, h, tableau->d[row], tableau->total,
-                               F2 + (size_t)(row + 1) * m->count);
+}
+
+/* F_3 and on, by rows of d that take the first stages; returns the last. */
+static double *make_forms(se3di_explicit *m, double h, const double (*d)[SE3DI_RK_MAX], int stages)
+{
+    double *form = m->forms + 2 * m->count;
+    for (int row = 0; row < m->tableau->dense_rows; ++row) {
+        form += m->count;
+        se3di_explicit_combine(m, m->K, NULL, h, d[row], stages, form);
     }
+    return form;
+}
+
+/* Whether the stages of the step do: what they leave is small beside the error of the step. */
+static int makes_free_forms(se3di_explicit *m, double h)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    if (!tableau->free) {
+        return 0;
+    }
+    const double *last = make_forms(m, h, tableau->free, tableau->stages + 1);
+    return tableau->free_error * se3di_explicit_measure(m, last) <= FREE_PART;
+}
+
+static se3d_status make_all_forms(se3di_explicit *m, double h)
+{
+    const se3di_rk_tableau *tableau = m->tableau;
+    for (int k = tableau->stages + 1; k < tableau->total; ++k) {
+        SE3DI_TRY(evaluate_stage(m, m->past->at.begin, h, k));
+    }
+    (void)make_forms(m, h, tableau->d, tableau->total);
+    return SE3D_OK;
+}
+
+/* The interpolation of the last step. */
+static se3d_status build_dense(se3di_explicit *m)
+{
+    const double h = m->past->at.time - m->past->at.begin;
+    se3di_forces_show(m->assembly->model, 1);
+    if (!m->has_stages) {
+        SE3DI_TRY(remake_stages(m));
+    }
+    make_end_forms(m, h);
+    SE3DI_TRY(makes_free_forms(m, h) ? SE3D_OK : make_all_forms(m, h));
     /* rows of users that failed are told of later: what was made of them is not kept */
     m->past->dense = m->assembly->model->user_failure.status < 0 ? 0.0 : 1.0;
     return SE3D_OK;

@@ -32,6 +32,8 @@ typedef struct se3di_rk_tableau {
     const double *error;  /* difference of two formulas */
     const double *error3; /* a second one of order 3 (dop853), or NULL */
     const double (*d)[SE3DI_RK_MAX];
+    const double (*free)[SE3DI_RK_MAX]; /* rows of d without extra stages, an order less; or NULL */
+    double free_error;                  /* the part of the last of them that is their error */
 } se3di_rk_tableau;
 
 extern const se3di_explicit_class se3di_rk_class;

@@ -8,12 +8,12 @@
 
 typedef struct row {
     const se3di_integrator *method;
-    int order, error_order, error3_order, dense_order;
+    int order, error_order, error3_order, dense_order, free_order;
 } row;
 
-static const row rows[] = {{&se3di_integrator_dop853, 8, 5, 3, 7},
-                           {&se3di_integrator_rk45, 5, 4, 0, 4},
-                           {&se3di_integrator_rk4, 4, 3, 0, 3}};
+static const row rows[] = {{&se3di_integrator_dop853, 8, 5, 3, 7, 6},
+                           {&se3di_integrator_rk45, 5, 4, 0, 4, 0},
+                           {&se3di_integrator_rk4, 4, 3, 0, 3, 0}};
 #define ROWS (sizeof rows / sizeof *rows)
 
 static const char *const kinds[] = {"quadrature", "chain"};
@@ -50,13 +50,14 @@ static double weigh(const double *weights, const double *K, int count)
     return sum;
 }
 
-/* Of a step from 0 of length 1: the head of explicit_rk.h. */
-static double interpolate(const se3di_rk_tableau *m, const double *K, double s)
+/* Of a step from 0 of length 1, by rows d: the head of explicit_rk.h. */
+static double interpolate(const se3di_rk_tableau *m, const double (*d)[SE3DI_RK_MAX],
+                          const double *K, double s)
 {
     const double F0 = weigh(m->a[m->stages], K, m->stages);
     double sum = 0.0;
     for (int k = m->dense_rows - 1; k >= 0; --k) {
-        sum = (k % 2 == 0 ? 1.0 - s : s) * (weigh(m->d[k], K, m->total) + sum);
+        sum = (k % 2 == 0 ? 1.0 - s : s) * (weigh(d[k], K, m->total) + sum);
     }
     const double F2 = 2.0 * F0 - K[0] - K[m->stages];
     return s * (F0 + (1.0 - s) * (K[0] - F0 + s * (F2 + sum)));
@@ -94,7 +95,7 @@ static void steps_errors_and_interpolations_have_their_orders(void)
                 largest = q == rows[r].error_order ? fmax(largest, error) : largest;
                 largest3 = q == rows[r].error3_order ? fmax(largest3, error3) : largest3;
                 for (double s = 0.125; q < rows[r].dense_order && s < 1.0; s += 0.25) {
-                    most = fmax(most, fabs(interpolate(m, K, s) - exact(kind, q, s)));
+                    most = fmax(most, fabs(interpolate(m, m->d, K, s) - exact(kind, q, s)));
                 }
                 if (check_failures) {
                     fprintf(stderr, "%s: %s %d\n", rows[r].method->name, kinds[kind], q);
@@ -107,9 +108,56 @@ static void steps_errors_and_interpolations_have_their_orders(void)
     }
 }
 
+/* The other conditions of order q + 1 than quadratures and chains, of the form y' = t^i x,
+ * x' = t^(q - i - 1), where stages see x by their own sums. */
+static double mix_stages(const se3di_rk_tableau *m, int q, int i, double *K)
+{
+    for (int k = 0; k < m->total; ++k) {
+        double x = 0.0;
+        for (int j = 0; j < k; ++j) {
+            x += m->a[k][j] * pow(m->c[j], q - i - 1);
+        }
+        K[k] = pow(m->c[k], i) * x;
+    }
+    return 1.0 / (q - i) / (q + 1);
+}
+
+/* The last of the rows is zero for motions that they follow, and not for those of the next order:
+ * their error is the part of it that the table says. */
+static void free_interpolations_have_their_order_and_know_their_error(void)
+{
+    for (size_t r = 0; r < ROWS; ++r) {
+        const se3di_rk_tableau *m = rows[r].method->tableau;
+        for (int q = 0; m->free && q <= rows[r].free_order; ++q) {
+            for (int i = -2; i < q; ++i) {
+                double K[SE3DI_RK_MAX] = {0.0}, factor = 0.0, most = 0.0;
+                if (i < 0) {
+                    make_stages(m, i + 2, q, K);
+                } else {
+                    factor = mix_stages(m, q, i, K);
+                }
+                for (double s = 0.0625; s < 1.0; s += 0.125) {
+                    const double wanted = i < 0 ? exact(i + 2, q, s) : factor * pow(s, q + 1);
+                    most = fmax(most, fabs(interpolate(m, m->free, K, s) - wanted));
+                }
+                const double last = fabs(weigh(m->free[m->dense_rows - 1], K, m->total));
+                CHECK(q == rows[r].free_order || (most < 1e-12 && last < 1e-11));
+                CHECK(q < rows[r].free_order || most < m->free_error * last + 1e-6);
+                for (int k = m->stages + 1; k < m->total; ++k) {
+                    CHECK(m->free[0][k] == 0.0 && m->free[m->dense_rows - 1][k] == 0.0);
+                }
+                if (q == rows[r].free_order) {
+                    printf("%s: %d %g of %g\n", rows[r].method->name, i, most, last);
+                }
+            }
+        }
+    }
+}
+
 int main(void)
 {
     RUN(stages_lie_where_their_coefficients_say);
     RUN(steps_errors_and_interpolations_have_their_orders);
+    RUN(free_interpolations_have_their_order_and_know_their_error);
     return check_finish();
 }
