@@ -331,7 +331,10 @@ void calls_create_shape(calls *c)
     def.radius = 0.3 + 0.2 * calls_number(c);
     def.length = 0.3 + 0.2 * calls_number(c);
     def.size[0] = def.size[1] = def.size[2] = 0.5;
-    switch (calls_pick(c, 5)) {
+    def.semi_axes[0] = 0.3 + 0.2 * calls_number(c);
+    def.semi_axes[1] = 0.2;
+    def.semi_axes[2] = 0.1;
+    switch (calls_pick(c, 6)) {
     case 0:
         status = se3d_shape_create_sphere(c->system, &def, &shape);
         break;
@@ -343,6 +346,9 @@ void calls_create_shape(calls *c)
         break;
     case 3:
         status = se3d_shape_create_cylinder(c->system, &def, &shape);
+        break;
+    case 4:
+        status = se3d_shape_create_ellipsoid(c->system, &def, &shape);
         break;
     default:
         status = se3d_shape_create_plane(c->system, &def, &shape);

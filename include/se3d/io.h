@@ -316,6 +316,7 @@ typedef struct se3d_model_shape {
     const char *file;      /* mesh; "" for the others; owned by the model */
     double bottom_radius;  /* funnel, at its lower end along z [m], */
     double top_radius;     /* and at its upper end [m] */
+    double semi_axes[3];   /* ellipsoid, along its x, y, z [m] */
 } se3d_model_shape;
 
 /* Count the shapes of the bodies of a model. @return the number; 0 for NULL. @since 0.1 */

@@ -21,7 +21,8 @@ typedef enum se3d_shape_type {
     SE3D_SHAPE_MESH = 5,
     SE3D_SHAPE_HULL = 6, /* not the type of a shape of a model file, where it is a convex mesh */
     SE3D_SHAPE_HEIGHTFIELD = 7,
-    SE3D_SHAPE_FUNNEL = 8
+    SE3D_SHAPE_FUNNEL = 8,
+    SE3D_SHAPE_ELLIPSOID = 9
 } se3d_shape_type;
 
 /* The definition of a shape; every kind takes its own of the last fields. Its frame is at its
@@ -53,6 +54,7 @@ typedef struct se3d_shape_def {
     double top_radius;    /* and at its upper end [m] >= 0; one of them may be 0: a cone */
     double surface_velocity[3]; /* see se3d_shape_set_surface_motion [m/s] */
     double surface_spin[3];     /* the same [rad/s] */
+    double semi_axes[3];        /* ellipsoid: along the shape's x, y, z [m] > 0 */
 } se3d_shape_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_shape_def_default. @since 0.1 */
@@ -119,6 +121,12 @@ SE3D_API se3d_status se3d_shape_create_heightfield(se3d_system *system, const se
  * mesh of 144 facets with their corners on it. @return as se3d_shape_create_sphere. @since 0.1 */
 SE3D_API se3d_status se3d_shape_create_funnel(se3d_system *system, const se3d_shape_def *def,
                                               se3d_shape *shape);
+
+/* Create an ellipsoid: a ball that is stretched along its three axes. What is convex touches it in
+ * one point; the Hertz law takes one radius of curvature for all of its surface, the geometric mean
+ * of its semi-axes. @return as se3d_shape_create_sphere. @since 0.1 */
+SE3D_API se3d_status se3d_shape_create_ellipsoid(se3d_system *system, const se3d_shape_def *def,
+                                                 se3d_shape *shape);
 
 /* Destroy a shape. @return OK, NULL, STALE_HANDLE. @since 0.1 */
 SE3D_API se3d_status se3d_shape_destroy(se3d_system *system, se3d_shape shape);

@@ -69,6 +69,7 @@ typedef struct se3di_contact_settings {
 #define SE3DI_SHAPE_IS_SURFACE    16u /* triangles with two sides, and nothing between them */
 #define SE3DI_SHAPE_IS_HALF_SPACE 32u /* all that is below z = 0: without end */
 #define SE3DI_SHAPE_IS_TURNED     64u /* a surface about z that particles know without triangles */
+#define SE3DI_SHAPE_IS_SMOOTH     128u /* bends everywhere: what is convex touches it in a point */
 
 /* The kinds of shapes, X(KIND, name, traits): each has a se3di_shape_class_<name> in the file of
  * this name in lib/contact/shape, and a SE3D_SHAPE_<KIND>. New ones go to the end. */
@@ -81,7 +82,8 @@ typedef struct se3di_contact_settings {
     X(MESH, mesh, SE3DI_SHAPE_IS_SURFACE)                                                          \
     X(HULL, hull, 0u)                                                                              \
     X(HEIGHTFIELD, heightfield, SE3DI_SHAPE_IS_SURFACE)                                            \
-    X(FUNNEL, funnel, SE3DI_SHAPE_IS_SURFACE | SE3DI_SHAPE_IS_TURNED)
+    X(FUNNEL, funnel, SE3DI_SHAPE_IS_SURFACE | SE3DI_SHAPE_IS_TURNED)                              \
+    X(ELLIPSOID, ellipsoid, SE3DI_SHAPE_IS_ROUND | SE3DI_SHAPE_IS_SMOOTH)
 
 typedef enum se3di_shape_kind {
 #define SE3DI_SHAPE_ENUM(KIND, name, traits) SE3DI_SHAPE_##KIND,
@@ -100,8 +102,8 @@ typedef struct se3di_shape {
     double x[3];                /* origin, body frame */
     double A[9];                /* shape -> body, row-major */
     double p[4];                /* the same as Euler parameters */
-    double half[3];             /* box: half lengths */
-    double radius, half_length; /* round ones, along z; capsule: of its cylinder */
+    double half[3];             /* box: half lengths; ellipsoid: semi-axes */
+    double radius, half_length; /* round ones, along z; capsule: of its cylinder; ellipsoid: R* */
     double top_radius;          /* funnel, at z = half_length; `radius` is that at the other end */
     double bound;               /* radius about the origin that holds it; infinite: plane */
     double *vertices;           /* mesh, hull, heightfield, funnel: [3 * vertex_count], own frame */

@@ -266,6 +266,22 @@ se3d_status se3d_shape_get_type(const se3d_system *system, se3d_shape shape, int
     return SE3D_OK;
 }
 
+static void give_lengths(const se3di_shape *data, se3d_shape_def *def)
+{
+    def->length = 2.0 * data->half_length;
+    if (data->kind == SE3DI_SHAPE_ELLIPSOID) {
+        se3di_copy(data->half, def->semi_axes);
+        return;
+    }
+    se3di_scale(2.0, data->half, def->size);
+    if (data->kind == SE3DI_SHAPE_FUNNEL) {
+        def->bottom_radius = data->radius;
+        def->top_radius = data->top_radius;
+    } else {
+        def->radius = data->radius;
+    }
+}
+
 se3d_status se3d_shape_get_def(const se3d_system *system, se3d_shape shape, se3d_shape_def *def)
 {
     const se3di_shape *data;
@@ -284,14 +300,7 @@ se3d_status se3d_shape_get_def(const se3d_system *system, se3d_shape shape, se3d
         full.normal[1] = data->A[5];
         full.normal[2] = data->A[8];
     }
-    se3di_scale(2.0, data->half, full.size);
-    if (data->kind == SE3DI_SHAPE_FUNNEL) {
-        full.bottom_radius = data->radius;
-        full.top_radius = data->top_radius;
-    } else {
-        full.radius = data->radius;
-    }
-    full.length = 2.0 * data->half_length;
+    give_lengths(data, &full);
     full.group = data->group;
     full.mask = data->mask;
     full.row_count = data->rows;

@@ -286,7 +286,7 @@ class System:
 
     def shape(self, type, *, vertices=None, triangles=None, heights=None, **values):
         """Create a shape, one of SHAPES: body, material, position, orientation, normal, size,
-        radius, length, bottom_radius, top_radius, vertices, triangles; heights (rows along x) and
+        radius, length, semi_axes, bottom_radius, top_radius, vertices, triangles; heights (rows along x) and
         their spacing."""
         if type not in SHAPES:
             raise ValueError(f"type is {type!r}, must be one of {', '.join(SHAPES)}")

@@ -150,7 +150,8 @@ class System:
               mask: int | None = ..., spacing: ArrayLike | None = ...,
               bottom_radius: float | None = ..., top_radius: float | None = ...,
               surface_velocity: ArrayLike | None = ...,
-              surface_spin: ArrayLike | None = ...) -> Shape: ...
+              surface_spin: ArrayLike | None = ...,
+              semi_axes: ArrayLike | None = ...) -> Shape: ...
     @property
     def bodies(self) -> list[Body]: ...
     @property

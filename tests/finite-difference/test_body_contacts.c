@@ -44,6 +44,9 @@ static void add_shape(trial *t, int kind, se3d_body body, se3d_material material
     def.size[0] = 0.5;
     def.size[1] = 0.7;
     def.size[2] = 0.4;
+    def.semi_axes[0] = 0.25;
+    def.semi_axes[1] = 0.45;
+    def.semi_axes[2] = 0.2;
     se3d_status status = SE3D_ERR_STATE;
     switch (kind) {
     case SE3DI_SHAPE_SPHERE:
@@ -57,6 +60,9 @@ static void add_shape(trial *t, int kind, se3d_body body, se3d_material material
         break;
     case SE3DI_SHAPE_CYLINDER:
         status = se3d_shape_create_cylinder(t->system, &def, &shape);
+        break;
+    case SE3DI_SHAPE_ELLIPSOID:
+        status = se3d_shape_create_ellipsoid(t->system, &def, &shape);
         break;
     default:
         status = se3d_shape_create_plane(t->system, &def, &shape);
@@ -229,6 +235,13 @@ static const meeting meetings[] = {
     {SE3DI_SHAPE_SPHERE, SE3DI_SHAPE_CYLINDER, {0.42, 0.4, 0.05}, {1.0, 0.02, 0.01, 0.03}},
     {SE3DI_SHAPE_BOX, SE3DI_SHAPE_PLANE, {0.0, 0.0, -0.40}, {1.0, 0.4, 0.3, 0.2}},
     {SE3DI_SHAPE_CYLINDER, SE3DI_SHAPE_PLANE, {0.0, 0.0, -0.4}, {1.0, 0.25, 0.1, 0.2}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_PLANE, {0.0, 0.0, -0.18}, {1.0, 0.2, 0.1, 0.0}},
+    {SE3DI_SHAPE_SPHERE, SE3DI_SHAPE_ELLIPSOID, {0.3, 0.4, 0.1}, {1.0, 0.2, 0.1, 0.0}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_ELLIPSOID, {0.35, 0.38, 0.1}, {1.0, 0.7, 0.1, 0.0}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_BOX, {0.48, 0.1, 0.05}, {1.0, 0.02, 0.01, 0.03}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_BOX, {0.4, 0.55, 0.05}, {1.0, 0.02, 0.01, 0.03}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_CAPSULE, {0.45, 0.05, 0.1}, {1.0, 0.7, 0.1, 0.0}},
+    {SE3DI_SHAPE_ELLIPSOID, SE3DI_SHAPE_CYLINDER, {0.42, 0.4, 0.05}, {1.0, 0.02, 0.01, 0.03}},
 };
 
 /* Two boxes that touch with an edge of each. */

@@ -401,13 +401,21 @@ FILL(se3d_shape_def, shape)
     def->row_count = 3;
     def->column_count = 4;
     def->spacing[0] = def->spacing[1] = 0.1;
+    def->semi_axes[0] = def->semi_axes[1] = def->semi_axes[2] = 0.1;
 }
-FIELDS(shape) = {NUMBERS(se3d_shape_def, position),     NUMBERS(se3d_shape_def, orientation),
-                 NUMBERS(se3d_shape_def, normal),       NUMBERS(se3d_shape_def, size),
-                 NUMBERS(se3d_shape_def, radius),       NUMBERS(se3d_shape_def, length),
-                 NUMBERS(se3d_shape_def, spacing),      NUMBERS(se3d_shape_def, bottom_radius),
-                 NUMBERS(se3d_shape_def, top_radius),   NUMBERS(se3d_shape_def, surface_velocity),
-                 NUMBERS(se3d_shape_def, surface_spin), FIELDS_END};
+FIELDS(shape) = {NUMBERS(se3d_shape_def, position),
+                 NUMBERS(se3d_shape_def, orientation),
+                 NUMBERS(se3d_shape_def, normal),
+                 NUMBERS(se3d_shape_def, size),
+                 NUMBERS(se3d_shape_def, radius),
+                 NUMBERS(se3d_shape_def, length),
+                 NUMBERS(se3d_shape_def, spacing),
+                 NUMBERS(se3d_shape_def, bottom_radius),
+                 NUMBERS(se3d_shape_def, top_radius),
+                 NUMBERS(se3d_shape_def, surface_velocity),
+                 NUMBERS(se3d_shape_def, surface_spin),
+                 NUMBERS(se3d_shape_def, semi_axes),
+                 FIELDS_END};
 
 #define SHAPE_FILL(KIND, name, traits)                                                             \
     static inline void fill_##name(const site *at, void *storage)                                  \

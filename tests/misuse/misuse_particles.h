@@ -397,6 +397,7 @@ static se3d_status shapes_reject_misuse(arguments *a)
         def.heights = corners;
         def.row_count = def.column_count = 3;
         def.spacing[0] = def.spacing[1] = 0.5;
+        def.semi_axes[0] = def.semi_axes[1] = def.semi_axes[2] = 0.1;
         CHECK(create[k](NULL, &def, &shape) == SE3D_ERR_NULL);
         REJECTED(create[k](a->system, NULL, &shape), SE3D_ERR_NULL);
         REJECTED(create[k](a->system, &def, NULL), SE3D_ERR_NULL);
@@ -412,6 +413,7 @@ static se3d_status shapes_reject_misuse(arguments *a)
         REJECTED(create[k](a->system, &bad, &shape), SE3D_ERR_STALE_HANDLE);
         bad = def;
         bad.radius = bad.size[2] = bad.normal[0] = bad.top_radius = (double)INFINITY;
+        bad.semi_axes[1] = (double)INFINITY;
         bad.vertices = flat;
         bad.triangles = beyond;
         bad.spacing[1] = (double)NAN;

@@ -2,7 +2,8 @@
 /* Which triangles of a mesh a solid overlaps, exactly. A box or hull and a triangle overlap if no
  * normal or product of edges divides them; a capsule or sphere, where the line or point is nearer
  * than the radius; a cylinder, where what of the triangle is between the planes of its caps comes
- * nearer to the axis than its radius. Each is asked with the solid larger or smaller by a
+ * nearer to the axis than its radius; an ellipsoid, where the triangle comes into the ball that it
+ * is in lengths of its semi-axes. Each is asked with the solid larger or smaller by a
  * margin. */
 #ifndef SE3D_TESTS_OVERLAPS_H
 #define SE3D_TESTS_OVERLAPS_H
@@ -73,6 +74,20 @@ static inline int cylinder_meets(const poly *c, const double corner[3][3], doubl
     return count > 0 && axis_apart(c, cut, count) < c->rim + margin;
 }
 
+static inline int ellipsoid_meets(const poly *e, const double corner[3][3], double margin)
+{
+    static const double centre[2][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    double scaled[3][3], d[3], on[3], at[3];
+    for (int k = 0; k < 3; ++k) {
+        se3di_sub(corner[k], e->x, d);
+        se3di_mul_transposed(e->axes, d, scaled[k]);
+        for (int a = 0; a < 3; ++a) {
+            scaled[k][a] /= e->semi[a] + margin;
+        }
+    }
+    return segment_triangle(centre, (const double(*)[3])scaled, on, at) < 1.0;
+}
+
 /* The solid, larger by a margin, and a triangle. */
 static inline int meets(const poly *solid, const double corner[3][3], double margin)
 {
@@ -80,6 +95,9 @@ static inline int meets(const poly *solid, const double corner[3][3], double mar
     double on[3], at[3];
     if (solid->is_cylinder) {
         return cylinder_meets(solid, corner, margin);
+    }
+    if (solid->is_ellipsoid) {
+        return ellipsoid_meets(solid, corner, margin);
     }
     if (solid->points < 3) {
         double line[2][3];

@@ -131,7 +131,8 @@ static inline void poses_inner(const se3di_shape *s, const se3di_shape_pose *at,
 /* The least half width, about. */
 static inline double poses_size(const se3di_shape *s)
 {
-    return s->kind == SE3DI_SHAPE_BOX        ? fmin(s->half[0], fmin(s->half[1], s->half[2]))
+    return s->kind == SE3DI_SHAPE_BOX || s->kind == SE3DI_SHAPE_ELLIPSOID
+               ? fmin(s->half[0], fmin(s->half[1], s->half[2]))
            : s->kind == SE3DI_SHAPE_CYLINDER ? fmin(s->radius, s->half_length)
            : s->kind == SE3DI_SHAPE_HULL     ? 0.05
                                              : s->radius;

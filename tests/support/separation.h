@@ -19,13 +19,16 @@
 
 #define POLY_MOST 512
 
-/* A shape in the ground frame: the hull of points, or a cylinder about its axis (no points), with
- * a radius about it. Directions of faces look both ways. */
+/* A shape in the ground frame: the hull of points, or a cylinder about its axis (no points), or an
+ * ellipsoid (of which only its place is known), with a radius about it. Directions of faces look
+ * both ways. */
 typedef struct poly {
     int points, faces, edges, is_cylinder;
     double radius; /* about it */
     double point[POLY_MOST][3], face[POLY_MOST][3], edge[POLY_MOST][3];
     double x[3], z[3], rim, half; /* of a cylinder */
+    int is_ellipsoid;
+    double axes[9], semi[3];
 } poly;
 
 static inline void poly_place(const se3di_shape_pose *at, const double local[3], double out[3])
@@ -69,7 +72,7 @@ static inline void poly_hull(const se3di_shape *s, const se3di_shape_pose *at, p
 
 static inline void poly_of(const se3di_shape *s, const se3di_shape_pose *at, poly *p)
 {
-    p->points = p->faces = p->edges = p->is_cylinder = 0;
+    p->points = p->faces = p->edges = p->is_cylinder = p->is_ellipsoid = 0;
     p->radius = 0.0;
     switch (s->kind) {
     case SE3DI_SHAPE_BOX:
@@ -87,6 +90,12 @@ static inline void poly_of(const se3di_shape *s, const se3di_shape_pose *at, pol
             p->face[0][c] = p->edge[0][c] = p->z[c] = at->R[3 * c + 2];
         }
         p->faces = p->edges = 1;
+        break;
+    case SE3DI_SHAPE_ELLIPSOID:
+        p->is_ellipsoid = 1;
+        memcpy(p->axes, at->R, sizeof p->axes);
+        se3di_copy(s->half, p->semi);
+        se3di_copy(at->x, p->x);
         break;
     default:
         p->radius = s->radius;
@@ -107,7 +116,7 @@ static inline void poly_of_triangle(const double corner[3][3], poly *p)
     double n[3];
     p->points = p->edges = 3;
     p->faces = 4;
-    p->is_cylinder = 0;
+    p->is_cylinder = p->is_ellipsoid = 0;
     p->radius = 0.0;
     for (int k = 0; k < 3; ++k) {
         se3di_copy(corner[k], p->point[k]);

@@ -170,15 +170,7 @@ static const bad_input table[] = {
 #include "bad_bonds.inc"
     {"se3d: 1\nflows: []\n", 2, 0, {"flows: needs `particles`"}},
 #include "bad_outputs.inc"
-    {GLASS "bodies: [{name: ground, shapes: [{type: funnel, bottom_radius: 0, top_radius: 0, "
-           "length: 1}]}]\n",
-     4,
-     0,
-     {"shapes[0].top_radius: is 0 as `bottom_radius` is"}},
-    {GLASS "bodies: [{name: ground, shapes: [{type: funnel, bottom_radius: 0.1, length: 1}]}]\n",
-     4,
-     0,
-     {"shapes[0].top_radius: is missing, a funnel needs it"}},
+#include "bad_shapes.inc"
     {GLASS "contact: {boundary: [open, periodic, open], upper: [1, 0.3, 1]}\n",
      0,
      0,

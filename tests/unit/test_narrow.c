@@ -7,7 +7,7 @@
 #include "math/vec3.h"
 #include "support/poses.h"
 
-#define SOLIDS 6
+#define SOLIDS 7
 
 static const double tetra[12] = {0.5, 0.1, -0.3, -0.4, 0.5, -0.2, -0.3, -0.5, -0.3, 0.05, 0.1, 0.6};
 static const uint32_t tetra_faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
@@ -26,7 +26,8 @@ static se3di_shape shape_of(int kind)
 }
 
 static const int kinds[SOLIDS] = {SE3DI_SHAPE_SPHERE,   SE3DI_SHAPE_BOX,  SE3DI_SHAPE_CAPSULE,
-                                  SE3DI_SHAPE_CYLINDER, SE3DI_SHAPE_HULL, SE3DI_SHAPE_PLANE};
+                                  SE3DI_SHAPE_CYLINDER, SE3DI_SHAPE_HULL, SE3DI_SHAPE_ELLIPSOID,
+                                  SE3DI_SHAPE_PLANE};
 
 static void random_pose(uint64_t *seed, double spread, se3di_shape_pose *pose)
 {

@@ -8,10 +8,11 @@
 
 #define CLEAR 1e-7 /* m: less is neither apart nor overlapping */
 
-enum { SOLIDS = 5 };
-static const int kinds[SOLIDS] = {SE3DI_SHAPE_BOX, SE3DI_SHAPE_HULL, SE3DI_SHAPE_CYLINDER,
-                                  SE3DI_SHAPE_CAPSULE, SE3DI_SHAPE_SPHERE};
-static const char *const names[SOLIDS] = {"box", "hull", "cylinder", "capsule", "sphere"};
+enum { SOLIDS = 6 };
+static const int kinds[SOLIDS] = {SE3DI_SHAPE_BOX,     SE3DI_SHAPE_HULL,   SE3DI_SHAPE_CYLINDER,
+                                  SE3DI_SHAPE_CAPSULE, SE3DI_SHAPE_SPHERE, SE3DI_SHAPE_ELLIPSOID};
+static const char *const names[SOLIDS] = {"box",     "hull",   "cylinder",
+                                          "capsule", "sphere", "ellipsoid"};
 
 typedef struct tally {
     int clear, phantom, overlapping, missed;

@@ -23,6 +23,9 @@ static se3d_shape_def full_definition(void)
     def.size[0] = 0.6;
     def.size[1] = 0.4;
     def.size[2] = 0.8;
+    def.semi_axes[0] = 0.3;
+    def.semi_axes[1] = 0.2;
+    def.semi_axes[2] = 0.4;
     def.vertices = corners;
     def.vertex_count = 8;
     def.triangles = faces;

@@ -33,8 +33,8 @@ typedef struct vertex {
 typedef struct difference {
     const se3di_solid *i, *j;
     double size;
-    int is_round; /* by one cylinder: two may have rims that meet near an axis, where the overlap is
-                     known only from close by */
+    int is_round; /* by one cylinder or what is smooth: two cylinders may have rims that meet near
+                     an axis, where the overlap is known only from close by */
 } difference;
 
 static void support(const difference *D, const double d[3], vertex *v)
@@ -461,6 +461,11 @@ static int has_rims(const se3di_solid *solid)
     return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
 }
 
+static int is_smooth(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
+}
+
 static int is_line(const se3di_solid *solid)
 {
     return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
@@ -502,7 +507,8 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3])
 {
-    difference D = {i, j, size_of(i) + size_of(j), has_rims(i) != has_rims(j)};
+    const int smooth = is_smooth(i) || is_smooth(j);
+    difference D = {i, j, size_of(i) + size_of(j), smooth || has_rims(i) != has_rims(j)};
     simplex s;
     double point[3];
     const double least = APART * D.size;
@@ -515,8 +521,10 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
     double distance = walk(&D, &s, point);
     witness(s.v, s.weight, s.count, on_i, on_j);
     if (distance > least) {
+        double overlap = smooth ? HUGE_VAL : -distance;
         se3di_scale(-1.0 / distance, point, normal); /* point = a - b, from j to i */
-        return -distance;
+        return smooth && se3di_convex_polish(i, j, normal, on_i, on_j, &overlap) ? overlap
+                                                                                 : -distance;
     }
     if (!has_rims(i) && !has_rims(j)) {
         double n[3], a[3], b[3];
@@ -536,7 +544,7 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
     P.D = &D;
     begin(&P, &s);
     expand(&P, &best);
-    if (!best.is_settled && (best.is_sliver || has_rims(i) || has_rims(j))) {
+    if (!best.is_settled && (best.is_sliver || smooth || has_rims(i) || has_rims(j))) {
         (void)se3di_convex_polish(i, j, best.n, best.a, best.b, &best.reach);
     }
     se3di_copy(best.n, normal);

@@ -49,11 +49,12 @@ void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_man
 void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, double normal[3]);
 /* On a plane: the corners of a shape that has some; a capsule; a cylinder; of any other convex
- * shape the lowest point; a mesh. */
+ * shape the lowest point, of a smooth one with how it bends there; a mesh. */
 void se3di_plane_corners(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_convex(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
+void se3di_plane_smooth(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_manifold *manifold);
 /* Four points of each rim of a cylinder: the lowest one towards a face with this normal, that
  * across it, and at right angles; if it stands about upright they are turned a little, so that the

@@ -9,7 +9,10 @@
  * - Cylinders that overlap: h(n) = h_i(n) + h_j(-n) is least at a face or cap, at a product of an
  *   edge with the axis, on the circle of directions perpendicular to an edge (or to the axis) where
  *   its slope changes its sign, or, of two rims, where the nearest points v = a - b lie along n:
+ *
  *       (v - (n.v) n) = 0,   Newton:  U^T (dv/dn - (n.v) 1) U x = -U^T v.
+ *
+ * - A smooth shape and any: the same equation, or the circle of an edge, or a face, also apart.
  *   Those near the polytope's direction are tried, the least is taken. */
 #include "contact/narrow/bracket.h"
 #include "contact/narrow/internal.h"
@@ -35,6 +38,11 @@
 static int has_rims(const se3di_solid *solid)
 {
     return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
+}
+
+static int is_smooth(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
 }
 
 /* The distance of a point from a core, and the direction to it. */
@@ -315,9 +323,26 @@ static void add_rim_rate(const se3di_solid *solid, const double n[3], const doub
     }
 }
 
+/* Of corners nothing. */
+static void add_turn_rate(const se3di_solid *solid, const double n[3], const double u[3],
+                          double out[3])
+{
+    const se3di_shape_class *kind = se3di_shape_class_of(solid->shape);
+    double own_n[3], own_u[3], own[3], rate[3];
+    if (has_rims(solid)) {
+        add_rim_rate(solid, n, u, out);
+    } else if (kind->turn) {
+        se3di_mul_transposed(solid->at->R, n, own_n);
+        se3di_mul_transposed(solid->at->R, u, own_u);
+        kind->turn(solid->shape, own_n, own_u, own);
+        se3di_mul(solid->at->R, own, rate);
+        se3di_add(out, rate, out);
+    }
+}
+
 /* The step towards the least overlap in the plane of u: Newton's where the overlap is convex,
  * turned to where it falls where it is not. */
-static void rim_step(const search *s, const double n[3], double step[3])
+static void turn_step(const search *s, const double n[3], double step[3])
 {
     double u[2][3], v[3], A[2][2], f[2];
     const double along = overlap_along(s, n, v);
@@ -325,8 +350,8 @@ static void rim_step(const search *s, const double n[3], double step[3])
     se3di_cross(n, u[0], u[1]);
     for (int c = 0; c < 2; ++c) {
         double rate[3] = {0.0, 0.0, 0.0};
-        add_rim_rate(s->i, n, u[c], rate);
-        add_rim_rate(s->j, n, u[c], rate);
+        add_turn_rate(s->i, n, u[c], rate);
+        add_turn_rate(s->j, n, u[c], rate);
         for (int r = 0; r < 2; ++r) {
             A[r][c] = se3di_dot(rate, u[r]) - (r == c ? along : 0.0);
         }
@@ -350,7 +375,7 @@ static void try_rims(search *s)
     double here = overlap_along(s, n, v);
     for (int k = 0; k < NEWTONS; ++k) {
         double step[3], next[3], then = HUGE_VAL;
-        rim_step(s, n, step);
+        turn_step(s, n, step);
         const double size = se3di_norm(step);
         if (!(size > 0.0)) {
             break;
@@ -375,7 +400,7 @@ static void try_rims(search *s)
         }
     }
     if (try_direction(s, n)) {
-        touch_lowest(s, 0);
+        touch_lowest(s, is_smooth(s->i)); /* its lowest point is one */
     }
 }
 
@@ -410,17 +435,18 @@ int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3],
             try_product(&s, s.of_i.edge[k], s.of_j.edge[c]);
         }
     }
-    const int is_round = has_rims(i) || has_rims(j);
+    const int smooth = is_smooth(i) || is_smooth(j);
+    const int is_round = smooth || has_rims(i) || has_rims(j);
     for (int k = 0; k < s.of_i.count && is_round; ++k) {
         try_circle(&s, s.of_i.edge[k], 0);
     }
     for (int k = 0; k < s.of_j.count && is_round; ++k) {
         try_circle(&s, s.of_j.edge[k], 1);
     }
-    if (has_rims(i) && has_rims(j)) {
+    if (smooth || (has_rims(i) && has_rims(j))) {
         try_rims(&s);
     }
-    if (*overlap < s.least - LOOSE * s.size) {
+    if (!(s.least < HUGE_VAL) || *overlap < s.least - LOOSE * s.size) {
         return 0;
     }
     se3di_copy(s.n, n);

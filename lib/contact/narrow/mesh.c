@@ -492,6 +492,31 @@ static void meet_rims(void *ctx, uint32_t triangle)
     }
 }
 
+/* The point of what is smooth that is lowest on a face, over it. */
+static void meet_lowest(void *ctx, uint32_t triangle)
+{
+    const meeting *m = ctx;
+    const double *corner[3];
+    double low[3], foot[3], at[3], x[3];
+    face f;
+    if (!se3di_mesh_face_of(m, triangle, &f)) {
+        return;
+    }
+    (void)se3di_mesh_lowest(m, f.n, low);
+    const double height = se3di_mesh_height(&f, low), least = SAME * m->size;
+    for (uint32_t k = 0; k < 3; ++k) {
+        corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
+    }
+    se3di_copy(low, foot);
+    se3di_add_scaled(-height, f.n, foot);
+    if (height < 0.0 && -height < m->size &&
+        se3di_triangle_nearest(corner, foot, at, NULL) < least * least) {
+        se3di_mul(m->mesh->at->R, low, x);
+        se3di_add(x, m->mesh->at->x, x);
+        touch_corner(m, x, f.n, 0);
+    }
+}
+
 /* A triangle that a solid cuts through if none of its corners and no edge of the mesh that
  * bulges touch (sharp ones, in hollows): pushed apart as convex shapes are. */
 static void meet_rest(void *ctx, uint32_t triangle)
@@ -603,6 +628,8 @@ void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifo
         touch_ends(m);
     } else if (se3di_shape_is(s, SE3DI_SHAPE_HAS_RIMS)) {
         se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_rims, m);
+    } else if (se3di_shape_is(s, SE3DI_SHAPE_IS_SMOOTH)) {
+        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_lowest, m);
     } else {
         touch_corners(m);
     }

@@ -8,16 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* How the surface of a shape bends at `local`, the place nearest to a sphere. */
-static void bend_at(const se3di_solid *solid, const double local[3], se3di_bend *bend)
-{
-    const se3di_shape_class *kind = se3di_shape_class_of(solid->shape);
-    double u[3];
-    if (kind->bend && kind->bend(solid->shape, local, u, bend->r)) {
-        se3di_mul(solid->at->R, u, bend->u);
-    }
-}
-
 void se3di_narrow_sphere(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const int is_ball = se3di_shape_is(j->shape, SE3DI_SHAPE_IS_BALL);
@@ -36,7 +26,7 @@ void se3di_narrow_sphere(const se3di_solid *i, const se3di_solid *j, se3di_manif
     se3di_add_scaled(arm, normal, point);
     se3di_contact_point *p = se3di_manifold_add(manifold, point, normal, overlap, 0);
     p->bend_i.r[0] = p->bend_i.r[1] = i->shape->radius;
-    bend_at(j, local, &p->bend_j);
+    se3di_solid_bend(j, local, &p->bend_j);
     p->share = is_ball ? 0.5 : 1.0;
 }
 
@@ -117,6 +107,7 @@ static const finder special[SE3DI_SHAPE_COUNT][SE3DI_SHAPE_COUNT] = {
     [SE3DI_SHAPE_CAPSULE] = {[SE3DI_SHAPE_PLANE] = se3di_plane_capsule},
     [SE3DI_SHAPE_CYLINDER] = {[SE3DI_SHAPE_PLANE] = se3di_plane_cylinder},
     [SE3DI_SHAPE_HULL] = {[SE3DI_SHAPE_PLANE] = se3di_plane_corners},
+    [SE3DI_SHAPE_ELLIPSOID] = {[SE3DI_SHAPE_PLANE] = se3di_plane_smooth},
 };
 
 /* A mesh that is convex is the hull of its vertices, but for spheres and planes. */

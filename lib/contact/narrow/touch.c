@@ -33,6 +33,11 @@ typedef struct parting {
     int axis_i, axis_j;
 } parting;
 
+static int is_smooth(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
+}
+
 /* Half the extent of a box along n. */
 static double extent(const se3di_solid *box, const double n[3])
 {
@@ -106,6 +111,21 @@ static void bend_side(const se3di_solid *solid, const double n[3], se3di_bend *b
     }
 }
 
+/* One is smooth: how the other bends at what is nearest to a place beyond its surface, an edge or a
+ * corner too, and the smooth one at its own. */
+static void bend_beyond(const se3di_solid *solid, const double surface[3], const double out[3],
+                        se3di_bend *bend)
+{
+    double x[3], d[3], local[3];
+    se3di_copy(surface, x);
+    if (!is_smooth(solid)) {
+        se3di_add_scaled(solid->shape->bound, out, x);
+    }
+    se3di_sub(x, solid->at->x, d);
+    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_solid_bend(solid, local, bend);
+}
+
 /* The one point where there is neither a face nor a line. */
 static void point_touches(const parting *p, uint32_t feature, se3di_manifold *manifold)
 {
@@ -124,6 +144,13 @@ static void point_touches(const parting *p, uint32_t feature, se3di_manifold *ma
         se3di_solid_axis(p->j, p->axis_j, w);
         se3di_bend_set(&c->bend_i, u, HUGE_VAL, 0.0);
         se3di_bend_set(&c->bend_j, w, HUGE_VAL, 0.0);
+        return;
+    }
+    if (is_smooth(p->i) || is_smooth(p->j)) {
+        double back[3];
+        se3di_scale(-1.0, p->n, back);
+        bend_beyond(p->i, a, p->n, &c->bend_i);
+        bend_beyond(p->j, b, back, &c->bend_j);
         return;
     }
     bend_side(p->i, p->n, &c->bend_i);
@@ -281,6 +308,10 @@ static void touch(const parting *p, se3di_manifold *manifold)
     se3di_face face_i, face_j;
     double back[3];
     lines both;
+    if (is_smooth(p->i) || is_smooth(p->j)) {
+        point_touches(p, 0, manifold);
+        return;
+    }
     se3di_scale(-1.0, p->n, back);
     se3di_face_find(p->i, p->n, &face_i);
     se3di_face_find(p->j, back, &face_j);

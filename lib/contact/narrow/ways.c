@@ -163,6 +163,12 @@ static void find_off_corner(se3di_mesh_meeting *m, const double x[3], se3di_mesh
         try_hull_faces(m, x, way);
         return;
     }
+    if (se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH)) {
+        double out[3];
+        se3di_mul(solid->at->R, normal, out);
+        try_corner(m, x, out, way);
+        return;
+    }
     const uint32_t flats = se3di_shape_class_of(solid->shape)->flats;
     for (int k = 0; k < 6; ++k) { /* of a cylinder the caps, and its side there */
         const double sign = k & 1 ? -1.0 : 1.0;

@@ -105,6 +105,15 @@ double se3di_shape_bound(const se3di_shape *shape)
     return classes[shape->kind]->bound(shape);
 }
 
+void se3di_solid_bend(const se3di_solid *solid, const double local[3], se3di_bend *bend)
+{
+    const se3di_shape_class *kind = classes[solid->shape->kind];
+    double u[3];
+    if (kind->bend && kind->bend(solid->shape, local, u, bend->r)) {
+        se3di_mul(solid->at->R, u, bend->u);
+    }
+}
+
 double se3di_shape_contact_radius(const se3di_shape *shape)
 {
     return se3di_shape_is(shape, SE3DI_SHAPE_IS_ROUND) ? shape->radius : HUGE_VAL;

@@ -76,6 +76,9 @@ typedef struct se3di_shape_class {
                     double normal[3], double *distance);
     /* The point of the core farthest along d, shape frame. NULL: the origin. */
     void (*support)(const se3di_shape *shape, const double d[3], double out[3]);
+    /* How the point farthest along the unit n moves as n turns by u, perpendicular to it, of what
+     * is smooth; shape frame. */
+    void (*turn)(const se3di_shape *shape, const double n[3], const double u[3], double out[3]);
     /* The part that looks along d (shape frame) best, in the ground frame. NULL: a point. */
     void (*face)(const se3di_solid *solid, const double d[3], se3di_face *face);
     /* Its corner k, shape frame; 0: there is none. NULL: it has no corners. */
@@ -114,6 +117,10 @@ static inline void se3di_solid_axis(const se3di_solid *solid, int a, double out[
 
 /* The radius about the origin that holds the shape; infinite for a plane. */
 double se3di_shape_bound(const se3di_shape *shape);
+
+/* How its surface bends at the place that is nearest to `local`, shape frame; `bend` is that of
+ * what is flat before. */
+void se3di_solid_bend(const se3di_solid *solid, const double local[3], se3di_bend *bend);
 
 /* The radius of curvature where shapes touch, for R* of the laws: of round shapes their radius,
  * infinite for others. */

@@ -264,12 +264,13 @@ typedef struct drawing {
     const char *keys[3]; /* of its size */
 } drawing;
 
-static const drawing drawings[] = {{"BOX", "box", "CORNER", {"X", "Y", "Z"}},
-                                   {"CYLINDER", "cylinder", "CM", {"LENGTH", "RADIUS", "LENGTH"}},
-                                   {"ELLIPSOID", "sphere", "CM", {"XSCALE", "YSCALE", "ZSCALE"}}};
+static const drawing drawings[] = {
+    {"BOX", "box", "CORNER", {"X", "Y", "Z"}},
+    {"CYLINDER", "cylinder", "CM", {"LENGTH", "RADIUS", "LENGTH"}},
+    {"ELLIPSOID", "ellipsoid", "CM", {"XSCALE", "YSCALE", "ZSCALE"}}};
 
 /* The shape of these sizes, and where its centre is seen from the marker. @return whether there is
- * one: an ellipsoid must be a sphere. */
+ * one. */
 static bool make_shape(const drawing *d, const double size[3], se3di_machine_shape *shape,
                        double centre[3])
 {
@@ -290,8 +291,15 @@ static bool make_shape(const drawing *d, const double size[3], se3di_machine_sha
         centre[2] = 0.5 * size[0];
         return true;
     }
-    shape->radius = 0.5 * size[0];
-    return !(size[0] < size[1] || size[0] > size[1] || size[0] < size[2] || size[0] > size[2]);
+    if (size[0] < size[1] || size[0] > size[1] || size[0] < size[2] || size[0] > size[2]) {
+        for (int k = 0; k < 3; ++k) {
+            shape->size[k] = 0.5 * size[k];
+        }
+    } else {
+        shape->type = "sphere";
+        shape->radius = 0.5 * size[0];
+    }
+    return true;
 }
 
 static bool draw_as(se3di_adams *a, const se3di_adams_statement *s, const drawing *d)

@@ -85,6 +85,14 @@ se3di_mass se3di_solid_mass(const se3di_machine_shape *shape, double density)
             const double b = s[(k + 2) % 3];
             mass.J[4 * k] = mass.mass * (a * a + b * b) / 12.0;
         }
+    } else if (strcmp(shape->type, "ellipsoid") == 0) {
+        const double *s = shape->size;
+        mass.mass = density * 4.0 / 3.0 * PI * s[0] * s[1] * s[2];
+        for (int k = 0; k < 3; ++k) {
+            const double a = s[(k + 1) % 3];
+            const double b = s[(k + 2) % 3];
+            mass.J[4 * k] = 0.2 * mass.mass * (a * a + b * b);
+        }
     } else if (strcmp(shape->type, "sphere") == 0 || strcmp(shape->type, "capsule") == 0) {
         capsule(r, l, density, &mass);
     } else if (strcmp(shape->type, "cylinder") == 0) {

@@ -13,7 +13,7 @@
 
 typedef struct se3di_machine_shape {
     const char *type; /* as in a model file */
-    double size[3];   /* box */
+    double size[3];   /* box: edges; ellipsoid: semi-axes */
     double radius;
     double length;
     double scale;         /* mesh */

@@ -51,6 +51,9 @@ static se3di_machine_shape solid_of(const geom *g)
         for (int k = 0; k < 3; ++k) {
             shape.size[k] = 2.0 * s[k];
         }
+    } else if (strcmp(g->type, "ellipsoid") == 0) {
+        shape.type = "ellipsoid";
+        memcpy(shape.size, s, sizeof shape.size);
     } else if (strcmp(g->type, "sphere") == 0) {
         shape.type = "sphere";
         shape.radius = s[0];
@@ -62,17 +65,6 @@ static se3di_machine_shape solid_of(const geom *g)
         shape.type = "plane";
     }
     return shape;
-}
-
-static se3di_mass ellipsoid(const double s[3], double density)
-{
-    se3di_mass mass = {.mass = density * 4.0 / 3.0 * PI * s[0] * s[1] * s[2]};
-    for (int k = 0; k < 3; ++k) {
-        const double a = s[(k + 1) % 3];
-        const double b = s[(k + 2) % 3];
-        mass.J[4 * k] = 0.2 * mass.mass * (a * a + b * b);
-    }
-    return mass;
 }
 
 static bool weigh(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e, const geom *g,
@@ -87,17 +79,16 @@ static bool weigh(se3di_mjcf *f, size_t link, const se3di_mjcf_element *e, const
         se3di_machine_note_of(f->links.m, SE3D_IMPORT_LOST, e->node->line,
                               "shellinertia: the geom weighs as a solid");
     }
-    const bool is_ellipsoid = strcmp(g->type, "ellipsoid") == 0;
     density = given >= 0.0 ? 1.0 : density;
-    if (!is_ellipsoid && !shape->type && density > 0.0 && (given > 0.0 || given < 0.0)) {
+    if (!shape->type && density > 0.0 && (given > 0.0 || given < 0.0)) {
         se3di_machine_note_of(f->links.m, SE3D_IMPORT_LOST, e->node->line,
                               "the mass of a geom of type %.40s: give the body <inertial>",
                               g->type);
     }
-    if (!is_ellipsoid && (!shape->type || strcmp(shape->type, "plane") == 0)) {
+    if (!shape->type || strcmp(shape->type, "plane") == 0) {
         return true;
     }
-    se3di_mass mass = is_ellipsoid ? ellipsoid(g->size, density) : se3di_solid_mass(shape, density);
+    se3di_mass mass = se3di_solid_mass(shape, density);
     if (given >= 0.0 && mass.mass > 0.0) {
         for (int k = 0; k < 9; ++k) {
             mass.J[k] *= given / mass.mass;
@@ -277,7 +268,7 @@ static void color(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shap
 
 static bool has_size(const se3di_machine_shape *shape)
 {
-    if (strcmp(shape->type, "box") == 0) {
+    if (strcmp(shape->type, "box") == 0 || strcmp(shape->type, "ellipsoid") == 0) {
         return shape->size[0] > 0.0 && shape->size[1] > 0.0 && shape->size[2] > 0.0;
     }
     if (strcmp(shape->type, "capsule") == 0 || strcmp(shape->type, "cylinder") == 0) {

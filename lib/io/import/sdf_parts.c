@@ -100,6 +100,17 @@ static bool read_round(se3di_machine *m, const se3di_xml *node, se3di_machine_sh
     return true;
 }
 
+static bool read_ellipsoid(se3di_machine *m, const se3di_xml *node, se3di_machine_shape *shape,
+                           bool *good)
+{
+    shape->type = "ellipsoid";
+    if (!read_vector(m, node, "radii", shape->size)) {
+        return false;
+    }
+    *good = shape->size[0] > 0.0 && shape->size[1] > 0.0 && shape->size[2] > 0.0;
+    return true;
+}
+
 static bool read_mesh(se3di_machine *m, const se3di_xml *node, se3di_machine_shape *shape,
                       bool *good)
 {
@@ -131,6 +142,7 @@ static bool read_shape(se3di_machine *m, const se3di_xml *node, se3di_machine_sh
     } rounds[] = {{"sphere", read_round},
                   {"cylinder", read_round},
                   {"capsule", read_round},
+                  {"ellipsoid", read_ellipsoid},
                   {"plane", read_plane}};
     *good = false;
     if (se3di_xml_is(node, "empty")) {

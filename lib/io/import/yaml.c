@@ -145,6 +145,8 @@ static void put_shape(writer *w, const se3di_machine_shape *shape)
     put_pair(w, indent, "type", shape->type, true);
     if (strcmp(shape->type, "box") == 0) {
         put_pair(w, indent, "size", edges_text(m, shape->size), false);
+    } else if (strcmp(shape->type, "ellipsoid") == 0) {
+        put_pair(w, indent, "semi_axes", edges_text(m, shape->size), false);
     }
     if (shape->radius > 0.0) {
         put_pair(w, indent, "radius", se3di_machine_number(m, shape->radius), false);

@@ -186,6 +186,7 @@ static bool create_shape(se3di_reader *reader, const se3di_node *node, se3di_sha
     memcpy(def.position, shape->position, sizeof def.position);
     memcpy(def.orientation, shape->orientation, sizeof def.orientation);
     memcpy(def.size, shape->size, sizeof def.size);
+    memcpy(def.semi_axes, shape->semi_axes, sizeof def.semi_axes);
     if (mesh) {
         def.vertices = mesh->points;
         def.vertex_count = mesh->point_count;

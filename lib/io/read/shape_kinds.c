@@ -17,7 +17,8 @@ static const double pi = 3.14159265358979323846;
     X(PLANE, plane)                                                                                \
     X(MESH, mesh)                                                                                  \
     X(HEIGHTFIELD, heightfield)                                                                    \
-    X(FUNNEL, funnel)
+    X(FUNNEL, funnel)                                                                              \
+    X(ELLIPSOID, ellipsoid)
 
 const char *const se3di_shape_styles[] = {[SE3DI_STYLE_PAINT] = "paint",
                                           [SE3DI_STYLE_STEEL] = "steel",
@@ -50,6 +51,8 @@ static const se3di_key shape_keys[] = {
      .text = "false: nothing touches it, though it has a material"},
     {"type", SE3DI_KIND_TYPE, .required = true, .text = ""},
     {"size", SE3DI_KIND_VECTOR, .types = " box ", .text = "its edges [m], each > 0"},
+    {"semi_axes", SE3DI_KIND_VECTOR, .types = " ellipsoid ",
+     .text = "along its x, y, z [m], each > 0"},
     {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere capsule cylinder ",
      .text = "[m]"},
     {"bottom_radius", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, .types = " funnel ",
@@ -79,7 +82,8 @@ static const se3di_key shape_keys[] = {
      .standard = "false", .text = "its convex hull touches in its place, also meshes"},
     {"normal", SE3DI_KIND_DIRECTION, .types = " plane ", .standard = "[0, 0, 1]",
      .text = "in place of an orientation"},
-    {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, .types = " sphere box capsule cylinder mesh ",
+    {"density", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
+     .types = " sphere box capsule cylinder mesh ellipsoid ",
      .text = "[kg/m^3], for bodies without mass; a mesh must be closed"},
     {"material", SE3DI_KIND_MATERIAL,
      .text = "if there is contact or particles, what has one touches"},
@@ -219,6 +223,28 @@ static int draw_cylinder(const se3d_model_shape *s, double extent, se3di_look lo
     return 1;
 }
 
+static void weigh_ellipsoid(const se3d_model_shape *s, double density, double *mass, double J[3])
+{
+    const double *e = s->semi_axes;
+    *mass = density * 4.0 / 3.0 * pi * e[0] * e[1] * e[2];
+    for (int a = 0; a < 3; ++a) {
+        const double b = e[(a + 1) % 3], c = e[(a + 2) % 3];
+        J[a] = 0.2 * *mass * (b * b + c * c);
+    }
+}
+
+static void enclose_ellipsoid(const se3d_model_shape *s, double half[3])
+{
+    set(half, s->semi_axes[0], s->semi_axes[1], s->semi_axes[2]);
+}
+
+static int draw_ellipsoid(const se3d_model_shape *s, double extent, se3di_look looks[SE3DI_LOOKS])
+{
+    (void)extent;
+    looks[0] = look_of(SE3DI_LOOK_SPHERE, s->semi_axes[0], s->semi_axes[1], s->semi_axes[2]);
+    return 1;
+}
+
 static void enclose_funnel(const se3d_model_shape *s, double half[3])
 {
     const double wide = s->bottom_radius > s->top_radius ? s->bottom_radius : s->top_radius;
@@ -263,6 +289,11 @@ static const se3di_shape_row rows[] = {
     [SE3D_SHAPE_FUNNEL] = {.create = se3d_shape_create_funnel,
                            .keys = SE3DI_SHAPE_NEEDS_LENGTH | SE3DI_SHAPE_NEEDS_ENDS,
                            .enclose = enclose_funnel},
+    [SE3D_SHAPE_ELLIPSOID] = {.create = se3d_shape_create_ellipsoid,
+                              .keys = SE3DI_SHAPE_NEEDS_AXES,
+                              .weigh = weigh_ellipsoid,
+                              .enclose = enclose_ellipsoid,
+                              .draw = draw_ellipsoid},
 };
 
 const se3di_shape_row *se3di_shape_row_of(const se3d_model_shape *shape)

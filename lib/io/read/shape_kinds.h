@@ -30,6 +30,7 @@ typedef struct se3di_look {
 #define SE3DI_SHAPE_HAS_NORMAL   16u /* may be given in place of an orientation */
 #define SE3DI_SHAPE_HAS_HEIGHTS  32u /* a grid of them, in one of several ways */
 #define SE3DI_SHAPE_NEEDS_ENDS   64u /* radii of both: a surface that is drawn as a mesh */
+#define SE3DI_SHAPE_NEEDS_AXES   128u
 
 typedef struct se3di_shape_row {
     se3d_status (*create)(se3d_system *system, const se3d_shape_def *def, se3d_shape *shape);

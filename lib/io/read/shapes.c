@@ -24,10 +24,12 @@
 
 static bool require(se3di_reader *reader, const se3di_node *node, const char *key)
 {
-    return se3di_node_get(node, key)
-               ? true
-               : se3di_reader_fail_key(reader, node, key, "is missing, a %s needs it",
-                                       se3di_node_get(node, "type")->text);
+    if (se3di_node_get(node, key)) {
+        return true;
+    }
+    const char *type = se3di_node_get(node, "type")->text;
+    return se3di_reader_fail_key(reader, node, key, "is missing, %s %s needs it",
+                                 type[0] == 'e' ? "an" : "a", type);
 }
 
 static bool read_required(se3di_reader *reader, const se3di_node *node, const char *key,
@@ -37,16 +39,17 @@ static bool read_required(se3di_reader *reader, const se3di_node *node, const ch
            se3di_read_key(reader, node, &se3di_object_shape, NULL, key, value);
 }
 
-static bool read_size(se3di_reader *reader, const se3di_node *node, double size[3])
+/* Three lengths; `one` of them. */
+static bool read_lengths(se3di_reader *reader, const se3di_node *node, const char *key,
+                         const char *one, double size[3])
 {
-    if (!read_required(reader, node, "size", size)) {
+    if (!read_required(reader, node, key, size)) {
         return false;
     }
     for (int k = 0; k < 3; ++k) {
         if (!(size[k] > 0.0)) {
-            return se3di_reader_fail_key(reader, node, "size",
-                                         "is [%g, %g, %g], each edge must be > 0", size[0], size[1],
-                                         size[2]);
+            return se3di_reader_fail_key(reader, node, key, "is [%g, %g, %g], each %s must be > 0",
+                                         size[0], size[1], size[2], one);
         }
     }
     return true;
@@ -112,7 +115,10 @@ static bool read_dimensions(se3di_reader *reader, const se3di_node *node, se3di_
     const uint32_t keys = se3di_shape_row_of(shape)->keys;
     return read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_RADIUS, "radius", &shape->radius) &&
            read_needed(reader, node, keys & SE3DI_SHAPE_NEEDS_LENGTH, "length", &shape->length) &&
-           (!(keys & SE3DI_SHAPE_NEEDS_SIZE) || read_size(reader, node, shape->size)) &&
+           (!(keys & SE3DI_SHAPE_NEEDS_SIZE) ||
+            read_lengths(reader, node, "size", "edge", shape->size)) &&
+           (!(keys & SE3DI_SHAPE_NEEDS_AXES) ||
+            read_lengths(reader, node, "semi_axes", "of them", shape->semi_axes)) &&
            (!(keys & SE3DI_SHAPE_NEEDS_ENDS) || read_ends(reader, node, shape)) &&
            (!(keys & SE3DI_SHAPE_HAS_NORMAL) || read_plane(reader, node, shape)) &&
            (!(keys & SE3DI_SHAPE_HAS_HEIGHTS) || read_heights(reader, node, entry)) &&

@@ -111,7 +111,12 @@ static bool get_core(const se3di_shape_entry *entry, double low[3], double high[
         low[i] = entry->mesh ? entry->mesh->low[i] : -half[i];
         high[i] = entry->mesh ? entry->mesh->high[i] : half[i];
     }
-    if (s->type != SE3D_SHAPE_BOX && !entry->mesh) {
+    if (s->type == SE3D_SHAPE_ELLIPSOID) { /* the largest box in it */
+        for (int i = 0; i < 3; ++i) {
+            low[i] *= sqrt(1.0 / 3.0);
+            high[i] *= sqrt(1.0 / 3.0);
+        }
+    } else if (s->type != SE3D_SHAPE_BOX && !entry->mesh) {
         *round = s->radius;
         for (int i = 0; i < 3; ++i) {
             const double inner = i < 2 || s->type == SE3D_SHAPE_SPHERE ? 0.0 : 0.5 * s->length;

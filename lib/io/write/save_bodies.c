@@ -235,6 +235,7 @@ static void save_shape(se3di_save *s, const se3di_shape_entry *entry)
     }
     se3di_save_text(s, "type", se3di_shape_names[kind]);
     se3di_save_vector_but_zero(s, "size", shape->size, 3);
+    se3di_save_vector_but_zero(s, "semi_axes", shape->semi_axes, 3);
     se3di_save_number_but(s, "radius", shape->radius, 0.0);
     se3di_save_number_but(s, "length", shape->length, 0.0);
     if (shape->type == SE3D_SHAPE_MESH) {
@@ -267,6 +268,7 @@ static void save_made_shape(se3di_save *s, se3d_shape made)
     }
     se3di_save_text(s, "type", se3di_shape_names[kind]);
     se3di_save_vector_but_zero(s, "size", def.size, 3);
+    se3di_save_vector_but_zero(s, "semi_axes", def.semi_axes, 3);
     se3di_save_number_but(s, "radius", def.radius, 0.0);
     se3di_save_number_but(s, "length", def.length, 0.0);
     save_ends(s, type, def.bottom_radius, def.top_radius);
