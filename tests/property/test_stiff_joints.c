@@ -412,16 +412,17 @@ static const struct laid {
      19.62, 2},
 };
 
-/* @return how far it is off the weight between steps, at most [N, N m] */
+/* @return how far it is off the weight between steps, at most, in rows of a tenth of a second
+ * [N, N m] */
 static double weigh(const struct laid *l, double k, int32_t method, int32_t formulation,
-                    int32_t shown)
+                    int32_t shown, int rows)
 {
     char text[1500];
     double off = 0.0;
     (void)snprintf(text, sizeof text, "se3d: 1\nparameters: {k: %g}\n%s", k, l->text);
     text_model m = text_model_open(text, method, formulation, 0.0);
     CHECK(!se3d_solver_set_shown(m.solver, shown));
-    for (int row = 0; row < 9; ++row) {
+    for (int row = 0; row < rows; ++row) {
         CHECK(text_model_run(&m, 0.2 + 0.1 * row));
         off = fmax(off, fabs(fabs(text_model_get(&m, 0, l->part)) - l->force));
     }
@@ -440,8 +441,13 @@ static void forces_between_steps_of_the_newmark_family_are_those_of_the_motion(v
             const int32_t method = methods[way % 2], formulation = formulations[way / 2 % 2];
             const int32_t shown = way / 4 % 2 ? SE3D_SHOWN_MOTION : SE3D_SHOWN_ALL;
             const double stiffness = pow(10.0, 9 + 2 * (way / 8));
-            const double most = stiffness < 1e13 ? 1.1 * laid[k].force : 1e-2 + 1e-15 * stiffness;
-            const double off = weigh(&laid[k], stiffness, method, formulation, shown);
+            const int swings = stiffness < 1e13;
+            if (swings && way % 8 != (int)k) {
+                continue; /* small steps: seconds each */
+            }
+            const double most = swings ? 1.1 * laid[k].force : 1e-2 + 1e-15 * stiffness;
+            const double off =
+                weigh(&laid[k], stiffness, method, formulation, shown, swings ? 3 : 9);
             CHECK(off <= most);
             if (!(off <= most) || getenv("SE3D_SHOW")) {
                 fprintf(stderr, "%s of %g by %s, formulation %d, shown %d: off by %.2g\n",
