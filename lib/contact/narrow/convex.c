@@ -456,22 +456,6 @@ static double flat_normal(const difference *D, const simplex *s, double normal[3
     return 0.0;
 }
 
-static int has_rims(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
-}
-
-static int is_smooth(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
-}
-
-static int is_line(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
-           !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
-}
-
 /* The overlap of a box or line and a cylinder or line, <= 0 if they are apart; minus infinity: they
  * are other shapes, or two lines. */
 static double known_overlap(const se3di_solid *i, const se3di_solid *j, double normal[3],
@@ -480,7 +464,8 @@ static double known_overlap(const se3di_solid *i, const se3di_solid *j, double n
     for (int k = 0; k < 2; ++k) {
         const se3di_solid *one = k ? j : i, *other = k ? i : j;
         const int is_box = se3di_shape_class_of(one->shape)->flats == SE3DI_AXES_ALL;
-        if ((is_box && is_line(other)) || ((is_box || is_line(one)) && has_rims(other))) {
+        if ((is_box && se3di_solid_is_line(other)) ||
+            ((is_box || se3di_solid_is_line(one)) && se3di_solid_has_rims(other))) {
             const double overlap =
                 se3di_cylinder_overlap(one, other, normal, k ? on_j : on_i, k ? on_i : on_j);
             se3di_scale(k ? -1.0 : 1.0, normal, normal);
@@ -507,13 +492,15 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3])
 {
-    const int smooth = is_smooth(i) || is_smooth(j);
-    difference D = {i, j, size_of(i) + size_of(j), smooth || has_rims(i) != has_rims(j)};
+    const int smooth = se3di_solid_is_smooth(i) || se3di_solid_is_smooth(j);
+    difference D = {i, j, size_of(i) + size_of(j),
+                    smooth || se3di_solid_has_rims(i) != se3di_solid_has_rims(j)};
     simplex s;
     double point[3];
     const double least = APART * D.size;
-    const double known =
-        has_rims(i) || has_rims(j) ? known_overlap(i, j, normal, on_i, on_j) : -HUGE_VAL;
+    const double known = se3di_solid_has_rims(i) || se3di_solid_has_rims(j)
+                             ? known_overlap(i, j, normal, on_i, on_j)
+                             : -HUGE_VAL;
     if (known > least) {
         return known;
     }
@@ -526,7 +513,7 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
         return smooth && se3di_convex_polish(i, j, normal, on_i, on_j, &overlap) ? overlap
                                                                                  : -distance;
     }
-    if (!has_rims(i) && !has_rims(j)) {
+    if (!se3di_solid_has_rims(i) && !se3di_solid_has_rims(j)) {
         double n[3], a[3], b[3];
         const double overlap = known_overlap(i, j, n, a, b);
         if (overlap > 0.0) {
@@ -544,7 +531,8 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
     P.D = &D;
     begin(&P, &s);
     expand(&P, &best);
-    if (!best.is_settled && (best.is_sliver || smooth || has_rims(i) || has_rims(j))) {
+    if (!best.is_settled &&
+        (best.is_sliver || smooth || se3di_solid_has_rims(i) || se3di_solid_has_rims(j))) {
         (void)se3di_convex_polish(i, j, best.n, best.a, best.b, &best.reach);
     }
     se3di_copy(best.n, normal);

@@ -65,7 +65,7 @@ static int is_open(const ways *all, int k, const double x[3])
 {
     const way *own = &all->list[k];
     double local[3], by[3], both[3], other_by[3];
-    se3di_mesh_to_local(all->mesh, x, local);
+    se3di_solid_to_local(all->mesh, x, local);
     se3di_scale(-own->depth, own->n, by);
     for (int c = 0; c < all->count; ++c) {
         const way *other = &all->list[c];
@@ -161,7 +161,7 @@ static int is_along(const ways *all, se3di_contact_point *c)
 {
     double local[3], most[2] = {0.0, 0.0};
     int is_on = 0;
-    se3di_mesh_to_local(all->mesh, c->point, local);
+    se3di_solid_to_local(all->mesh, c->point, local);
     for (int k = 0; k < all->count; ++k) {
         const way *w = &all->list[k];
         const int along =

@@ -5,6 +5,23 @@
 
 #include "contact/narrow/narrow.h"
 
+static inline int se3di_solid_has_rims(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
+}
+
+static inline int se3di_solid_is_smooth(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
+}
+
+/* The core is one. */
+static inline int se3di_solid_is_line(const se3di_solid *solid)
+{
+    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
+           !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
+}
+
 /* Append a point; if the manifold is full the shallowest gives way. */
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature);

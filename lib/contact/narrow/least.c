@@ -35,24 +35,13 @@
 #define FLAT    1e-6  /* of the size: a curvature below which the overlap is not convex */
 #define APART   1e-9  /* of the size: cores that are */
 
-static int has_rims(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS);
-}
-
-static int is_smooth(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
-}
-
 /* The distance of a point from a core, and the direction to it. */
 static double distance_from(const se3di_solid *solid, const double x[3], double n[3], double at[3])
 {
     se3di_shape core = *solid->shape;
-    double d[3], local[3], point[3], normal[3], distance;
+    double local[3], point[3], normal[3], distance;
     core.radius -= se3di_core_radius(solid->shape);
-    se3di_sub(x, solid->at->x, d);
-    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_solid_to_local(solid, x, local);
     se3di_shape_nearest(&core, local, point, normal, &distance);
     se3di_mul(solid->at->R, normal, n);
     se3di_copy(x, at);
@@ -329,7 +318,7 @@ static void add_turn_rate(const se3di_solid *solid, const double n[3], const dou
 {
     const se3di_shape_class *kind = se3di_shape_class_of(solid->shape);
     double own_n[3], own_u[3], own[3], rate[3];
-    if (has_rims(solid)) {
+    if (se3di_solid_has_rims(solid)) {
         add_rim_rate(solid, n, u, out);
     } else if (kind->turn) {
         se3di_mul_transposed(solid->at->R, n, own_n);
@@ -400,7 +389,7 @@ static void try_rims(search *s)
         }
     }
     if (try_direction(s, n)) {
-        touch_lowest(s, is_smooth(s->i)); /* its lowest point is one */
+        touch_lowest(s, se3di_solid_is_smooth(s->i)); /* its lowest point is one */
     }
 }
 
@@ -435,15 +424,15 @@ int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3],
             try_product(&s, s.of_i.edge[k], s.of_j.edge[c]);
         }
     }
-    const int smooth = is_smooth(i) || is_smooth(j);
-    const int is_round = smooth || has_rims(i) || has_rims(j);
+    const int smooth = se3di_solid_is_smooth(i) || se3di_solid_is_smooth(j);
+    const int is_round = smooth || se3di_solid_has_rims(i) || se3di_solid_has_rims(j);
     for (int k = 0; k < s.of_i.count && is_round; ++k) {
         try_circle(&s, s.of_i.edge[k], 0);
     }
     for (int k = 0; k < s.of_j.count && is_round; ++k) {
         try_circle(&s, s.of_j.edge[k], 1);
     }
-    if (smooth || (has_rims(i) && has_rims(j))) {
+    if (smooth || (se3di_solid_has_rims(i) && se3di_solid_has_rims(j))) {
         try_rims(&s);
     }
     if (!(s.least < HUGE_VAL) || *overlap < s.least - LOOSE * s.size) {
@@ -456,23 +445,17 @@ int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3],
     return 1;
 }
 
-static int is_line(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SWEPT) &&
-           !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
-}
-
 double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double n[3], double on_i[3],
                           double on_j[3])
 {
     const double radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
     const double apart = APART * (i->shape->bound + j->shape->bound);
-    if (is_line(i) && !j->shape->triangles) {
+    if (se3di_solid_is_line(i) && !j->shape->triangles) {
         const double distance = line_distance(i, j, n, on_i, on_j);
         if (distance > apart) {
             return radius - distance;
         }
-    } else if (is_line(j) && !i->shape->triangles) {
+    } else if (se3di_solid_is_line(j) && !i->shape->triangles) {
         const double distance = line_distance(j, i, n, on_j, on_i);
         if (distance > apart) {
             se3di_scale(-1.0, n, n);

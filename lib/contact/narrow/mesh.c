@@ -26,13 +26,6 @@ typedef se3di_mesh_face face;
 typedef se3di_mesh_meeting meeting;
 typedef se3di_mesh_edge edge;
 
-void se3di_mesh_to_local(const se3di_solid *mesh, const double x[3], double local[3])
-{
-    double d[3];
-    se3di_sub(x, mesh->at->x, d);
-    se3di_mul_transposed(mesh->at->R, d, local);
-}
-
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k)
 {
     return s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + k % 3];
@@ -76,8 +69,7 @@ void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], dou
                     double radius, uint32_t feature)
 {
     double point[3], normal[3], d[3];
-    se3di_mul(m->mesh->at->R, at, point);
-    se3di_add(point, m->mesh->at->x, point);
+    se3di_solid_to_ground(m->mesh, at, point);
     se3di_mul(m->mesh->at->R, n, normal);
     se3di_scale(-1.0, normal, normal);
     for (uint32_t k = 0; k < m->manifold->count; ++k) {
@@ -237,7 +229,7 @@ static int is_met(const corner_faces *c, int k)
 static void touch_corner(const meeting *m, const double x[3], const double *only, uint32_t feature)
 {
     corner_faces c = {.m = m};
-    se3di_mesh_to_local(m->mesh, x, c.x);
+    se3di_solid_to_local(m->mesh, x, c.x);
     se3di_mesh_visit(m->mesh->shape, c.x, m->size, meet_corner, &c);
     if (c.count > 0 && !se3di_mesh_crosses(m->mesh->shape, m->center, c.x)) {
         return; /* behind planes of faces, but not behind the surface */
@@ -261,7 +253,7 @@ static void touch_ball(const meeting *m, const double x[3], double radius, uint3
 {
     se3di_touch touches[TOUCHES];
     double local[3];
-    se3di_mesh_to_local(m->mesh, x, local);
+    se3di_solid_to_local(m->mesh, x, local);
     size_t count = se3di_mesh_contacts(m->mesh->shape, local, radius, TOUCHES, touches);
     for (size_t k = 0; k < count; ++k) {
         const se3di_touch *t = &touches[k];
@@ -357,7 +349,7 @@ static void add_lines(meeting *m, const se3di_manifold *lines, const edge *e, ui
         const int ends = fabs(over) > least;
         if (m->has_pieces || (se3di_mesh_leads_out(e, back) &&
                               (!ends || se3di_mesh_leads_off(m, over > 0.0 ? e->b : e->a, n)))) {
-            se3di_mesh_to_local(m->mesh, lines->points[k].point, here);
+            se3di_solid_to_local(m->mesh, lines->points[k].point, here);
             se3di_add_scaled(0.5 * lines->points[k].overlap, n, here); /* on the edge */
             se3di_mesh_add(m, here, n, lines->points[k].overlap, radius, feature + k);
             if (lines->points[k].overlap > way.depth) {
@@ -482,7 +474,7 @@ static void meet_rims(void *ctx, uint32_t triangle)
     se3di_cylinder_rims(m->solid, normal, rim);
     for (uint32_t k = 0; k < 8; ++k) {
         double x[3], at[3];
-        se3di_mesh_to_local(m->mesh, rim[k], x);
+        se3di_solid_to_local(m->mesh, rim[k], x);
         double height = se3di_mesh_height(&f, x);
         se3di_add_scaled(-height, f.n, x);
         if (height < 0.0 && -height < m->size &&
@@ -511,8 +503,7 @@ static void meet_lowest(void *ctx, uint32_t triangle)
     se3di_add_scaled(-height, f.n, foot);
     if (height < 0.0 && -height < m->size &&
         se3di_triangle_nearest(corner, foot, at, NULL) < least * least) {
-        se3di_mul(m->mesh->at->R, low, x);
-        se3di_add(x, m->mesh->at->x, x);
+        se3di_solid_to_ground(m->mesh, low, x);
         touch_corner(m, x, f.n, 0);
     }
 }
@@ -533,7 +524,7 @@ static void meet_rest(void *ctx, uint32_t triangle)
     se3di_mul_transposed(m->mesh->at->R, n, back);
     se3di_scale(-1.0, back, back);
     if (overlap > 0.0 && !(se3di_dot(back, f.n) < 0.0)) {
-        se3di_mesh_to_local(m->mesh, on_j, on_j);
+        se3di_solid_to_local(m->mesh, on_j, on_j);
         se3di_mesh_add(m, on_j, back, overlap, se3di_core_radius(m->solid->shape),
                        0x40000000u + triangle);
     }
@@ -606,10 +597,9 @@ static void find_center(meeting *m)
     for (size_t k = 0; k < s->vertex_count; ++k) {
         se3di_add_scaled(1.0 / (double)s->vertex_count, s->vertices + 3 * k, mean);
     }
-    se3di_mul(m->solid->at->R, mean, x);
-    se3di_add(x, m->solid->at->x, x);
-    se3di_mesh_to_local(m->mesh, x, m->center);
-    se3di_mesh_to_local(m->mesh, m->solid->at->x, m->origin);
+    se3di_solid_to_ground(m->solid, mean, x);
+    se3di_solid_to_local(m->mesh, x, m->center);
+    se3di_solid_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
 void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
@@ -676,7 +666,7 @@ void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_m
     meeting m = {.solid = mesh, .mesh = mesh, .size = s->bound, .manifold = manifold};
     se3di_solid_axis(plane, 2, n);
     se3di_mul_transposed(mesh->at->R, n, local_n);
-    se3di_mesh_to_local(mesh, plane->at->x, base);
+    se3di_solid_to_local(mesh, plane->at->x, base);
     se3di_perpendicular(local_n, u);
     se3di_cross(local_n, u, w);
     for (int k = 0; k <= WAYS; ++k) {

@@ -48,7 +48,6 @@ typedef struct se3di_mesh_edge {
     se3di_mesh_face other; /* beyond it, if it is no border */
 } se3di_mesh_edge;
 
-void se3di_mesh_to_local(const se3di_solid *mesh, const double x[3], double local[3]);
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);

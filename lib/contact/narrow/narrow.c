@@ -11,9 +11,8 @@
 void se3di_narrow_sphere(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const int is_ball = se3di_shape_is(j->shape, SE3DI_SHAPE_IS_BALL);
-    double d[3], local[3], at[3], outward[3], point[3], normal[3], distance;
-    se3di_sub(i->at->x, j->at->x, d);
-    se3di_mul_transposed(j->at->R, d, local);
+    double local[3], at[3], outward[3], point[3], normal[3], distance;
+    se3di_solid_to_local(j, i->at->x, local);
     se3di_shape_nearest(j->shape, local, at, outward, &distance);
     double overlap = i->shape->radius - distance;
     if (!(overlap > 0.0)) {
@@ -32,9 +31,8 @@ void se3di_narrow_sphere(const se3di_solid *i, const se3di_solid *j, se3di_manif
 
 static double sphere_gap(const se3di_solid *i, const se3di_solid *j, double normal[3])
 {
-    double d[3], local[3], at[3], outward[3], distance;
-    se3di_sub(i->at->x, j->at->x, d);
-    se3di_mul_transposed(j->at->R, d, local);
+    double local[3], at[3], outward[3], distance;
+    se3di_solid_to_local(j, i->at->x, local);
     se3di_shape_nearest(j->shape, local, at, outward, &distance);
     se3di_mul(j->at->R, outward, normal);
     se3di_scale(-1.0, normal, normal);
@@ -54,10 +52,9 @@ static double plane_gap(const se3di_solid *i, const se3di_solid *plane, double n
 /* Of the sphere about the solid. */
 static double mesh_gap(const se3di_solid *i, const se3di_solid *mesh, double normal[3])
 {
-    double d[3], local[3], at[3], outward[3], distance;
+    double local[3], at[3], outward[3], distance;
     memset(normal, 0, 3 * sizeof *normal);
-    se3di_sub(i->at->x, mesh->at->x, d);
-    se3di_mul_transposed(mesh->at->R, d, local);
+    se3di_solid_to_local(mesh, i->at->x, local);
     se3di_shape_nearest(mesh->shape, local, at, outward, &distance);
     return distance - i->shape->bound;
 }

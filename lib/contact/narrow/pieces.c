@@ -43,7 +43,7 @@ static int stays_within(const se3di_solid *i, size_t k, const se3di_contact_poin
     double x[3], local[3];
     se3di_copy(p->point, x);
     se3di_add_scaled(p->overlap + beyond, p->normal, x);
-    se3di_mesh_to_local(i, x, local);
+    se3di_solid_to_local(i, x, local);
     for (size_t other = 0; other < i->shape->piece_count; ++other) {
         if (other != k && se3di_piece_holds(&i->shape->pieces[other], local, 0.1 * beyond)) {
             return 1;
@@ -74,7 +74,7 @@ static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
     se3di_manifold own = {.count = 0};
     double local[3];
     place(i, piece, &at);
-    se3di_mesh_to_local(mesh, at.x, local);
+    se3di_solid_to_local(mesh, at.x, local);
     if (se3di_mesh_is_clear(mesh->shape, local, piece->bound)) {
         return;
     }
@@ -133,7 +133,7 @@ double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, doubl
     double gap = cut->shape->piece_count > 0 ? HUGE_VAL : 0.0;
     if (!(gap > 0.0)) { /* of the ball about it */
         double local[3], point[3];
-        se3di_mesh_to_local(whole, cut->at->x, local);
+        se3di_solid_to_local(whole, cut->at->x, local);
         (void)se3di_mesh_nearest(whole->shape, local, point, &gap);
         gap -= cut->shape->bound;
     }
@@ -141,7 +141,7 @@ double se3di_narrow_meshes_gap(const se3di_solid *i, const se3di_solid *j, doubl
         se3di_shape_pose at;
         double local[3], point[3], distance;
         place(cut, &cut->shape->pieces[k], &at);
-        se3di_mesh_to_local(whole, at.x, local);
+        se3di_solid_to_local(whole, at.x, local);
         (void)se3di_mesh_nearest(whole->shape, local, point, &distance);
         gap = fmin(gap, distance - cut->shape->pieces[k].bound);
     }

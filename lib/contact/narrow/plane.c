@@ -131,13 +131,12 @@ void se3di_plane_convex(const se3di_solid *i, const se3di_solid *j, se3di_manifo
 void se3di_plane_smooth(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    double down[3], lowest[3], d[3], local[3];
+    double down[3], lowest[3], local[3];
     se3di_scale(-1.0, plane.n, down);
     se3di_core_support(i, down, lowest);
     se3di_contact_point *p = touch_plane(&plane, lowest, 0.0, 0, manifold);
     if (p) {
-        se3di_sub(lowest, i->at->x, d);
-        se3di_mul_transposed(i->at->R, d, local);
+        se3di_solid_to_local(i, lowest, local);
         se3di_solid_bend(i, local, &p->bend_i);
     }
 }

@@ -663,14 +663,12 @@ static void find_sense(search *s)
 /* Edges and vertices of one of the two within the other. */
 static void search_in(search *s, const se3di_solid *own, const se3di_solid *other, int is_second)
 {
-    double d[3];
     s->own = own;
     s->other = other;
     s->is_second = is_second;
     memset(s->outside, 0, sizeof s->outside);
     s->count = 0;
-    se3di_sub(own->at->x, other->at->x, d);
-    se3di_mul_transposed(other->at->R, d, s->x);
+    se3di_solid_to_local(other, own->at->x, s->x);
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
             s->R[3 * r + c] = other->at->R[r] * own->at->R[c] +

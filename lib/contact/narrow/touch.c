@@ -33,11 +33,6 @@ typedef struct parting {
     int axis_i, axis_j;
 } parting;
 
-static int is_smooth(const se3di_solid *solid)
-{
-    return se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_SMOOTH);
-}
-
 /* Half the extent of a box along n. */
 static double extent(const se3di_solid *box, const double n[3])
 {
@@ -116,13 +111,12 @@ static void bend_side(const se3di_solid *solid, const double n[3], se3di_bend *b
 static void bend_beyond(const se3di_solid *solid, const double surface[3], const double out[3],
                         se3di_bend *bend)
 {
-    double x[3], d[3], local[3];
+    double x[3], local[3];
     se3di_copy(surface, x);
-    if (!is_smooth(solid)) {
+    if (!se3di_solid_is_smooth(solid)) {
         se3di_add_scaled(solid->shape->bound, out, x);
     }
-    se3di_sub(x, solid->at->x, d);
-    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_solid_to_local(solid, x, local);
     se3di_solid_bend(solid, local, bend);
 }
 
@@ -146,7 +140,7 @@ static void point_touches(const parting *p, uint32_t feature, se3di_manifold *ma
         se3di_bend_set(&c->bend_j, w, HUGE_VAL, 0.0);
         return;
     }
-    if (is_smooth(p->i) || is_smooth(p->j)) {
+    if (se3di_solid_is_smooth(p->i) || se3di_solid_is_smooth(p->j)) {
         double back[3];
         se3di_scale(-1.0, p->n, back);
         bend_beyond(p->i, a, p->n, &c->bend_i);
@@ -308,7 +302,7 @@ static void touch(const parting *p, se3di_manifold *manifold)
     se3di_face face_i, face_j;
     double back[3];
     lines both;
-    if (is_smooth(p->i) || is_smooth(p->j)) {
+    if (se3di_solid_is_smooth(p->i) || se3di_solid_is_smooth(p->j)) {
         point_touches(p, 0, manifold);
         return;
     }

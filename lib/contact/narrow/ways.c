@@ -35,7 +35,7 @@ double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double 
     se3di_mul(m->mesh->at->R, n, down);
     se3di_scale(-1.0, down, down);
     se3di_core_support(m->solid, down, point);
-    se3di_mesh_to_local(m->mesh, point, at);
+    se3di_solid_to_local(m->mesh, point, at);
     return radius;
 }
 
@@ -149,11 +149,9 @@ static void try_hull_faces(se3di_mesh_meeting *m, const double x[3], se3di_mesh_
 static void find_off_corner(se3di_mesh_meeting *m, const double x[3], se3di_mesh_way *way)
 {
     const se3di_solid *solid = m->solid;
-    double ground[3], d[3], local[3], point[3], normal[3], distance;
-    se3di_mul(m->mesh->at->R, x, ground);
-    se3di_add(ground, m->mesh->at->x, ground);
-    se3di_sub(ground, solid->at->x, d);
-    se3di_mul_transposed(solid->at->R, d, local);
+    double ground[3], local[3], point[3], normal[3], distance;
+    se3di_solid_to_ground(m->mesh, x, ground);
+    se3di_solid_to_local(solid, ground, local);
     se3di_shape_nearest(solid->shape, local, point, normal, &distance);
     if (!(distance < 0.0)) {
         return;
@@ -386,8 +384,7 @@ static int is_of_piece(const se3di_mesh_meeting *m, const se3di_mesh_way *way,
 {
     se3di_mesh_face f;
     double d[3];
-    se3di_sub(p->point, m->mesh->at->x, d);
-    se3di_mul_transposed(m->mesh->at->R, d, f.corner);
+    se3di_solid_to_local(m->mesh, p->point, f.corner);
     se3di_copy(f.corner, f.middle);
     se3di_mul_transposed(m->mesh->at->R, p->normal, d);
     se3di_scale(-1.0, d, f.n);

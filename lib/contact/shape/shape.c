@@ -100,6 +100,13 @@ void se3di_solid_to_ground(const se3di_solid *solid, const double local[3], doub
     se3di_add(solid->at->x, out, out);
 }
 
+void se3di_solid_to_local(const se3di_solid *solid, const double x[3], double local[3])
+{
+    double d[3];
+    se3di_sub(x, solid->at->x, d);
+    se3di_mul_transposed(solid->at->R, d, local);
+}
+
 double se3di_shape_bound(const se3di_shape *shape)
 {
     return classes[shape->kind]->bound(shape);

@@ -107,6 +107,7 @@ void se3di_surface_velocity(const se3di_shape *shape, const double A[9], const d
                             double velocity[3], double spin[3]);
 void se3di_shape_place(const se3di_shape *shape, const se3di_frame *frame, se3di_shape_pose *pose);
 void se3di_solid_to_ground(const se3di_solid *solid, const double local[3], double out[3]);
+void se3di_solid_to_local(const se3di_solid *solid, const double x[3], double local[3]);
 /* Its axis a in the ground frame. */
 static inline void se3di_solid_axis(const se3di_solid *solid, int a, double out[3])
 {
