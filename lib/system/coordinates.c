@@ -318,11 +318,13 @@ static se3d_status check_frames(const se3d_coordinates *c)
 {
     for (uint32_t k = 0; k < c->tree.count; ++k) {
         const se3di_frame *frame = &c->tree.frames[c->tree.nodes[k].body];
+        double sum = 0.0; /* NaN, if one is not finite */
         for (int i = 0; i < 3; ++i) {
-            if (!isfinite(frame->r[i]) || !isfinite(frame->v[i]) || !isfinite(frame->w[i])) {
-                return SE3DI_FAIL(c->system, SE3D_ERR_NOT_FINITE,
-                                  "the coordinates give a body no finite position or velocity");
-            }
+            sum += 0.0 * frame->r[i] + 0.0 * frame->v[i] + 0.0 * frame->w[i];
+        }
+        if (!(sum == 0.0)) {
+            return SE3DI_FAIL(c->system, SE3D_ERR_NOT_FINITE,
+                              "the coordinates give a body no finite position or velocity");
         }
     }
     return SE3D_OK;
@@ -452,14 +454,26 @@ static const double *add_efforts(se3d_coordinates *c, const double *effort)
     return c->tree.has_efforts ? sum : effort;
 }
 
+/* Values and functions of the rows, where loops or drivers of coordinates read them. */
+static se3d_status take_rows(se3d_coordinates *c)
+{
+    se3d_system *system = c->system;
+    if (c->loops.count > 0 || c->assembly.timed_count > 0) {
+        se3di_assembly_take_values(&c->assembly);
+        SE3DI_TRY(se3di_assembly_eval_functions(&c->assembly, system->model.time, &system->error));
+    }
+    if (c->tree.given_count > 0) {
+        se3di_tree_take_given(&c->tree, &c->assembly);
+    }
+    return SE3D_OK;
+}
+
 static se3d_status accelerate(se3d_coordinates *c, const double *effort, double *qddot)
 {
     se3d_system *system = c->system;
     SE3DI_TRY(place(c));
     SE3DI_TRY(load(c));
-    se3di_assembly_take_values(&c->assembly);
-    SE3DI_TRY(se3di_assembly_eval_functions(&c->assembly, system->model.time, &system->error));
-    se3di_tree_take_given(&c->tree, &c->assembly);
+    SE3DI_TRY(take_rows(c));
     SE3DI_TRY(factor(c, add_efforts(c, effort)));
     if (c->loops.count == 0) {
         se3di_tree_accelerate(&c->tree, c->tree.e, qddot);
