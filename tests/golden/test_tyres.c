@@ -73,18 +73,24 @@ static void compare(const se3d_tyre_def *def, const double *rates, const double 
     }
 }
 
+/* The set of tyre_reference.py. */
+static void take_coefficients(se3d_tyre_def *magic, double c[SE3D_TYRE_COEFFICIENTS])
+{
+    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
+    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
+        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
+    }
+    magic->coefficients = c;
+    magic->coefficient_count = SE3D_TYRE_COEFFICIENTS;
+}
+
 static void forces_agree_with_an_independent_program(void)
 {
     const se3d_tyre_def brush = simple_tyre(SE3D_TYRE_BRUSH);
     const se3d_tyre_def fiala = simple_tyre(SE3D_TYRE_FIALA);
     se3d_tyre_def magic = brush;
     double c[SE3D_TYRE_COEFFICIENTS];
-    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
-    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
-        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
-    }
-    magic.coefficients = c;
-    magic.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    take_coefficients(&magic, c);
     magic.law = SE3D_TYRE_MF52;
     compare(&magic, NULL, tyre_mf52);
     magic.law = SE3D_TYRE_MF61;
@@ -98,6 +104,80 @@ static void forces_agree_with_an_independent_program(void)
     compare(&fiala, NULL, tyre_fiala);
 }
 
+/* MFeval 4.0 (M. Furlan) for the same coefficients without LGAX, LGAY, LGAZ and LMX, which it has not
+ * or has elsewhere; of it My is without the moment of Fx: Fx, Fy, Mx, My, Mz. */
+typedef struct published {
+    double state[5]; /* h, g, u, v, W */
+    double of52[5], of61[5];
+} published;
+
+static const published mfeval[] = {
+    {{0.300, 0.0, 20.0, 0.35, 65.0},
+     {-214.3356, -482.956948, -30.6193687, -2.39122616, 17.4275092},
+     {-214.3356, -482.956948, -30.6193687, -2.32808959, 17.4275092}},
+    {{0.2975, 0.04, 16.7, -0.5, 53.0},
+     {-1898.92432, 658.350323, 12.5964886, 34.6474752, -71.5313759},
+     {-1898.92432, 617.442819, 10.0330844, 31.5120475, -75.1989451}},
+    {{0.292, -0.06, 30.0, 2.4, 99.0},
+     {1005.5891, -1585.63845, -97.0571112, -44.724082, 92.7652657},
+     {1005.5891, -1469.7958, -87.0610065, -44.8884634, 106.095807}},
+    {{0.304, 0.02, 12.0, -0.9, 38.5},
+     {-412.662187, 1260.60163, 35.1191047, 0.954070143, -37.0918127},
+     {-412.662187, 1260.12998, 35.1037077, 0.906711129, -37.6242137}},
+    {{0.296, 0.08, 25.0, 0.2, 60.0},
+     {-2704.01816, -136.713254, -65.2659075, 55.1526429, -80.5412009},
+     {-2704.01816, -162.377776, -67.0398348, 46.2345914, -80.3937399}},
+    {{0.301, -0.03, 18.0, 4.5, 62.0},
+     {667.027965, -2209.42168, -96.3892371, -16.1210962, 11.9804594},
+     {667.027965, -2209.41251, -96.3888171, -16.3837062, 12.1058924}},
+    {{0.290, 0.05, 35.0, -1.1, 121.0},
+     {4239.61286, 483.267779, -8.22754215, -167.090405, 88.2225296},
+     {4239.61286, 386.801727, -17.1155111, -151.088655, 83.231213}},
+    {{0.305, -0.08, 22.0, -3.0, 45.0},
+     {-812.889794, 337.147341, 27.0337444, 3.333823, 6.20240371},
+     {-812.889794, 337.057184, 27.0309808, 2.81793664, 6.203717}},
+};
+
+static void forces_agree_with_mfeval(void)
+{
+    se3d_tyre_def magic = simple_tyre(SE3D_TYRE_MF52);
+    double c[SE3D_TYRE_COEFFICIENTS], values[SE3D_TYRE_VALUES];
+    take_coefficients(&magic, c);
+    c[SE3D_TYRE_LGAX] = c[SE3D_TYRE_LGAY] = c[SE3D_TYRE_LGAZ] = c[SE3D_TYRE_LMX] = 1.0;
+    for (size_t k = 0; k < sizeof mfeval / sizeof *mfeval; ++k) {
+        for (int is61 = 0; is61 < 2; ++is61) {
+            const double *of = is61 ? mfeval[k].of61 : mfeval[k].of52;
+            magic.law = is61 ? SE3D_TYRE_MF61 : SE3D_TYRE_MF52;
+            get_forces(&magic, mfeval[k].state, 0.0, 0, values);
+            const double arm = values[SE3D_TYRE_LOADED_RADIUS] - values[SE3D_TYRE_ROLLING_RADIUS];
+            values[SE3D_TYRE_MY] -= arm * values[SE3D_TYRE_FX];
+            const int at[] = {SE3D_TYRE_FX, SE3D_TYRE_FY, SE3D_TYRE_MX, SE3D_TYRE_MY, SE3D_TYRE_MZ};
+            for (int i = 0; i < 5; ++i) {
+                CHECK_NEAR(values[at[i]], of[i], 2e-7 * (1.0 + fabs(of[i])));
+            }
+        }
+    }
+}
+
+/* Slip forces end at FZMAX; what rolls resists by all of its load. */
+static void resistance_to_rolling_has_no_limit_of_load(void)
+{
+    for (int is61 = 0; is61 < 2; ++is61) {
+        se3d_tyre_def magic = simple_tyre(is61 ? SE3D_TYRE_MF61 : SE3D_TYRE_MF52);
+        double c[SE3D_TYRE_COEFFICIENTS], whole[SE3D_TYRE_VALUES], limited[SE3D_TYRE_VALUES];
+        take_coefficients(&magic, c);
+        c[SE3D_TYRE_QSY2] = 0.0;
+        get_forces(&magic, mfeval[1].state, 0.0, 0, whole);
+        c[SE3D_TYRE_FZMAX] = 0.5 * whole[SE3D_TYRE_FZ];
+        get_forces(&magic, mfeval[1].state, 0.0, 0, limited);
+        CHECK(fabs(limited[SE3D_TYRE_FX]) < 0.7 * fabs(whole[SE3D_TYRE_FX]));
+        const double arm = whole[SE3D_TYRE_LOADED_RADIUS] - whole[SE3D_TYRE_ROLLING_RADIUS];
+        const double of_whole = whole[SE3D_TYRE_MY] - arm * whole[SE3D_TYRE_FX];
+        CHECK(fabs(of_whole) > 1.0);
+        CHECK_NEAR(limited[SE3D_TYRE_MY] - arm * limited[SE3D_TYRE_FX], of_whole, 1e-12);
+    }
+}
+
 /* What camber does to a wheel that rolls freely is what its spin about the road's normal does: with
  * turn slip the slopes of force and moment stay as they are without (there S_Vygamma is a part). A
  * wheel that turns on the spot is held by a moment against its turning, in proportion to it. */
@@ -106,18 +186,13 @@ static void turn_slip_holds_camber_and_parking(void)
     se3d_tyre_def magic = simple_tyre(SE3D_TYRE_MF61);
     double c[SE3D_TYRE_COEFFICIENTS], values[SE3D_TYRE_VALUES], slope[2][2];
     const double h = 1e-6;
-    se3d_tyre_coefficients_init(c, SE3D_TYRE_COEFFICIENTS);
-    for (size_t k = 0; k < sizeof tyre_coefficients / sizeof *tyre_coefficients; ++k) {
-        c[tyre_coefficients[k].at] = tyre_coefficients[k].value;
-    }
+    take_coefficients(&magic, c);
     c[SE3D_TYRE_LHY] = c[SE3D_TYRE_LVY] = c[SE3D_TYRE_LRES] = c[SE3D_TYRE_PPZ2] = 0.0;
     c[SE3D_TYRE_QHZ1] = c[SE3D_TYRE_QHZ2] = c[SE3D_TYRE_QHZ3] = c[SE3D_TYRE_QHZ4] = 0.0;
     c[SE3D_TYRE_SSZ1] = c[SE3D_TYRE_SSZ2] = c[SE3D_TYRE_SSZ3] = c[SE3D_TYRE_SSZ4] = 0.0;
     c[SE3D_TYRE_QEZ4] = c[SE3D_TYRE_PEY3] = c[SE3D_TYRE_PEX4] = c[SE3D_TYRE_PDYP4] = 0.0;
     c[SE3D_TYRE_QCRP2] = c[SE3D_TYRE_PPX3] = c[SE3D_TYRE_INFLPRES] = 0.0;
     c[SE3D_TYRE_RHX1] = c[SE3D_TYRE_RHY1] = c[SE3D_TYRE_RHY2] = 0.0;
-    magic.coefficients = c;
-    magic.coefficient_count = SE3D_TYRE_COEFFICIENTS;
     magic.mu = 1.0 / c[SE3D_TYRE_LMUY];
     for (int turns = 0; turns < 2; ++turns) {
         double side[2][2];
@@ -313,6 +388,8 @@ static void slip_that_lags_rises_with_the_distance(void)
 int main(void)
 {
     RUN(forces_agree_with_an_independent_program);
+    RUN(forces_agree_with_mfeval);
+    RUN(resistance_to_rolling_has_no_limit_of_load);
     RUN(turn_slip_holds_camber_and_parking);
     RUN(a_locked_wheel_stops_in_the_distance_of_mu);
     RUN(a_wheel_without_resistance_rolls_on);

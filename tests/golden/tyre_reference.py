@@ -129,7 +129,6 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled, turn=None):
     f0 = c['LFZO'] * c['FNOMIN']
     df = (fz - f0) / f0
     lx, ly = t['mu'] * c['LMUX'], t['mu'] * c['LMUY']
-    vx, vy = (10 * lx / (1 + 9 * lx), 10 * ly / (1 + 9 * ly)) if new else (lx, ly)
     cosine = way * cos(alpha)
     fade = way * way  # shifts end where the wheel stands
     z = [1.0] * 8
@@ -155,7 +154,7 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled, turn=None):
     C = c['PCX1'] * c['LCX']
     E = min(1, (c['PEX1'] + c['PEX2'] * df + c['PEX3'] * df ** 2) * (1 - c['PEX4'] * sign(k)) * c['LEX'])
     Dx = mu * fz * z[1]
-    fx0 = Dx * sin(bow(Kx / (C * Dx), C, E, k)) + fade * fz * (c['PVX1'] + c['PVX2'] * df) * c['LVX'] * vx
+    fx0 = Dx * sin(bow(Kx / (C * Dx), C, E, k)) + fade * fz * (c['PVX1'] + c['PVX2'] * df) * c['LVX'] * lx
 
     # lateral, at a camber
     def side(g, z):
@@ -164,15 +163,15 @@ def pacejka(t, c, fz, kappa, alpha, gamma, way, u, rolled, turn=None):
         upright = c['PKY1'] * f0 * (1 + c['PPY1'] * dp) * c['LKY'] * sin(
             c['PKY4'] * atan(fz / f0 / (c['PKY2'] * (1 + c['PPY2'] * dp))))
         Ky *= z[3]
-        svg = fz * (c['PVY3'] + c['PVY4'] * df) * g * c['LKYC'] * vy * z[2]
-        sv = fz * (c['PVY1'] + c['PVY2'] * df) * c['LVY'] * vy * z[2] + svg
+        svg = fz * (c['PVY3'] + c['PVY4'] * df) * g * c['LKYC'] * ly * z[2]
+        sv = fz * (c['PVY1'] + c['PVY2'] * df) * c['LVY'] * ly * z[2] + svg
         sh = (c['PHY1'] + c['PHY2'] * df) * c['LHY']
         shift = 0.0
         if z[0] == 0:
             if new:
                 Kg = fz * (c['PKY6'] + c['PKY7'] * df) * (1 + c['PPY5'] * dp) * c['LKYC']
             else:
-                Kg = c['PHY3'] * c['LKYC'] * upright + fz * (c['PVY3'] + c['PVY4'] * df) * c['LKYC'] * vy
+                Kg = c['PHY3'] * c['LKYC'] * upright + fz * (c['PVY3'] + c['PVY4'] * df) * c['LKYC'] * ly
             C, D = c['PHYP1'], c['PHYP2'] + c['PHYP3'] * df
             shift = way * D * sin(bow(Kg / left_over / (C * D * upright), C, c['PHYP4'], t['R'] * phi))
             sh -= svg / Ky

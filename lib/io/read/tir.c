@@ -27,6 +27,7 @@ typedef struct tir {
     bool has[SE3D_TYRE_COEFFICIENTS];
     bool has_law, in_table, is_transient, has_turn_slip;
     char unknown[LIST_SIZE]; /* keys */
+    char empty[LIST_SIZE];   /* keys without a value */
     size_t unknown_count;
 } tir;
 
@@ -182,15 +183,15 @@ static bool take_unit(tir *t, const char *quantity, char *name)
 
 /* ---- Keys ----------------------------------------------------------------------------------*/
 
-/* FITTYP: 5, 6, 51, 52 or 60, 61, 62; or the name of the format. */
+/* FITTYP: 5, 6, 21, 51, 52 or 60, 61, 62; or the name of the format. */
 static bool take_law(tir *t, const char *key, const char *text)
 {
-    if (se3di_keys_contain(" 5 6 51 52 PAC2002 MF52 MF_52 ", text)) {
+    if (se3di_keys_contain(" 5 6 21 51 52 PAC2002 MF52 MF_52 ", text)) {
         t->def->law = SE3D_TYRE_MF52;
     } else if (se3di_keys_contain(" 60 61 62 MF61 MF_61 MF62 MF_62 ", text)) {
         t->def->law = SE3D_TYRE_MF61;
     } else if (strcmp(key, "FITTYP") == 0) {
-        return fail(t, key, "must be 5, 6, 51 or 52 (Magic Formula 5.2) or 60, 61 or 62 (6.1)");
+        return fail(t, key, "must be 5, 6, 21, 51 or 52 (Magic Formula 5.2) or 60, 61 or 62 (6.1)");
     } else if (se3di_keys_contain(" USER MF_05 MF-TYRE ", text)) {
         return true; /* FITTYP says which */
     } else {
@@ -311,6 +312,10 @@ static bool read_line(tir *t, char *line)
     char *text = trim(equals + 1);
     if (!*key || strlen(key) > NUMBER_MAX) {
         return fail(t, "", "must have a key of at most 60 characters before `=`");
+    }
+    if (!*text) { /* as programs write what was not measured */
+        append(t->empty, key);
+        return true;
     }
     return se3di_keys_contain(quantities, key) ? take_unit(t, key, text) : take_pair(t, key, text);
 }
@@ -482,6 +487,7 @@ bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *fi
     def->has_turn_slip = t.has_turn_slip && can_turn(&t);
     list_missing(&t, missing);
     warn(&t, "has no effect here", t.unknown);
+    warn(&t, "has no value and counts as missing", t.empty);
     warn(&t, "is missing and counts as without it", missing);
     def->coefficients = coefficients;
     def->coefficient_count = SE3D_TYRE_COEFFICIENTS;
