@@ -77,19 +77,27 @@ se3d_status se3d_tyre_coefficient_find(const char *name, size_t *index)
     return SE3D_ERR_INVALID_ARGUMENT;
 }
 
-/* What the formulas divide by. */
+static int is_zero(double x)
+{
+    return !(fabs(x) > 0.0);
+}
+
+/* What the formulas divide by. A tyre without PCX1, PDX1 and PKX1 has no longitudinal force. */
 static se3d_status check_divisors(se3d_system *system, const double *c)
 {
     static const int divisors[] = {SE3D_TYRE_PCX1, SE3D_TYRE_PDX1, SE3D_TYRE_PKX1, SE3D_TYRE_PCY1,
                                    SE3D_TYRE_PDY1, SE3D_TYRE_PKY1, SE3D_TYRE_PKY2, SE3D_TYRE_LCX,
                                    SE3D_TYRE_LCY,  SE3D_TYRE_LMUX, SE3D_TYRE_LMUY, SE3D_TYRE_LKY};
-    static const int positive[] = {SE3D_TYRE_FNOMIN, SE3D_TYRE_LONGVL, SE3D_TYRE_LFZO};
+    static const int positive[] = {SE3D_TYRE_FNOMIN, SE3D_TYRE_LONGVL, SE3D_TYRE_LFZO,
+                                   SE3D_TYRE_QRE0};
+    const size_t ahead =
+        is_zero(c[divisors[0]]) && is_zero(c[divisors[1]]) && is_zero(c[divisors[2]]) ? 3 : 0;
     for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k) {
         SE3DI_TRY(se3di_check_range(system, coefficient_names[positive[k]], c[positive[k]],
                                     POSITIVE, LARGE));
     }
-    for (size_t k = 0; k < sizeof divisors / sizeof *divisors; ++k) {
-        if (!(fabs(c[divisors[k]]) > 0.0)) {
+    for (size_t k = ahead; k < sizeof divisors / sizeof *divisors; ++k) {
+        if (is_zero(c[divisors[k]])) {
             return SE3DI_FAIL_OF(system, coefficient_names[divisors[k]], SE3D_ERR_INVALID_ARGUMENT,
                                  " = 0, must not be 0");
         }

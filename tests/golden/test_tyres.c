@@ -104,8 +104,8 @@ static void forces_agree_with_an_independent_program(void)
     compare(&fiala, NULL, tyre_fiala);
 }
 
-/* MFeval 4.0 (M. Furlan) for the same coefficients without LGAX, LGAY, LGAZ and LMX, which it has not
- * or has elsewhere; of it My is without the moment of Fx: Fx, Fy, Mx, My, Mz. */
+/* MFeval 4.0 (M. Furlan) for the same coefficients without LGAX, LGAY, LGAZ and LMX, which it does
+ * not have or has elsewhere: Fx, Fy, Mx, My without the moment of Fx, Mz. */
 typedef struct published {
     double state[5]; /* h, g, u, v, W */
     double of52[5], of61[5];

@@ -269,8 +269,27 @@ static void a_key_without_a_value_counts_as_missing(void)
     CHECK(strstr(h.text, "has no value and counts as missing: PDX2, INFLPRES, WIDTH"));
     CHECK(strstr(h.text, "is missing and counts as without it: PDX2"));
     se3d_model_destroy(model);
-    refuse(SI "LENGTH =\n", MODEL(""), "is no unit");
     refuse("FITTYP=6\nFNOMIN=\n" NEEDED, MODEL(""), "lacks what a Magic Formula needs: FNOMIN");
+}
+
+/* A file of lateral tests. */
+static void a_tyre_without_longitudinal_force_is_told(void)
+{
+    static const char lateral[] =
+        "FITTYP = 61\nFNOMIN = 4e3\nUNLOADED_RADIUS = .3\nVERTICAL_STIFFNESS = 2e5\nPCX1 = 0\n"
+        "Q_RE0 = 0\nPCY1 = 1.3\nPDY1 = 1\nPKY1 = -20\nPKY2 = 2\n";
+    heard h;
+    se3d_model_error error = {0, 0, ""};
+    double values[SE3D_TYRE_VALUES];
+    se3d_model_destroy(open(lateral, MODEL(""), &h, &error));
+    CHECK(strstr(h.text, "has no longitudinal force: PCX1, PDX1 and PKX1 are 0 or missing"));
+    CHECK(strstr(h.text, "counts as 1, the radius would vanish without: Q_RE0 = 0"));
+    tell(lateral, MODEL(""), values);
+    CHECK(!(fabs(values[SE3D_TYRE_FX]) > 0.0));
+    CHECK(fabs(values[SE3D_TYRE_FY]) > 1.0 && isfinite(values[SE3D_TYRE_MZ]));
+    CHECK_NEAR(values[SE3D_TYRE_ROLLING_RADIUS], 0.3 - 0.01 / 3.0, 1e-9);
+    refuse("FITTYP=6\nFNOMIN=1\nPCX1=1\nPCY1=1\nPDY1=1\nPKY1=1\nPKY2=1\n", MODEL(""),
+           "lacks what a Magic Formula needs: PDX1, PKX1");
 }
 
 static void files_of_other_kinds_are_refused(void)
@@ -284,7 +303,7 @@ static void files_of_other_kinds_are_refused(void)
     refuse(SI "[OPEN\n", MODEL(""), "must be a section");
     refuse(SI "FORCE = 'ounce'\n", MODEL(""), "`ounce` is no unit, allowed are: newton");
     refuse(SI "FITTYP = 94\n", MODEL(""), "FITTYP must be 5, 6");
-    refuse("[MODEL]\nFITTYP=6\nFNOMIN=1\n", MODEL(""), "PCX1, PDX1, PKX1");
+    refuse("[MODEL]\nFITTYP=6\nFNOMIN=1\n", MODEL(""), "PCY1, PDY1, PKY1, PKY2");
     refuse("FNOMIN=4000\n" NEEDED, MODEL(""), "FITTYP");
     refuse("FITTYP=6\nFNOMIN=4000\n" NEEDED, MODEL(""), "radius");
     refuse("FITTYP=6\nFNOMIN=-4000\nUNLOADED_RADIUS=.3\nVERTICAL_STIFFNESS=1e5\n" NEEDED, MODEL(""),
@@ -302,6 +321,8 @@ int main(void)
     RUN(slip_lags_where_file_or_model_say_so);
     RUN(lags_without_lengths_are_left_out);
     RUN(turn_slip_that_lacks_something_is_left_out);
+    RUN(a_key_without_a_value_counts_as_missing);
+    RUN(a_tyre_without_longitudinal_force_is_told);
     RUN(files_of_other_kinds_are_refused);
     return check_finish();
 }

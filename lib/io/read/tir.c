@@ -387,6 +387,13 @@ static void list_missing(const tir *t, char list[LIST_SIZE])
     }
 }
 
+/* Lateral tests alone: nothing is known of the longitudinal force. */
+static bool is_lateral(const tir *t)
+{
+    return !(fabs(t->c[SE3D_TYRE_PCX1]) > 0.0) && !(fabs(t->c[SE3D_TYRE_PDX1]) > 0.0) &&
+           !(fabs(t->c[SE3D_TYRE_PKX1]) > 0.0);
+}
+
 static bool check_needed(const tir *t)
 {
     static const struct {
@@ -395,9 +402,10 @@ static bool check_needed(const tir *t)
     } needed[] = {{SE3D_TYRE_FNOMIN, "FNOMIN"}, {SE3D_TYRE_PCX1, "PCX1"}, {SE3D_TYRE_PDX1, "PDX1"},
                   {SE3D_TYRE_PKX1, "PKX1"},     {SE3D_TYRE_PCY1, "PCY1"}, {SE3D_TYRE_PDY1, "PDY1"},
                   {SE3D_TYRE_PKY1, "PKY1"},     {SE3D_TYRE_PKY2, "PKY2"}};
+    const size_t first = is_lateral(t) ? 4 : 0;
     char list[LIST_SIZE] = "";
     for (size_t k = 0; k < sizeof needed / sizeof *needed; ++k) {
-        if (!t->has[needed[k].at]) {
+        if (!t->has[needed[k].at] && (k < 1 || k >= first)) {
             append(list, needed[k].name);
         }
     }
@@ -486,6 +494,13 @@ bool se3di_read_tir(se3di_reader *reader, const se3di_node *tyre, const char *fi
     def->is_transient = t.is_transient && can_lag(&t);
     def->has_turn_slip = t.has_turn_slip && can_turn(&t);
     list_missing(&t, missing);
+    if (is_lateral(&t)) {
+        warn(&t, "has no longitudinal force", "PCX1, PDX1 and PKX1 are 0 or missing");
+    }
+    if (!(fabs(t.c[SE3D_TYRE_QRE0]) > 0.0)) { /* as programs write what was not measured */
+        t.c[SE3D_TYRE_QRE0] = 1.0;
+        warn(&t, "counts as 1, the radius would vanish without", "Q_RE0 = 0");
+    }
     warn(&t, "has no effect here", t.unknown);
     warn(&t, "has no value and counts as missing", t.empty);
     warn(&t, "is missing and counts as without it", missing);
