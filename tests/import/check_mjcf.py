@@ -209,6 +209,27 @@ def touching():
     tool.check(done.returncode == 2 and "contype must be a whole number" in done.stderr, done.stderr)
 
 
+def what_flags_disable():
+    """A flag that disables a part leaves it out; enabled, or said again, it is there."""
+    text = """<mujoco><option><flag {}/></option><worldbody><geom type="plane" size="1 1 1"/>
+      <body name="a" pos="0 0 1"><joint name="h" axis="0 1 0" range="-9 9" damping="0.2" stiffness="3" frictionloss="0.1"/>
+        <geom size="0.1"/><site name="s"/>
+        <body name="b" pos="0.5 0 0"><joint name="i" axis="0 1 0"/><geom size="0.1"/><site name="t"/></body></body>
+      </worldbody><equality><connect body1="b" anchor="0 0 0"/></equality>
+      <tendon><spatial name="rope" stiffness="4" damping="5"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
+    words = {"gravity": "-9.81", "limit": "type: stop", "frictionloss": "type: friction", "equality": "type: spherical",
+             "spring": "k: 4", "damper": "0.2)*qdot", "contact": "# contact:"}
+    parts = {"constraint": ["contact", "limit", "frictionloss", "equality"], "passive": ["spring", "damper"]}
+    whole, _ = convert("flags.xml", text.format('gravity="enable"'), code=1)
+    for flag in list(words) + list(parts):
+        gone = parts.get(flag, [flag])
+        code = 0 if "contact" in gone else 1
+        model, notes = convert("flags.xml", text.format(f'{flag}="disable"'), code=code)
+        for other, word in words.items():
+            tool.check(word in whole, f"`{word}` is not in the whole: {whole}")
+            tool.check((word in model) == (other not in gone), f"{flag}: `{word}`: {model} {notes}")
+
+
 def materials():
     """A ball slides on a plane, with the larger friction of the two, once `contact` is no comment any more."""
     model, _ = convert("materials.xml", """<mujoco><worldbody><geom type="plane" size="9 9 1" friction="0.2"/>
@@ -234,5 +255,6 @@ if __name__ == "__main__":
     start_and_range()
     loops_couplings_and_tendons()
     what_is_not_carried()
+    what_flags_disable()
     touching()
     print("import.mjcf: passed")

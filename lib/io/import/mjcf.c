@@ -228,6 +228,32 @@ static bool read_compiler(se3di_mjcf *f, const se3di_xml *node)
     return se3di_xml_numbers(m, node, "settotalmass", &f->total_mass, 1);
 }
 
+/* The last word about a flag counts. */
+static void read_flags(se3di_mjcf *f, const se3di_xml *option)
+{
+    se3di_mjcf_disabled *off = &f->disabled;
+    const struct {
+        const char *name;
+        bool *const parts[4];
+    } flags[] = {{"constraint", {&off->contact, &off->limits, &off->friction, &off->equality}},
+                 {"contact", {&off->contact}},
+                 {"limit", {&off->limits}},
+                 {"frictionloss", {&off->friction}},
+                 {"equality", {&off->equality}},
+                 {"passive", {&off->springs, &off->dampers}},
+                 {"spring", {&off->springs}},
+                 {"damper", {&off->dampers}},
+                 {"gravity", {&off->gravity}}};
+    for (const se3di_xml *at = se3di_xml_child(option, "flag"); at; at = se3di_xml_again(at)) {
+        for (size_t k = 0; k < sizeof flags / sizeof *flags; ++k) {
+            const char *value = se3di_xml_get(at, flags[k].name);
+            for (size_t i = 0; value && i < 4 && flags[k].parts[i]; ++i) {
+                *flags[k].parts[i] = strcmp(value, "disable") == 0;
+            }
+        }
+    }
+}
+
 static bool read_settings(se3di_mjcf *f)
 {
     se3di_machine *m = f->links.m;
@@ -235,8 +261,11 @@ static bool read_settings(se3di_mjcf *f)
         if (se3di_xml_is(at, "compiler") && !read_compiler(f, at)) {
             return false;
         }
-        if (se3di_xml_is(at, "option") && (!se3di_xml_numbers(m, at, "gravity", m->gravity, 3))) {
-            return false;
+        if (se3di_xml_is(at, "option")) {
+            read_flags(f, at);
+            if (!se3di_xml_numbers(m, at, "gravity", m->gravity, 3)) {
+                return false;
+            }
         }
         if (se3di_xml_is(at, "option") &&
             (se3di_xml_get(at, "wind") || se3di_xml_get(at, "density") ||
@@ -246,6 +275,9 @@ static bool read_settings(se3di_mjcf *f)
         if (se3di_xml_is(at, "default") && !add_classes(f, at, NULL)) {
             return false;
         }
+    }
+    if (f->disabled.gravity) {
+        memset(m->gravity, 0, sizeof m->gravity);
     }
     return true;
 }

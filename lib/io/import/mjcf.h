@@ -25,6 +25,11 @@ typedef struct se3di_mjcf_touch {
     uint32_t type, affinity;
 } se3di_mjcf_touch;
 
+/* What <flag> of <option> disables. */
+typedef struct se3di_mjcf_disabled {
+    bool gravity, contact, limits, friction, equality, springs, dampers;
+} se3di_mjcf_disabled;
+
 enum { SE3DI_MJCF_KINDS_MAX = 32 }; /* different ones, a bit of a model file for each */
 
 typedef struct se3di_mjcf {
@@ -36,6 +41,7 @@ typedef struct se3di_mjcf {
     bool inertia_from_geoms;
     double total_mass; /* > 0: masses are scaled to it */
     bool autolimits;
+    se3di_mjcf_disabled disabled;
     const char *mesh_folder;
     se3di_ionames body_names;  /* -> link */
     se3di_ionames site_names;  /* -> sites */

@@ -84,6 +84,9 @@ static bool of_bodies(se3di_mjcf *f, const se3di_xml *node, size_t links[2], se3
 
 bool se3di_mjcf_close(se3di_mjcf *f)
 {
+    if (f->disabled.equality) {
+        return true;
+    }
     for (const se3di_xml *list = se3di_xml_child(f->root, "equality"); list;
          list = se3di_xml_again(list)) {
         for (const se3di_xml *at = list->first; at; at = at->next) {
@@ -183,7 +186,7 @@ static bool couple(se3di_mjcf *f, const se3di_xml *node)
 static bool read_equality(se3di_mjcf *f, const se3di_xml *node)
 {
     const char *active = se3di_xml_get(node, "active");
-    if (active && strcmp(active, "false") == 0) {
+    if (f->disabled.equality || (active && strcmp(active, "false") == 0)) {
         se3di_machine_note_of(f->links.m, SE3D_IMPORT_NOTE, node->line,
                               "<%.40s> is not active and left out", node->name);
         return f->links.m->status >= 0;
@@ -252,9 +255,12 @@ static bool read_tendon(se3di_mjcf *f, const se3di_xml *node)
         }
         ++count;
     }
-    if (friction != 0.0 || se3di_mjcf_get(f, &e, "range")) {
+    if ((friction != 0.0 && !f->disabled.friction) ||
+        (se3di_mjcf_get(f, &e, "range") && !f->disabled.limits)) {
         lose(f, node, "its friction or range");
     }
+    s.k = f->disabled.springs ? 0.0 : s.k;
+    s.c = f->disabled.dampers ? 0.0 : s.c;
     if (s.k == 0.0 && s.c == 0.0) {
         return f->links.m->status >= 0;
     }

@@ -75,7 +75,7 @@ static bool read_limits(se3di_mjcf *f, const se3di_mjcf_element *e, double unit,
     }
     const bool own = se3di_mjcf_is(f, e, "limited", "true");
     const bool no = se3di_mjcf_is(f, e, "limited", "false");
-    if (own || (!no && f->autolimits && count == 2)) {
+    if (!f->disabled.limits && (own || (!no && f->autolimits && count == 2))) {
         joint->has_lower = joint->has_upper = true;
         joint->lower = unit * range[0];
         joint->upper = unit * range[1];
@@ -96,6 +96,9 @@ static bool read_acting(se3di_mjcf *f, const se3di_mjcf_element *e, double unit,
         return false;
     }
     joint->rest = unit * rest;
+    joint->damping = f->disabled.dampers ? 0.0 : joint->damping;
+    joint->stiffness = f->disabled.springs ? 0.0 : joint->stiffness;
+    joint->friction = f->disabled.friction ? 0.0 : joint->friction;
     return true;
 }
 

@@ -176,6 +176,9 @@ static bool take_touch(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine
         !read_bits(f, e, "conaffinity", &touch.affinity)) {
         return false;
     }
+    if (f->disabled.contact) {
+        touch = (se3di_mjcf_touch){0, 0};
+    }
     f->touching += touch.type != 0 || touch.affinity != 0 ? 1 : 0;
     while (k < f->kind_count &&
            (f->kinds[k].type != touch.type || f->kinds[k].affinity != touch.affinity)) {
@@ -235,7 +238,8 @@ static bool take_material(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_mach
     double solref[2] = {0.02, 1.0};
     char name[40];
     int count;
-    if (se3di_mjcf_is(f, e, "contype", "0") && se3di_mjcf_is(f, e, "conaffinity", "0")) {
+    if (f->disabled.contact ||
+        (se3di_mjcf_is(f, e, "contype", "0") && se3di_mjcf_is(f, e, "conaffinity", "0"))) {
         return true;
     }
     if (!se3di_mjcf_numbers(f, e, "friction", friction, 3, &count) ||
