@@ -412,6 +412,7 @@ class Bench:
         for _ in range(2):
             self.show_program("bench_query")
             self.show_program("mujoco_query")
+            self.show_program("pinocchio_query")
 
     def implicit(self):
         """Implicit methods on a long chain."""

@@ -60,6 +60,9 @@ flags() {
     build_peer ode gcc -std=c11 -O2 "$peers/ode.c" $(flags ode) -lm
     build_peer bullet g++ -std=c++14 -O2 "$peers/bullet.cpp" $(flags bullet-float64) -lm
     build_peer simbody g++ "$peers/simbody.cpp" $(flags simbody) -std=c++14 -O2 -lm
+    if pkg-config --exists pinocchio; then # not in Debian
+        build_peer pinocchio_query g++ -std=c++17 -O3 -DNDEBUG "$peers/pinocchio_query.cpp" $(flags pinocchio) -lm
+    fi
 }
 
 sed -n 's/^model name[^:]*: //p' /proc/cpuinfo 2>/dev/null | head -n 1
