@@ -234,17 +234,32 @@ static bool add_spring(se3di_mjcf *f, const se3di_xml *node, const spring *s)
     return m->status >= 0;
 }
 
-static bool read_tendon(se3di_mjcf *f, const se3di_xml *node)
+/* Stiffness, damping and lengths; friction and a range are lost. */
+static bool read_spring(se3di_mjcf *f, const se3di_xml *node, spring *s)
 {
     const se3di_mjcf_element e = {.node = node};
+    double friction = 0.0;
+    if (!se3di_mjcf_number(f, &e, "stiffness", &s->k) ||
+        !se3di_mjcf_number(f, &e, "damping", &s->c) ||
+        !se3di_mjcf_number(f, &e, "frictionloss", &friction) ||
+        !se3di_mjcf_numbers(f, &e, "springlength", s->length, 2, &s->lengths)) {
+        return false;
+    }
+    if ((friction != 0.0 && !f->disabled.friction) ||
+        (se3di_mjcf_get(f, &e, "range") && !f->disabled.limits)) {
+        lose(f, node, "its friction or range");
+    }
+    s->k = f->disabled.springs ? 0.0 : s->k;
+    s->c = f->disabled.dampers ? 0.0 : s->c;
+    return true;
+}
+
+static bool read_tendon(se3di_mjcf *f, const se3di_xml *node)
+{
     spring s = {.length = {-1.0, -1.0}};
     size_t count = 0;
-    double friction = 0.0;
     bool found = true;
-    if (!se3di_mjcf_number(f, &e, "stiffness", &s.k) ||
-        !se3di_mjcf_number(f, &e, "damping", &s.c) ||
-        !se3di_mjcf_number(f, &e, "frictionloss", &friction) ||
-        !se3di_mjcf_numbers(f, &e, "springlength", s.length, 2, &s.lengths)) {
+    if (!read_spring(f, node, &s)) {
         return false;
     }
     for (const se3di_xml *at = node->first; at; at = at->next) {
@@ -255,12 +270,6 @@ static bool read_tendon(se3di_mjcf *f, const se3di_xml *node)
         }
         ++count;
     }
-    if ((friction != 0.0 && !f->disabled.friction) ||
-        (se3di_mjcf_get(f, &e, "range") && !f->disabled.limits)) {
-        lose(f, node, "its friction or range");
-    }
-    s.k = f->disabled.springs ? 0.0 : s.k;
-    s.c = f->disabled.dampers ? 0.0 : s.c;
     if (s.k == 0.0 && s.c == 0.0) {
         return f->links.m->status >= 0;
     }
