@@ -12,8 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-#define RANGE 1e4 /* of the parts that bodies have in the weight of a row */
-#define LIGHT 1e3 /* and of their mobilities, below which no row has more, but for its levers */
+#define RANGE 1e4  /* of the parts that bodies have in the weight of a row */
+#define SAME  1.01 /* less is no more of a raise */
+#define LIGHT 1e3  /* and of their mobilities, below which no row has more, but for its levers */
 
 /* The part of the body of entry `e` in the weight of row r of joint j. */
 static double part_of(const se3di_kkt *kkt, const se3di_kkt_values *v, int32_t e, size_t r)
@@ -29,20 +30,40 @@ static double part_of(const se3di_kkt *kkt, const se3di_kkt_values *v, int32_t e
     return sum;
 }
 
-/* `factor` of the bodies of a row, which is raised to what the row asks for. */
-static void raise_by_row(const se3di_kkt *kkt, const se3di_kkt_values *v, size_t j, size_t r,
+/* `factor` of the bodies of a row, which is raised to what the row asks for: whether it was. */
+static bool raise_by_row(const se3di_kkt *kkt, const se3di_kkt_values *v, size_t j, size_t r,
                          double *factor)
 {
     const se3di_kkt_pattern *p = &kkt->pattern;
-    double least = HUGE_VAL;
+    double least = HUGE_VAL; /* of the bodies as they are by now */
+    bool raises = false;
     for (int32_t e = p->joint_begin[j]; e < p->joint_begin[j + 1]; ++e) {
-        const double part = part_of(kkt, v, e, r);
+        const double part = part_of(kkt, v, e, r) / factor[p->joint_body[e]];
         least = part > 0.0 && part < least ? part : least;
     }
     for (int32_t e = p->joint_begin[j]; e < p->joint_begin[j + 1]; ++e) {
         const double wanted = part_of(kkt, v, e, r) / RANGE;
         double *own = &factor[p->joint_body[e]];
-        *own = wanted > least * *own ? wanted / least : *own;
+        if (wanted > least * *own) {
+            raises = raises || wanted > SAME * least * *own;
+            *own = wanted / least;
+        }
+    }
+    return raises;
+}
+
+/* All rows, whatever their order: a light body is beside others that are. */
+static void raise_all(const se3di_kkt *kkt, const se3di_kkt_values *values, double *factor)
+{
+    const se3di_kkt_pattern *p = &kkt->pattern;
+    bool raises = true;
+    for (size_t pass = 0; raises && pass <= p->body_count; ++pass) {
+        raises = false;
+        for (size_t j = 0; j < p->joint_count; ++j) {
+            for (int32_t r = 0; r < p->joint_rows[j]; ++r) {
+                raises = raise_by_row(kkt, values, j, (size_t)r, factor) || raises;
+            }
+        }
     }
 }
 
@@ -72,11 +93,7 @@ bool se3di_kkt_raise(se3di_kkt *kkt, const se3di_kkt_values *values, se3di_kkt_v
     for (size_t i = 0; i < p->body_count; ++i) {
         factor[i] = 1.0;
     }
-    for (size_t j = 0; j < p->joint_count; ++j) {
-        for (int32_t r = 0; r < p->joint_rows[j]; ++r) {
-            raise_by_row(kkt, values, j, (size_t)r, factor);
-        }
-    }
+    raise_all(kkt, values, factor);
     for (size_t i = 0; i < p->body_count; ++i) {
         const size_t at = i * (size_t)(n * n);
         any = any || factor[i] > 1.0;

@@ -155,10 +155,53 @@ static void driven_motions_do_not_feel_masses(void)
     }
 }
 
+/* A bar that slides along x and y and turns, as the root of a plane robot: between its joints are
+ * bodies of next to no mass, in a row. It falls as without them. */
+static void check_root(double part, int first, int32_t formulation)
+{
+    static const char *const joints[] = {
+        "  - {name: x, type: prismatic, body_i: ground, body_j: one, at: [0, -0.05, 0], axis: [1, "
+        "0, "
+        "0]}\n",
+        "  - {name: y, type: prismatic, body_i: one, body_j: two, at: [0, -0.05, 0], axis: [0, 1, "
+        "0]}\n",
+        "  - {name: z, type: revolute, body_i: two, body_j: bar, at: [0, -0.05, 0], axis: [0, 0, "
+        "1]}\n"};
+    char text[TEXT], light[200];
+    const double m = 0.01 * part;
+    snprintf(light, sizeof light, "mass: %.17g, inertia: [%.17g, %.17g, %.17g]}\n", m, 0.01 * m,
+             0.01 * m, 0.01 * m);
+    snprintf(
+        text, sizeof text,
+        "se3d: 1\ngravity: [0, -9.81, 0]\nbodies:\n"
+        "  - {name: bar, mass: 0.01, inertia: [8.6e-6, 3.4e-7, 8.3e-6]}\n"
+        "  - {name: one, %s  - {name: two, %sjoints:\n%s%s%sanalysis: {type: dynamics, duration: "
+        "1}\noutput: [{file: e.csv, channels: [bar.position.y]}]\n",
+        light, light, joints[first], joints[(first + 1) % 3], joints[(first + 2) % 3]);
+    text_model root = text_model_open(text, -1, formulation, 0.0);
+    if (text_model_run(&root, 0.3)) {
+        CHECK_NEAR(text_model_get(&root, 0, 0), -0.5 * 9.81 * 0.09, 1e-6);
+    }
+    text_model_close(&root);
+}
+
+static void light_bodies_in_a_row_contradict_nothing(void)
+{
+    static const double parts[] = {1e-8, 1e-11, 1e-12, 5e-12, 1e-14};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; ++k) {
+        for (int first = 0; first < 3; ++first) {
+            check_root(parts[k], first, SE3D_FORMULATION_AUTO);
+            check_root(parts[k], first, SE3D_FORMULATION_ROMEGA);
+            check_root(parts[k], first, SE3D_FORMULATION_RP);
+        }
+    }
+}
+
 int main(void)
 {
     RUN(light_legs_are_no_reason_for_redundancy_in_inverse_dynamics);
     RUN(light_legs_are_no_reason_for_redundancy_in_dynamics);
     RUN(driven_motions_do_not_feel_masses);
+    RUN(light_bodies_in_a_row_contradict_nothing);
     return check_finish();
 }
