@@ -6,8 +6,9 @@
 
 #include <string.h>
 
-#define KEYS    4 /* depth, type, flags, node */
-#define ALIGNED (SE3DI_TREE_ALIGNED_PARENT | SE3DI_TREE_ALIGNED_BODY)
+#define KEYS   4  /* depth, type, flags, node */
+#define FEWEST 3  /* nodes that fill a pack; two alone cost no more */
+#define ALL    -1 /* flags */
 
 /* Nodes sorted by how deep they are, then by what must be the same in a pack. */
 static void sort_nodes(se3di_tree *tree, int32_t flags)
@@ -23,40 +24,57 @@ static void sort_nodes(se3di_tree *tree, int32_t flags)
     se3di_sort_tuples(tree->keys, tree->count, KEYS);
 }
 
-/* Whether the four from place `k` on can be a pack: the first and the last are alike. A carrier is
- * placed at once. */
-static int begins_pack(const se3di_tree *tree, uint32_t k)
+/* How many from place `k` on are a pack, 0: none. A carrier is placed at once. */
+static uint32_t count_pack(const se3di_tree *tree, uint32_t k)
 {
-    if (k + SE3DI_TREE_PACK > tree->count) {
-        return 0;
-    }
     const int32_t *first = tree->keys + KEYS * (size_t)k;
-    const int32_t *last = first + KEYS * (SE3DI_TREE_PACK - 1);
-    return first[1] != SE3DI_TREE_CARRIER && memcmp(first, last, 3 * sizeof *first) == 0;
+    uint32_t count = 1;
+    while (count < SE3DI_TREE_PACK && k + count < tree->count &&
+           memcmp(first, first + KEYS * (size_t)count, (KEYS - 1) * sizeof *first) == 0) {
+        ++count;
+    }
+    return count < FEWEST || first[1] == SE3DI_TREE_CARRIER ? 0 : count;
 }
 
+/* Each has FEWEST nodes or more that are alike but for flags. */
 uint32_t se3di_tree_count_packs(se3di_tree *tree)
 {
-    uint32_t packs = 0;
+    uint32_t packs = 0, count = 0;
     sort_nodes(tree, 0);
-    for (uint32_t k = 0; k < tree->count;) {
-        const int is_pack = begins_pack(tree, k);
-        packs += is_pack != 0;
-        k += is_pack ? SE3DI_TREE_PACK : 1;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const int32_t *key = tree->keys + KEYS * (size_t)k;
+        const int goes_on = count > 0 && memcmp(key - KEYS, key, (KEYS - 1) * sizeof *key) == 0;
+        count = goes_on ? count + 1 : 1;
+        packs += count % FEWEST == 0;
     }
     return packs;
 }
 
-static void add_pack(se3di_tree *tree, uint32_t k)
+/* Nothing is prescribed, and armatures of balls are there in all or in none. */
+static void compare_armatures(const se3di_tree *tree, se3di_tree_pack *pack)
+{
+    int plain = 0;
+    for (uint32_t lane = 0; lane < SE3DI_TREE_PACK; ++lane) {
+        const se3di_tree_node *n = &tree->nodes[pack->node[lane]];
+        const double *own = tree->armature + n->v;
+        plain += n->type == SE3DI_TREE_SPHERICAL && own[0] == 0.0 && own[1] == 0.0 && own[2] == 0.0;
+    }
+    pack->is_plain = plain == SE3DI_TREE_PACK;
+    pack->factors = !(pack->flags & SE3DI_TREE_GIVEN) && (plain == 0 || pack->is_plain);
+}
+
+static void add_pack(se3di_tree *tree, uint32_t k, uint32_t count)
 {
     se3di_tree_pack *pack = &tree->packs[tree->pack_count];
     for (uint32_t lane = 0; lane < SE3DI_TREE_PACK; ++lane) {
-        pack->node[lane] = (uint32_t)tree->keys[KEYS * (size_t)(k + lane) + 3];
+        const uint32_t place = k + (lane < count ? lane : count - 1);
+        pack->node[lane] = (uint32_t)tree->keys[KEYS * (size_t)place + KEYS - 1];
     }
     const se3di_tree_node *n = &tree->nodes[pack->node[0]];
     pack->type = n->type;
-    pack->flags = n->flags & ALIGNED;
+    pack->flags = n->flags;
     pack->is_rooted = n->parent < 0;
+    compare_armatures(tree, pack);
     tree->steps[tree->step_count++] = tree->count + tree->pack_count++;
 }
 
@@ -66,15 +84,15 @@ void se3di_tree_find_packs(se3di_tree *tree)
     if (tree->pack_max == 0) {
         return;
     }
-    sort_nodes(tree, ALIGNED);
+    sort_nodes(tree, ALL);
     for (uint32_t k = 0; k < tree->count;) {
-        const int is_pack = begins_pack(tree, k);
-        if (is_pack) {
-            add_pack(tree, k);
+        const uint32_t count = count_pack(tree, k);
+        if (count > 0) {
+            add_pack(tree, k, count);
         } else {
-            tree->steps[tree->step_count++] = (uint32_t)tree->keys[KEYS * (size_t)k + 3];
+            tree->steps[tree->step_count++] = (uint32_t)tree->keys[KEYS * (size_t)k + KEYS - 1];
         }
-        k += is_pack ? SE3DI_TREE_PACK : 1;
+        k += count > 0 ? count : 1;
     }
     se3di_tree_fill_packs(tree);
 }
@@ -100,6 +118,9 @@ void se3di_tree_fill_packs(se3di_tree *tree)
             fill(3, n->r, lane, pack->r);
             fill(4, n->B, lane, pack->B);
             fill(3, n->s, lane, pack->s);
+            fill(1, &n->mass, lane, pack->mass);
+            fill(6, n->J, lane, pack->J);
+            fill((size_t)n->v_count, tree->armature + n->v, lane, pack->armature);
         }
     }
 }

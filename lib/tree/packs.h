@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Nodes of one tree side by side: four that are as deep in it and have joints of one type, as the
- * corners of a vehicle have, are placed together in the lanes of a vector register, whatever their
- * parents are. A lane does what a node alone does, operation by operation: the same bits.
+ * corners of a vehicle have, are placed together in the lanes of a vector register, and so are
+ * their articulated inertias found, whatever their parents are. A lane does what a node alone does,
+ * operation by operation: the same bits.
  * docs/theory/joint_coordinates.md */
 #ifndef SE3DI_TREE_PACKS_H
 #define SE3DI_TREE_PACKS_H
@@ -19,5 +20,13 @@ void se3di_tree_fill_packs(se3di_tree *tree);
 /* As se3di_tree_place, of the nodes of a pack, whose parents have been placed: with AVX2. */
 void se3di_tree_place_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack, const double *q,
                                 const double *qdot, se3di_frame *frames);
+/* As the part of core->factor for one node: tree->passed of the nodes of a pack that `factors`, and
+ * their U, D, e; that of their children is there. Returns 0 if some D is not > 0. */
+int se3di_tree_factor_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack,
+                                const double *effort);
+/* The articulated inertia of what is beyond a node, from tree->passed of its children, which add up
+ * in the same order as in core->factor; in `room`, or where it stands. */
+const se3di_tree_inertia *se3di_tree_beyond_avx2(const se3di_tree *tree, uint32_t node,
+                                                 se3di_tree_inertia *room);
 
 #endif

@@ -241,6 +241,8 @@ static void add_node(builder *b, uint32_t body)
                            .angle = -1,
                            .driver = -1,
                            .branch = -1,
+                           .child = -1,
+                           .before = -1,
                            .q = tree->q_count,
                            .v = tree->v_count,
                            .B = {1.0, 0.0, 0.0, 0.0}};
@@ -261,6 +263,8 @@ static void add_node(builder *b, uint32_t body)
     if (b->parent[body] >= 0) {
         n->parent = tree->node_of[b->parent[body]];
         se3di_tree_node *parent = &tree->nodes[n->parent];
+        n->before = parent->child;
+        parent->child = tree->node_of[body];
         if (n->parent + 1 != tree->node_of[body] && parent->branch < 0) {
             parent->branch = (int32_t)tree->branch_count++;
         }
@@ -324,7 +328,7 @@ static void find_efforts(se3di_tree *tree)
 /* ---- memory ---- */
 
 #define TREE_STRUCTURE 5
-#define TREE_VALUES    21
+#define TREE_VALUES    22
 
 static void list_structure(se3di_tree *t, se3di_array list[TREE_STRUCTURE])
 {
@@ -360,6 +364,7 @@ static void list_values(se3di_tree *t, se3di_array list[TREE_VALUES])
         {(void **)&t->qdot, v, number_size},
         {(void **)&t->qddot, v, number_size},
         {(void **)&t->branches, t->branch_count, sizeof *t->branches},
+        {(void **)&t->passed, t->count, sizeof *t->passed},
         {(void **)&t->scratch, 12 * (size_t)t->count, number_size},
         {(void **)&t->frames, t->body_count, sizeof *t->frames},
         {(void **)&t->steps, t->count, sizeof *t->steps},

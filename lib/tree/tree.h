@@ -73,6 +73,8 @@ typedef struct se3di_tree_node {
     int32_t q_count, v_count;
     int32_t flags;
     int32_t branch;    /* where children other than the next node add up, -1: there are none */
+    int32_t child;     /* the last one, -1: none; children in turn by `before`, to the first one */
+    int32_t before;    /* the child of the same parent before this one, -1: none */
     double zero;       /* the triads coincide at this angle */
     double sigma;      /* axis_i . axis_j of a revolute: 1 or -1 */
     double lead, base; /* screw: displacement = base + lead angle */
@@ -102,20 +104,24 @@ typedef struct se3di_tree_link {
  * and M: xx yy zz xy xz yz. */
 typedef struct se3di_tree_inertia {
     double I[6], G[9], M[6], p[6];
+    double none; /* 0: four by four */
 } se3di_tree_inertia;
 
 /* Four nodes that stand side by side in lanes: as deep in the tree, with joints of one type and the
- * same flags SE3DI_TREE_ALIGNED_*. Their constants, lane by lane. */
+ * same flags; if there are three the last one stands twice. Their constants, lane by lane. */
 #define SE3DI_TREE_PACK 4
 
 typedef struct se3di_tree_pack {
     uint32_t node[SE3DI_TREE_PACK];
-    int32_t type, flags; /* SE3DI_TREE_ALIGNED_* */
-    int32_t is_rooted;   /* their parents are the ground */
+    int32_t type, flags;
+    int32_t is_rooted; /* their parents are the ground */
+    int32_t factors;   /* inertias, too, take the same operations in all lanes: */
+    int32_t is_plain;  /* balls without armatures */
     int32_t reserved;
     double zero[SE3DI_TREE_PACK], lead[SE3DI_TREE_PACK], base[SE3DI_TREE_PACK];
     double C[4 * SE3DI_TREE_PACK], T[9 * SE3DI_TREE_PACK], r[3 * SE3DI_TREE_PACK];
     double B[4 * SE3DI_TREE_PACK], s[3 * SE3DI_TREE_PACK];
+    double mass[SE3DI_TREE_PACK], J[6 * SE3DI_TREE_PACK], armature[6 * SE3DI_TREE_PACK];
 } se3di_tree_pack;
 
 struct se3di_tree_core;
@@ -164,8 +170,9 @@ typedef struct se3di_tree {
     double *wrench;           /* [nodes * 6]: what acts on each: moment about P, force; ground */
     double *q, *qdot, *qddot; /* scratch of the caller */
     se3di_tree_inertia *branches;
-    double *scratch;     /* [nodes * 12] */
-    se3di_frame *frames; /* [bodies]: scratch */
+    se3di_tree_inertia *passed; /* [nodes]: to their parents, if there are packs */
+    double *scratch;            /* [nodes * 12] */
+    se3di_frame *frames;        /* [bodies]: scratch */
     const struct se3di_tree_core *core;
 } se3di_tree;
 

@@ -6,6 +6,7 @@
 #include "assembly/loads.h"
 #include "tree/core.h"
 #include "tree/lanes.h"
+#include "tree/packs.h"
 #include "tree/recursion.h"
 
 enum { MECHANISMS = 60, STATES = SE3DI_LANES_MAX, NUMBERS = 7 * TREE_BODIES_MAX };
@@ -44,6 +45,8 @@ static void set_armatures(states_of *s, uint64_t seed)
     for (uint32_t v = 0; seed % 3 == 0 && v < s->tree.v_count; ++v) {
         s->tree.armature[v] = 0.1 * v;
     }
+    se3di_tree_find_packs(&s->tree);
+    se3di_tree_fill_packs(&s->tree);
 }
 
 /* far: one state is some 1e5 m and turns away. */
@@ -185,6 +188,7 @@ static void lanes_may_have_gravity_and_masses_of_their_own(void)
                 se3di_scale(s.tree.nodes[k].mass, g, f + 6 * k + 3);
                 se3di_cross(s.tree.links[k].s, f + 6 * k + 3, f + 6 * k);
             }
+            se3di_tree_fill_packs(&s.tree);
             CHECK(!se3di_tree_factor(&s.tree, NULL));
             se3di_tree_accelerate(&s.tree, s.tree.e, s.tree.qddot);
             double largest = 1.0;

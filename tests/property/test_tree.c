@@ -664,16 +664,16 @@ static void changes_are_measured_at_the_bodies(void)
     }
 }
 
-/* Four bodies on the ground, each with one more, by joints of a kind (-1: none): `aligned`, along
- * axes of the bodies where the kind can be. */
-static void build_rows_of_four(tree_world *w, int first, int second, int aligned)
+/* Four bodies on the ground, each with one more, or two with two (`shared`), by joints of a kind
+ * (-1: none): `aligned`, along axes of the bodies where the kind can be. */
+static void build_rows_of_four(tree_world *w, int first, int second, int aligned, int shared)
 {
     const int kinds[2] = {first, second};
     *w = (tree_world){.count = 1, .seed = 7919u};
     CHECK(!se3d_system_create(NULL, &w->system));
     CHECK(!se3d_system_get_ground(w->system, &w->bodies[0]));
     for (int k = 1; k <= 8; ++k) {
-        const int kind = kinds[k > 4], other = k > 4 ? k - 4 : 0;
+        const int kind = kinds[k > 4], other = k <= 4 ? 0 : shared ? 1 + k % 2 : k - 4;
         const double upright[4] = {1.0, 0.0, 0.0, 0.0};
         double at[3];
         tree_add_body(w);
@@ -711,6 +711,59 @@ static void place_by(const se3di_tree_core *core, case_of *c, int wants_frames,
     memcpy(S, tree->S, 6 * tree->v_count * sizeof *S);
 }
 
+#define FACTORS (6 + 6 + 6 + 4) /* of a freedom: U, V, acceleration of the link; D, R, e, qddot */
+
+/* What a core makes of the state that was placed last and of `wrench`, into a copy. */
+static void factor_by(const se3di_tree_core *core, case_of *c, const double *wrench,
+                      const double *effort, double *out)
+{
+    se3di_tree *tree = &c->tree;
+    const size_t v = tree->v_count;
+    double *const from[] = {tree->D, tree->R, tree->e, tree->qddot, tree->U, tree->V};
+    memset(tree->V, 0, 6 * v * sizeof *tree->V);
+    tree->core = core;
+    se3di_tree_take_wrenches(tree, c->model->frames, wrench);
+    CHECK(!se3di_tree_factor(tree, effort));
+    se3di_tree_accelerate(tree, tree->e, tree->qddot);
+    for (size_t k = 0; k < sizeof from / sizeof *from; ++k) {
+        const size_t count = k < 4 ? v : 6 * v;
+        memcpy(out, from[k], count * sizeof *out);
+        out += count;
+    }
+}
+
+/* Also with the moments of inertia of one of four diagonal, so that three are left, and with
+ * branches. */
+static void inertias_side_by_side_have_the_bits_of_inertias_alone(void)
+{
+    uint32_t packs = 0, threes = 0;
+    for (int n = 0; n < 4 * 9 * 8 * 2; ++n) {
+        case_of c;
+        double factors[2][FACTORS * NUMBERS] = {{0.0}};
+        double wrench[6 * (TREE_BODIES_MAX + 1)] = {0.0}, effort[NUMBERS];
+        build_rows_of_four(&c.world, n / 8 % 9 - 1, n / 72, n % 2, n / 4 % 2);
+        c.model = &c.world.system->model;
+        if (n / 2 % 2) {
+            memset(c.model->bodies[6].J + 3, 0, 3 * sizeof *c.model->bodies[6].J);
+        }
+        CHECK(!se3di_tree_init(&c.tree, c.model, 1, NULL));
+        shake(&c.world, &c.tree, c.q, c.qdot);
+        tree_vector(&c.world, wrench, 6 * (c.world.count - 1), 1.0);
+        tree_vector(&c.world, effort, (int)c.tree.v_count, 1.0);
+        se3di_tree_place(&c.tree, c.q, c.qdot, c.model->frames);
+        const se3di_tree_core *const best = c.tree.core;
+        factor_by(se3di_tree_core_portable(), &c, wrench, effort, factors[0]);
+        factor_by(best, &c, wrench, effort, factors[1]);
+        CHECK(memcmp(factors[0], factors[1], sizeof factors[0]) == 0);
+        for (uint32_t k = 0; k < c.tree.pack_count; ++k) {
+            packs += c.tree.packs[k].factors != 0;
+            threes += c.tree.packs[k].node[2] == c.tree.packs[k].node[3];
+        }
+        end(&c);
+    }
+    CHECK(!se3di_tree_core_avx2() || (packs > 900 && threes > 50));
+}
+
 /* Also with an angle beyond where lanes find its sine themselves. */
 static void nodes_side_by_side_have_the_bits_of_nodes_alone(void)
 {
@@ -720,7 +773,7 @@ static void nodes_side_by_side_have_the_bits_of_nodes_alone(void)
         se3di_tree_link links[2][TREE_BODIES_MAX];
         double S[2][6 * NUMBERS];
         se3di_frame frames[2][TREE_BODIES_MAX + 1];
-        build_rows_of_four(&c.world, n / 4 % 9 - 1, n / 36, n % 2);
+        build_rows_of_four(&c.world, n / 4 % 9 - 1, n / 36, n % 2, 0);
         c.model = &c.world.system->model;
         CHECK(!se3di_tree_init(&c.tree, c.model, 1, NULL));
         shake(&c.world, &c.tree, c.q, c.qdot);
@@ -789,6 +842,7 @@ int main(void)
     RUN(all_instruction_levels_give_the_same_bits);
     RUN(changes_are_measured_at_the_bodies);
     RUN(nodes_side_by_side_have_the_bits_of_nodes_alone);
+    RUN(inertias_side_by_side_have_the_bits_of_inertias_alone);
     RUN(a_state_is_a_node_of_one_coordinate);
     return check_finish();
 }
