@@ -28,7 +28,6 @@
 
 #define ENVELOPE 0.4  /* of tyres on meshes, over the radius */
 #define UPRIGHT  1e-3 /* cos g: a wheel that lies touches nothing */
-#define SHORTEST 0.1  /* relaxation length over the radius: those of light wheels vanish */
 
 typedef struct patch {
     double n[3], a[3], x[3], y[3], d[3];
@@ -117,8 +116,9 @@ static se3d_status take_road(const se3di_model *model, const se3di_force *force,
     return SE3D_OK;
 }
 
-static se3d_status take_patch(const se3di_model *model, const se3di_force *force, double t,
-                              patch *c)
+/* The plane below the wheel, and how far it is away. */
+static se3d_status take_height(const se3di_model *model, const se3di_force *force, double t,
+                               patch *c)
 {
     const se3di_frame *i = &model->frames[force->body_i], *j = &model->frames[force->body_j];
     memset(c, 0, sizeof *c);
@@ -137,10 +137,6 @@ static se3d_status take_patch(const se3di_model *model, const se3di_force *force
     c->cosine = sqrt(fmax(0.0, 1.0 - sine * sine));
     c->radius = force->rest;
     c->input[SE3DI_PATCH_SINE] = sine;
-    for (int k = 0; k < 2; ++k) {
-        const uint32_t carrier = force->tyre->carrier[k];
-        c->input[SE3DI_PATCH_LAGGED + k] = force->tyre->lags[k] ? model->frames[carrier].v[0] : 0.0;
-    }
     if (c->cosine < UPRIGHT) {
         c->length = c->radius;
         return SE3D_OK;
@@ -148,6 +144,22 @@ static se3d_status take_patch(const se3di_model *model, const se3di_force *force
     c->length = se3di_dot(c->n, c->e) / c->cosine;
     c->input[SE3DI_PATCH_DEFLECTION] = c->radius - c->length;
     c->touches = c->length < c->radius;
+    return SE3D_OK;
+}
+
+static se3d_status take_patch(const se3di_model *model, const se3di_force *force, double t,
+                              patch *c)
+{
+    const se3di_frame *i = &model->frames[force->body_i], *j = &model->frames[force->body_j];
+    SE3DI_TRY(take_height(model, force, t, c));
+    for (int k = 0; k < 2; ++k) {
+        const uint32_t carrier = force->tyre->carrier[k];
+        c->input[SE3DI_PATCH_LAGGED + k] = force->tyre->lags[k] ? model->frames[carrier].v[0] : 0.0;
+    }
+    if (c->cosine < UPRIGHT) {
+        return SE3D_OK;
+    }
+    const double sine = c->input[SE3DI_PATCH_SINE];
     se3di_cross(c->a, c->n, c->x);
     se3di_scale(1.0 / c->cosine, c->x, c->x);
     se3di_cross(c->n, c->x, c->y);
@@ -163,103 +175,49 @@ static se3d_status take_patch(const se3di_model *model, const se3di_force *force
 
 /* ---- Forces by the inputs ------------------------------------------------------------------*/
 
-/* (k rho + c rhodot) / cos g, at least 0 */
-static se3di_dual find_load(const se3di_force *force, const patch *c, se3di_dual deflection)
+/* Without derivatives those of slips are not written, and read by no law. */
+static int needs_derivatives(const se3di_force *force, int wants_derivative)
 {
-    const double *in = c->input;
-    const double radial = force->k * deflection.v + force->c * in[SE3DI_PATCH_RATE];
-    const double sine = in[SE3DI_PATCH_SINE];
-    se3di_dual load = se3di_dual_of(radial / c->cosine);
-    if (!(radial > 0.0)) {
-        return se3di_dual_of(0.0);
-    }
-    load.d[SE3DI_PATCH_DEFLECTION] = force->k / c->cosine;
-    load.d[SE3DI_PATCH_RATE] = force->c / c->cosine;
-    load.d[SE3DI_PATCH_SINE] = load.v * sine / (c->cosine * c->cosine);
-    return load;
-}
-
-static int is_magic(const se3di_force *force)
-{
-    return force->tyre->law == SE3D_TYRE_MF52 || force->tyre->law == SE3D_TYRE_MF61;
-}
-
-static se3di_dual find_rolling_radius(const se3di_force *force, se3di_dual deflection,
-                                      se3di_dual spin)
-{
-    const double given = force->tyre->rolling_radius;
-    if (is_magic(force) && !(given > 0.0)) {
-        return se3di_tyre_magic_radius(force, deflection, spin);
-    }
-    return given > 0.0 ? se3di_dual_of(given)
-                       : se3di_dual_line(force->rest, -1.0 / 3.0, deflection);
-}
-
-/* The slips that the law follows, in place of those of the instant. */
-static se3di_dual *find_slip(const se3di_force *force, se3di_tyre_slip *slip, int direction)
-{
-    if (force->tyre->law == SE3D_TYRE_BRUSH) {
-        return &slip->shear[direction];
-    }
-    return direction ? &slip->tangent : &slip->ratio;
+    return wants_derivative || !se3di_tyre_is_magic(force);
 }
 
 /* Those of the instant. */
-static void take_slip(const se3di_force *force, const patch *c, se3di_tyre_slip *slip)
+static void take_slip(const se3di_force *force, const patch *c, int derivatives,
+                      se3di_tyre_slip *slip)
 {
-    const se3di_tyre *tyre = force->tyre;
-    const double side = tyre->mirrored ? -1.0 : 1.0, *in = c->input;
-    const se3di_dual deflection =
-        se3di_dual_seed(in[SE3DI_PATCH_DEFLECTION], SE3DI_PATCH_DEFLECTION, 1.0);
-    const se3di_dual spin = se3di_dual_seed(in[SE3DI_PATCH_SPIN], SE3DI_PATCH_SPIN, 1.0);
-    slip->load = find_load(force, c, deflection);
-    slip->rolling_radius = find_rolling_radius(force, deflection, spin);
-    slip->speed = se3di_dual_seed(in[SE3DI_PATCH_SPEED], SE3DI_PATCH_SPEED, 1.0);
-    slip->sine = se3di_dual_seed(side * in[SE3DI_PATCH_SINE], SE3DI_PATCH_SINE, side);
-    const se3di_dual rolled = se3di_dual_mul(spin, slip->rolling_radius);
-    slip->slide[0] = se3di_dual_sub(slip->speed, rolled);
-    slip->slide[1] =
-        se3di_dual_seed(side * in[SE3DI_PATCH_SIDE_SPEED], SE3DI_PATCH_SIDE_SPEED, side);
-    slip->roll = se3di_tyre_regular(rolled, tyre->low_speed);
-    const se3di_dual speed = se3di_tyre_regular(slip->speed, tyre->low_speed);
-    slip->ratio = se3di_dual_scale(-1.0, se3di_dual_div(slip->slide[0], speed));
-    slip->tangent = se3di_dual_div(slip->slide[1], speed);
-    slip->way = se3di_dual_div(slip->speed, speed);
-    slip->shear[0] = se3di_dual_div(slip->slide[0], slip->roll);
-    slip->shear[1] = se3di_dual_div(slip->slide[1], slip->roll);
-    if (tyre->has_turn_slip) {
-        const se3di_dual turn =
-            se3di_dual_seed(side * in[SE3DI_PATCH_TURN], SE3DI_PATCH_TURN, side);
-        slip->turn = se3di_dual_div(turn, speed);
-        slip->lean = se3di_dual_div(se3di_dual_mul(spin, slip->sine), speed);
+    if (needs_derivatives(force, derivatives)) {
+        se3di_tyre_take_slip(force, c->cosine, c->input, slip);
+    } else {
+        se3di_tyre_take_slip_values(force, c->cosine, c->input, slip);
     }
 }
 
 /* A slip that lags is a number of its own. */
-static void take_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *slip)
+static void take_lag(const se3di_force *force, const patch *c, int derivatives,
+                     se3di_tyre_slip *slip)
 {
     for (int k = 0; k < 2; ++k) {
         const int at = SE3DI_PATCH_LAGGED + k;
-        if (force->tyre->lags[k]) {
-            *find_slip(force, slip, k) = se3di_dual_seed(c->input[at], at, 1.0);
+        se3di_dual *followed = se3di_tyre_followed(force, slip, k);
+        if (force->tyre->lags[k] && needs_derivatives(force, derivatives)) {
+            *followed = se3di_dual_seed(c->input[at], at, 1.0);
+        } else if (force->tyre->lags[k]) {
+            followed->v = c->input[at];
         }
     }
 }
 
-/* `slip`: of the instant; what lags takes its place in it. Without `derivatives` those are 0 or
- * those of a part. */
-static void find_forces(const se3di_force *force, const patch *c, int derivatives,
-                        se3di_tyre_slip *slip, se3di_tyre_forces *forces)
+/* `slip`: of the instant; what lags takes its place in it. */
+static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                        se3di_tyre_forces *forces)
 {
     memset(forces, 0, sizeof *forces);
-    take_lag(force, c, slip);
+    take_lag(force, c, 1, slip);
     if (!(slip->load.v > 0.0)) {
         return;
     }
     forces->of[2] = slip->load;
-    if (is_magic(force) && !derivatives) {
-        se3di_tyre_magic_values(force, slip, forces);
-    } else if (is_magic(force)) {
+    if (se3di_tyre_is_magic(force)) {
         se3di_tyre_magic(force, slip, forces);
     } else if (force->tyre->law == SE3D_TYRE_FIALA) {
         se3di_tyre_fiala(force, slip, forces);
@@ -273,6 +231,31 @@ static void find_forces(const se3di_force *force, const patch *c, int derivative
         se3di_dual_seed(c->length, SE3DI_PATCH_DEFLECTION, -1.0); /* R - deflection */
     forces->of[4] = se3di_dual_add(
         forces->of[4], se3di_dual_mul(forces->of[0], se3di_dual_sub(length, slip->rolling_radius)));
+}
+
+/* The same values, to the bit. */
+static void find_values(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                        double of[6])
+{
+    se3di_tyre_forces forces;
+    memset(of, 0, 6 * sizeof *of);
+    if (!se3di_tyre_is_magic(force)) {
+        find_forces(force, c, slip, &forces);
+    } else {
+        take_lag(force, c, 0, slip);
+        if (!(slip->load.v > 0.0)) {
+            return;
+        }
+        se3di_tyre_magic_values(force, slip, &forces);
+        forces.of[2].v = slip->load.v;
+        for (int k = 1; k < 6 && force->tyre->mirrored; k += 2) { /* Fy, Mx, Mz */
+            forces.of[k].v = -forces.of[k].v;
+        }
+        forces.of[4].v += forces.of[0].v * (c->length - slip->rolling_radius.v);
+    }
+    for (int k = 0; k < 6; ++k) {
+        of[k] = forces.of[k].v;
+    }
 }
 
 /* ---- Wrench and its derivatives ------------------------------------------------------------*/
@@ -517,9 +500,13 @@ static void eval_patch(const se3di_model *model, const se3di_force *force, const
                                           &model->frames[force->body_j]};
     se3di_tyre_forces forces;
     double of[6], u[12];
-    find_forces(force, c, effect->wants_derivative, slip, &forces);
-    for (int k = 0; k < 6; ++k) {
-        of[k] = forces.of[k].v;
+    if (effect->wants_derivative) {
+        find_forces(force, c, slip, &forces);
+        for (int k = 0; k < 6; ++k) {
+            of[k] = forces.of[k].v;
+        }
+    } else {
+        find_values(force, c, slip, of);
     }
     to_wrench(frames, c, of, effect->wrench);
     const double *in = c->input;
@@ -543,7 +530,7 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     SE3DI_TRY(take_patch(model, force, t, &c));
     if (c.touches) {
         se3di_tyre_slip slip;
-        take_slip(force, &c, &slip);
+        take_slip(force, &c, effect->wants_derivative, &slip);
         eval_patch(model, force, &c, &slip, effect);
     }
     return SE3D_OK;
@@ -553,53 +540,20 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
                                   double *potential)
 {
     patch c;
-    SE3DI_TRY(take_patch(model, force, t, &c));
+    SE3DI_TRY(take_height(model, force, t, &c));
     *potential = c.touches ? find_energy(force, &c) : 0.0;
     return SE3D_OK;
 }
 
 /* ---- Slip that lags ------------------------------------------------------------------------*/
 
-/* sigma of the slips that lag, at least a part of the radius. */
-static void find_lengths(const se3di_force *force, const se3di_tyre_slip *slip, int derivatives,
-                         se3di_dual length[2])
-{
-    const se3di_tyre *tyre = force->tyre;
-    const double least = SHORTEST * force->rest;
-    int by_law = 0;
-    for (int k = 0; k < 2; ++k) {
-        by_law |= tyre->lags[k] && !(tyre->relaxation[k] > 0.0);
-        length[k] = se3di_dual_of(least);
-    }
-    if (by_law && slip->load.v > 0.0 && derivatives) {
-        se3di_tyre_magic_relaxation(force, slip, length);
-    } else if (by_law && slip->load.v > 0.0) {
-        se3di_tyre_magic_relaxation_values(force, slip, length);
-    }
-    for (int k = 0; k < 2; ++k) {
-        if (tyre->relaxation[k] > 0.0) {
-            length[k] = se3di_dual_of(tyre->relaxation[k]);
-        } else if (!(length[k].v > least)) {
-            length[k] = se3di_dual_of(least);
-        }
-    }
-}
-
-/* z' = V (slip - z) / sigma; off the road there is no slip, and z is forgotten as it went on.
- * `slip`: of the instant. */
 static void find_rates(const se3di_force *force, const patch *c, int derivatives,
                        se3di_tyre_slip *slip, se3di_dual rate[2])
 {
-    se3di_dual length[2];
-    const se3di_dual speed = force->tyre->law == SE3D_TYRE_BRUSH
-                                 ? slip->roll
-                                 : se3di_tyre_regular(slip->speed, force->tyre->low_speed);
-    find_lengths(force, slip, derivatives, length);
-    for (int k = 0; k < 2; ++k) {
-        const int at = SE3DI_PATCH_LAGGED + k;
-        const se3di_dual z = se3di_dual_seed(c->input[at], at, 1.0);
-        const se3di_dual goal = c->touches ? *find_slip(force, slip, k) : se3di_dual_of(0.0);
-        rate[k] = se3di_dual_mul(se3di_dual_div(speed, length[k]), se3di_dual_sub(goal, z));
+    if (needs_derivatives(force, derivatives)) {
+        se3di_tyre_find_rates(force, c->input, c->touches, slip, rate);
+    } else {
+        se3di_tyre_find_rates_values(force, c->input, c->touches, slip, rate);
     }
 }
 
@@ -611,8 +565,8 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
     double of[6];
     memset(gain, 0, 12 * sizeof *gain);
     if (c->touches) {
-        take_slip(force, c, &slip);
-        find_forces(force, c, 1, &slip, &forces);
+        take_slip(force, c, 1, &slip);
+        find_forces(force, c, &slip, &forces);
         for (int k = 0; k < 6; ++k) {
             of[k] = forces.of[k].d[SE3DI_PATCH_LAGGED + direction];
         }
@@ -630,7 +584,7 @@ se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyr
     SE3DI_TRY(take_patch(model, tyre, t, &c));
     const int lags = tyre->tyre->lags[0] || tyre->tyre->lags[1];
     if (c.touches || lags) {
-        take_slip(tyre, &c, &slip);
+        take_slip(tyre, &c, 0, &slip);
     }
     if (lags) {
         find_rates(tyre, &c, 0, &slip, rates);
@@ -653,7 +607,7 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
     se3di_tyre_slip slip;
     se3di_dual rates[2];
     SE3DI_TRY(take_patch(model, tyre, t, &c));
-    take_slip(tyre, &c, &slip);
+    take_slip(tyre, &c, lag->wants_derivative, &slip);
     find_rates(tyre, &c, lag->wants_derivative, &slip, rates);
     const se3di_dual rate = rates[direction];
     lag->rate = rate.v;
@@ -676,45 +630,50 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
 }
 
 /* The slips that the forces follow; those of a brush are relative to the speed of rolling. */
-static void tell_lag(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+static void tell_lag(const se3di_force *force, se3di_tyre_slip *slip,
                      double values[SE3D_TYRE_VALUES])
 {
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
-    take_lag(force, c, slip);
-    const double forward = find_slip(force, slip, 0)->v;
+    const double forward = se3di_tyre_followed(force, slip, 0)->v;
+    const double aside = se3di_tyre_followed(force, slip, 1)->v;
     values[SE3D_TYRE_LAGGED_RATIO] = force->tyre->law == SE3D_TYRE_BRUSH ? 0.0 - forward : forward;
-    values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(find_slip(force, slip, 1)->v);
+    values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(aside);
+}
+
+/* Slips of the instant, forces, and slips that lag. */
+static void tell_slip(const se3di_force *force, const patch *c, double values[SE3D_TYRE_VALUES])
+{
+    const double side = force->tyre->mirrored ? -1.0 : 1.0;
+    se3di_tyre_slip slip;
+    if (c->touches) {
+        take_slip(force, c, 0, &slip);
+    } else {
+        memset(&slip, 0, sizeof slip);
+    }
+    values[SE3D_TYRE_SLIP_RATIO] = slip.ratio.v;
+    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip.tangent.v);
+    values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
+    values[SE3D_TYRE_TURN_SLIP] = c->touches ? c->input[SE3DI_PATCH_TURN] / slip.reference.v : 0.0;
+    if (c->touches) {
+        find_values(force, c, &slip, values + SE3D_TYRE_FX);
+    } else {
+        memset(values + SE3D_TYRE_FX, 0, 6 * sizeof *values);
+        take_lag(force, c, 0, &slip);
+    }
+    tell_lag(force, &slip, values);
 }
 
 se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
                             double values[SE3D_TYRE_VALUES])
 {
     patch c;
-    se3di_tyre_slip slip = {.load = {.v = 0.0}};
-    se3di_tyre_forces forces = {.of = {{.v = 0.0}}};
-    const double side = force->tyre->mirrored ? -1.0 : 1.0;
     SE3DI_TRY(take_patch(model, force, model->time, &c));
-    if (c.touches) {
-        take_slip(force, &c, &slip);
-        se3di_tyre_slip followed = slip;
-        find_forces(force, &c, 0, &followed, &forces);
-    }
-    for (int k = 0; k < 6; ++k) {
-        values[SE3D_TYRE_FX + k] = forces.of[k].v;
-    }
-    values[SE3D_TYRE_SLIP_RATIO] = slip.ratio.v;
-    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip.tangent.v);
+    tell_slip(force, &c, values);
     values[SE3D_TYRE_INCLINATION] = se3di_asin(fmax(-1.0, fmin(1.0, c.input[SE3DI_PATCH_SINE])));
     values[SE3D_TYRE_DEFLECTION] = c.input[SE3DI_PATCH_DEFLECTION];
     values[SE3D_TYRE_LOADED_RADIUS] = c.length;
-    values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
     values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
-    values[SE3D_TYRE_TURN_SLIP] =
-        c.touches
-            ? c.input[SE3DI_PATCH_TURN] / se3di_tyre_regular(slip.speed, force->tyre->low_speed).v
-            : 0.0;
     se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
-    tell_lag(force, &c, &slip, values);
     return SE3D_OK;
 }
 

@@ -29,6 +29,7 @@ typedef struct se3di_tyre_slip {
     se3di_dual shear[2];       /* brush: V_sx, V_sy over the speed of rolling */
     se3di_dual roll;           /* |spin| times the rolling radius, regularised */
     se3di_dual speed;          /* V_x */
+    se3di_dual reference;      /* V: |V_x|, regularised */
     se3di_dual way;            /* V_x / V: 1 ahead, -1 back */
     se3di_dual sine;           /* of the inclination */
     se3di_dual turn;           /* turning rate over V [1/m] */
@@ -40,8 +41,33 @@ typedef struct se3di_tyre_forces {
     se3di_dual of[6];
 } se3di_tyre_forces;
 
-/* |x|, and (x^2 + v^2) / 2v below v: its slope is continuous. */
-se3di_dual se3di_tyre_regular(se3di_dual x, double v);
+static inline int se3di_tyre_is_magic(const se3di_force *force)
+{
+    return force->tyre->law == SE3D_TYRE_MF52 || force->tyre->law == SE3D_TYRE_MF61;
+}
+
+/* The slips that the law follows: a place, where those that lag stand in for those of the
+ * instant. */
+static inline se3di_dual *se3di_tyre_followed(const se3di_force *force, se3di_tyre_slip *slip,
+                                              int direction)
+{
+    if (force->tyre->law == SE3D_TYRE_BRUSH) {
+        return &slip->shear[direction];
+    }
+    return direction ? &slip->tangent : &slip->ratio;
+}
+
+/* Slips of the instant, cosine: of the inclination, by the inputs of the patch. */
+void se3di_tyre_take_slip(const se3di_force *force, double cosine, const double *in,
+                          se3di_tyre_slip *slip);
+/* Rates of both slips that lag. `slip`: of the instant. */
+void se3di_tyre_find_rates(const se3di_force *force, const double *in, int touches,
+                           se3di_tyre_slip *slip, se3di_dual rate[2]);
+/* The same values; derivatives are not written. */
+void se3di_tyre_take_slip_values(const se3di_force *force, double cosine, const double *in,
+                                 se3di_tyre_slip *slip);
+void se3di_tyre_find_rates_values(const se3di_force *force, const double *in, int touches,
+                                  se3di_tyre_slip *slip, se3di_dual rate[2]);
 
 /* Each law adds Fx, Fy, Mx, My, Mz; Fz is there. */
 void se3di_tyre_brush(const se3di_force *force, const se3di_tyre_slip *slip,
@@ -54,16 +80,6 @@ void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
 /* The same values; derivatives stay as they are. */
 void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip,
                              se3di_tyre_forces *forces);
-/* The effective rolling radius of a Magic Formula. */
-se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflection,
-                                   se3di_dual spin);
-
-/* Relaxation lengths of a Magic Formula, of kappa and of tan alpha. */
-void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip *slip,
-                                 se3di_dual length[2]);
-void se3di_tyre_magic_relaxation_values(const se3di_force *force, const se3di_tyre_slip *slip,
-                                        se3di_dual length[2]);
-
 /* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
 typedef struct se3di_tyre_lag {
     int32_t wants_derivative; /* set by the caller; 0: the rate only */

@@ -11,11 +11,6 @@
  * docs/theory/tyre.md */
 #include "force/tyre.h"
 
-se3di_dual se3di_tyre_regular(se3di_dual x, double v)
-{
-    return fabs(x.v) < v ? se3di_dual_square(0.5 * v, 0.0, 0.5 / v, x) : se3di_dual_abs(x);
-}
-
 /* G, and (1 - psi)^3 while something sticks. */
 static void share(se3di_dual psi, se3di_dual *G, se3di_dual *cube)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The Magic Formula with derivatives.                                  docs/theory/tyre.md */
+/* Slips and the Magic Formula with derivatives.                        docs/theory/tyre.md */
 #include "force/tyre.h"
 
 typedef se3di_dual dual;
@@ -8,7 +8,10 @@ typedef se3di_dual dual;
 #define TAKE(x)    (x)
 #define GIVE(x, o) ((o) = (x))
 
+#define SLOPE(x, number, slope) ((x).d[number] = (slope))
+
 #include "force/tyre_magic.inc"
+#include "force/tyre_slip.inc"
 
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces)
@@ -16,24 +19,14 @@ void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
     find_all(force, slip, forces);
 }
 
-void se3di_tyre_magic_relaxation(const se3di_force *force, const se3di_tyre_slip *slip,
-                                 se3di_dual length[2])
+void se3di_tyre_take_slip(const se3di_force *force, double cosine, const double *in,
+                          se3di_tyre_slip *slip)
 {
-    find_relaxation(force, slip, length);
+    take_slip(force, cosine, in, slip);
 }
 
-se3di_dual se3di_tyre_magic_radius(const se3di_force *force, se3di_dual deflection, se3di_dual spin)
+void se3di_tyre_find_rates(const se3di_force *force, const double *in, int touches,
+                           se3di_tyre_slip *slip, se3di_dual rate[2])
 {
-    const magic only = {.c = force->tyre->coefficients}, *m = &only;
-    const double static_part = C(FNOMIN) / force->k, growth = force->rest / C(LONGVL);
-    const se3di_dual rho = se3di_dual_scale(1.0 / static_part, deflection);
-    const se3di_dual free =
-        se3di_dual_square(force->rest * C(QRE0), 0.0, force->rest * C(QV1) * growth * growth, spin);
-    if (!(fabs(C(DREFF)) > 0.0 || fabs(C(FREFF)) > 0.0)) {
-        return se3di_dual_sub(free, se3di_dual_scale(1.0 / 3.0, deflection));
-    }
-    const se3di_dual bent = se3di_dual_atan(se3di_dual_scale(C(BREFF), rho));
-    const se3di_dual sunk =
-        se3di_dual_add(se3di_dual_scale(C(DREFF), bent), se3di_dual_scale(C(FREFF), rho));
-    return se3di_dual_sub(free, se3di_dual_scale(static_part, sunk));
+    find_rates(force, in, touches, slip, rate);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The Magic Formula, values alone.                                     docs/theory/tyre.md */
+/* Slips and the Magic Formula, values alone.                           docs/theory/tyre.md */
 #include "force/tyre.h"
 
 typedef se3di_value dual;
@@ -8,7 +8,10 @@ typedef se3di_value dual;
 #define TAKE(x)    se3di_value_of((x).v)
 #define GIVE(x, o) ((o).v = (x).v)
 
+#define SLOPE(x, number, slope) ((void)(slope))
+
 #include "force/tyre_magic.inc"
+#include "force/tyre_slip.inc"
 
 void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip,
                              se3di_tyre_forces *forces)
@@ -16,8 +19,14 @@ void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *sl
     find_all(force, slip, forces);
 }
 
-void se3di_tyre_magic_relaxation_values(const se3di_force *force, const se3di_tyre_slip *slip,
-                                        se3di_dual length[2])
+void se3di_tyre_take_slip_values(const se3di_force *force, double cosine, const double *in,
+                                 se3di_tyre_slip *slip)
 {
-    find_relaxation(force, slip, length);
+    take_slip(force, cosine, in, slip);
+}
+
+void se3di_tyre_find_rates_values(const se3di_force *force, const double *in, int touches,
+                                  se3di_tyre_slip *slip, se3di_dual rate[2])
+{
+    find_rates(force, in, touches, slip, rate);
 }

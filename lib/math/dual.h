@@ -69,6 +69,13 @@ static inline se3di_value se3di_value_of(double value)
     return (se3di_value){value};
 }
 
+static inline se3di_value se3di_value_seed(double value, int number, double slope)
+{
+    (void)number;
+    (void)slope;
+    return (se3di_value){value};
+}
+
 static inline se3di_value se3di_value_chain(double f, double slope, se3di_value x)
 {
     (void)slope;
