@@ -53,15 +53,16 @@ static void widen_shape(const se3di_shape_entry *entry, const double *pose, box 
     const se3d_model_shape *s = &entry->shape;
     const se3di_shape_row *row = se3di_shape_row_of(s);
     double half[3] = {0.0, 0.0, 0.0};
-    double turned[SE3DI_POSE];
-    memcpy(turned, s->position, 3 * sizeof *turned);
-    memcpy(turned + 3, s->orientation, 4 * sizeof *turned);
+    double on_body[9];
+    double on_ground[9];
     if (!row->enclose && !entry->mesh) {
         return;
     }
     if (row->enclose) {
         row->enclose(s, half);
     }
+    se3di_rotation_to_matrix(s->orientation, on_body);
+    se3di_rotation_to_matrix(pose + 3, on_ground);
     for (int k = 0; k < 8; ++k) {
         double at[3];
         double corner[3];
@@ -69,8 +70,8 @@ static void widen_shape(const se3di_shape_entry *entry, const double *pose, box 
             const double low = entry->mesh ? entry->mesh->low[i] : -half[i];
             corner[i] = !(k & 1 << i) ? low : entry->mesh ? entry->mesh->high[i] : half[i];
         }
-        se3di_drawing_to_ground(turned, corner, at);
-        se3di_drawing_to_ground(pose, at, at);
+        se3di_drawing_turn(s->position, on_body, corner, at);
+        se3di_drawing_turn(pose, on_ground, at, at);
         widen(at, b->low, b->high);
     }
 }

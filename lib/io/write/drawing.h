@@ -75,6 +75,9 @@ void se3di_drawing_list_rises(const se3d_model *model, const se3di_sizes *sizes,
                               const se3di_poses *poses, se3di_rise *rises);
 /* How far such a road has risen [m]; 0 if it changes its form. */
 double se3di_rise_get(const se3d_model *model, const se3di_rise *rise, double time);
+/* origin + A local; ground may be local */
+void se3di_drawing_turn(const double origin[3], const double A[9], const double local[3],
+                        double ground[3]);
 /* A point of a body in the ground frame. */
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3],
                              double ground[3]);

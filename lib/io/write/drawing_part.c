@@ -10,14 +10,20 @@
 #include "io/base/rotation.h"
 #include "io/read/shape_kinds.h"
 
+void se3di_drawing_turn(const double origin[3], const double A[9], const double local[3],
+                        double ground[3])
+{
+    const double s[3] = {local[0], local[1], local[2]}; /* ground may be local */
+    for (int i = 0; i < 3; ++i) {
+        ground[i] = origin[i] + A[3 * i] * s[0] + A[3 * i + 1] * s[1] + A[3 * i + 2] * s[2];
+    }
+}
+
 void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3], double ground[3])
 {
     double A[9];
-    const double s[3] = {local[0], local[1], local[2]}; /* ground may be local */
     se3di_rotation_to_matrix(pose + 3, A);
-    for (int i = 0; i < 3; ++i) {
-        ground[i] = pose[i] + A[3 * i] * s[0] + A[3 * i + 1] * s[1] + A[3 * i + 2] * s[2];
-    }
+    se3di_drawing_turn(pose, A, local, ground);
 }
 
 size_t se3di_drawing_find_body(const se3d_model *model, se3d_body body)
