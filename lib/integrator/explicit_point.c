@@ -98,7 +98,9 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration)
     const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
     double *history = assembly->model->history;
     double *memory = integration->work + (SE3DI_EXPLICIT_ROWS + 3) * count;
+    const se3di_sums *avx2 = se3di_sums_avx2();
     return (se3di_explicit){
+        .sums = avx2 ? avx2 : se3di_sums_portable(),
         .methods = integration->method->explicit_class,
         .tableau = integration->method->tableau,
         .motion = motion,
@@ -198,10 +200,6 @@ const double *se3di_explicit_grow_scale(se3di_explicit *m)
     return rates;
 }
 
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-
-#define PAIRS 4 /* stay in registers */
-
 void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const double *base,
                             double h, const double *coefficients, int limit, double *out)
 {
@@ -214,29 +212,7 @@ void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const d
             factor[used++] = h * coefficients[k];
         }
     }
-    size_t c = 0;
-    for (; c + 2 * PAIRS <= m->count; c += 2 * PAIRS) {
-        pair sum[PAIRS] = {{0.0, 0.0}};
-        if (base) {
-            memcpy(sum, base + c, sizeof sum);
-        }
-        for (int k = 0; k < used; ++k) {
-            const pair *part = (const pair *)(const void *)(stage[k] + c);
-            const pair f = {factor[k], factor[k]};
-            sum[0] += f * part[0];
-            sum[1] += f * part[1];
-            sum[2] += f * part[2];
-            sum[3] += f * part[3];
-        }
-        memcpy(out + c, sum, sizeof sum);
-    }
-    for (; c < m->count; ++c) {
-        double sum = base ? base[c] : 0.0;
-        for (int k = 0; k < used; ++k) {
-            sum += factor[k] * stage[k][c];
-        }
-        out[c] = sum;
-    }
+    m->sums->combine(m->count, used, stage, factor, base, out);
 }
 
 se3d_status se3di_explicit_differentiate(se3di_explicit *m, double t, double *derivative)

@@ -367,40 +367,12 @@ static se3d_status build_dense(se3di_explicit *m)
     return SE3D_OK;
 }
 
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
-
-#define PAIRS 4 /* stay in registers */
-
 /* y = y0 + s_0 (form_0 + s_1 (form_1 + ...)) */
 static void interpolate(const se3di_explicit *m, double t, double *y)
 {
     const double s = (t - m->past->at.begin) / (m->past->at.time - m->past->at.begin);
     const double factor[2] = {s, 1.0 - s};
-    const int forms = 3 + m->tableau->dense_rows;
-    size_t k = 0;
-    for (; k + 2 * PAIRS <= m->count; k += 2 * PAIRS) {
-        pair sum[PAIRS] = {{0.0, 0.0}}, base[PAIRS];
-        for (int row = forms - 1; row >= 0; --row) {
-            const pair by = {factor[row % 2], factor[row % 2]};
-            const pair *form = (const pair *)(const void *)(m->forms + (size_t)row * m->count + k);
-            sum[0] = by * (form[0] + sum[0]);
-            sum[1] = by * (form[1] + sum[1]);
-            sum[2] = by * (form[2] + sum[2]);
-            sum[3] = by * (form[3] + sum[3]);
-        }
-        memcpy(base, m->y0 + k, sizeof base);
-        for (int p = 0; p < PAIRS; ++p) {
-            sum[p] = base[p] + sum[p];
-        }
-        memcpy(y + k, sum, sizeof sum);
-    }
-    for (; k < m->count; ++k) {
-        double sum = 0.0;
-        for (int row = forms - 1; row >= 0; --row) {
-            sum = factor[row % 2] * (m->forms[(size_t)row * m->count + k] + sum);
-        }
-        y[k] = m->y0[k] + sum;
-    }
+    m->sums->nest(m->count, 3 + m->tableau->dense_rows, m->forms, factor, m->y0, y);
 }
 
 const se3di_explicit_class se3di_rk_class = {

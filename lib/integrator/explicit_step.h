@@ -12,6 +12,7 @@
 
 #include "integrator/adaptive.h"
 #include "integrator/motion.h"
+#include "integrator/sums.h"
 
 #define SE3DI_EXPLICIT_ROWS  17 /* vectors of work: stages and what a method needs beside them */
 #define SE3DI_EXPLICIT_FORMS 11 /* vectors of history: what it interpolates by */
@@ -81,6 +82,7 @@ struct se3di_explicit_class {
 struct se3di_explicit {
     se3di_adaptive step; /* first, so that it is found from the loop's */
     const se3di_explicit_class *methods;
+    const se3di_sums *sums;
     const struct se3di_rk_tableau *tableau;
     const se3di_motion *motion;
     se3di_equations *equations;
