@@ -35,12 +35,22 @@ static int carries_armature(const se3di_model *model, uint32_t joint)
     return 0;
 }
 
+static int has_armatures(const se3di_model *model)
+{
+    int found = 0;
+    for (size_t k = 0; k < model->force_slots.count && !found; ++k) {
+        found = model->forces[k].type == SE3DI_FORCE_ARMATURE;
+    }
+    return found;
+}
+
 se3d_status se3di_breaks_check(const se3di_run *run)
 {
     const se3di_model *model = run->model;
     const int is_driven = se3di_analysis_is(run->analysis, SE3DI_ANALYSIS_IS_DRIVEN);
-    const int moves = run->analysis == SE3D_ANALYSIS_DYNAMICS;
-    for (uint32_t k = 0; (is_driven || moves) && k < model->constraint_slots.count; ++k) {
+    const int looks =
+        is_driven || (run->analysis == SE3D_ANALYSIS_DYNAMICS && has_armatures(model));
+    for (uint32_t k = 0; looks && k < model->constraint_slots.count; ++k) {
         const se3di_constraint *joint = &model->constraints[k];
         if (may_break(model, joint) && is_driven) {
             return se3di_error_set(run->error, SE3D_ERR_UNSUPPORTED,
