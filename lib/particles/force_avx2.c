@@ -13,6 +13,7 @@
 SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 #define LANES    4
+#define BESIDE   2 /* batches: to fill the waits for roots and quotients */
 #define V_INLINE static inline __attribute__((always_inline))
 
 typedef __m256d V;
@@ -85,6 +86,20 @@ V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i,
     transpose(high, out + 4);
 }
 
+/* Of i relative to j; in [3] what nobody needs. */
+V_INLINE void load_apart(const se3di_particle *particles, const uint32_t *i, const uint32_t *j,
+                         V d[4], V v[4])
+{
+    V low[4], high[4];
+    for (int k = 0; k < 4; ++k) {
+        const se3di_particle *a = &particles[i[k]], *b = &particles[j[k]];
+        low[k] = _mm256_sub_pd(_mm256_load_pd(a->x), _mm256_load_pd(b->x));
+        high[k] = _mm256_sub_pd(_mm256_load_pd(a->v), _mm256_load_pd(b->v));
+    }
+    transpose(low, d);
+    transpose(high, v);
+}
+
 /* Also what is behind the 15 numbers. */
 V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V out[16])
 {
@@ -109,13 +124,17 @@ V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
     out[2] = columns[2];
 }
 
-/* Force and torque of each lane. */
-V_INLINE void turn_loads(const V force[3], const V torque[3], V f[4], V t[4])
+/* Of each lane. */
+typedef struct turned_loads {
+    V force[4], torque[4];
+} turned_loads;
+
+V_INLINE void turn_loads(const V force[3], const V torque[3], turned_loads *out)
 {
     V forces[4] = {force[0], force[1], force[2], _mm256_setzero_pd()};
     V torques[4] = {torque[0], torque[1], torque[2], _mm256_setzero_pd()};
-    transpose(forces, f);
-    transpose(torques, t);
+    transpose(forces, out->force);
+    transpose(torques, out->torque);
 }
 
 V_INLINE void add_load(se3di_load *load, V force, V torque)
@@ -124,41 +143,34 @@ V_INLINE void add_load(se3di_load *load, V force, V torque)
     _mm256_store_pd(load->torque, _mm256_add_pd(_mm256_load_pd(load->torque), torque));
 }
 
-V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], const V torque[3])
+V_INLINE void add_turned(se3di_load *loads, const uint32_t *i, const turned_loads *of)
 {
-    V f[4], t[4];
-    turn_loads(force, torque, f, t);
     for (int k = 0; k < 4; ++k) {
-        add_load(&loads[i[k]], f[k], t[k]);
+        add_load(&loads[i[k]], of->force[k], of->torque[k]);
     }
 }
 
-/* As add_loads for i and for j, lane by lane. */
+/* The opposite force; the torque as it is. */
+V_INLINE void take_turned(se3di_load *loads, const uint32_t *j, const turned_loads *of)
+{
+    for (int k = 0; k < 4; ++k) {
+        se3di_load *load = &loads[j[k]];
+        _mm256_store_pd(load->force, _mm256_sub_pd(_mm256_load_pd(load->force), of->force[k]));
+        _mm256_store_pd(load->torque, _mm256_add_pd(_mm256_load_pd(load->torque), of->torque[k]));
+    }
+}
+
+/* For i and for j, lane by lane. */
 V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *j, const V on_i[6],
                           const V on_j[6])
 {
-    V f[4], t[4], back[4], turn[4];
-    turn_loads(on_i, on_i + 3, f, t);
-    turn_loads(on_j, on_j + 3, back, turn);
+    turned_loads on, back;
+    turn_loads(on_i, on_i + 3, &on);
+    turn_loads(on_j, on_j + 3, &back);
     for (int k = 0; k < 4; ++k) {
-        add_load(&loads[i[k]], f[k], t[k]);
-        add_load(&loads[j[k]], back[k], turn[k]);
+        add_load(&loads[i[k]], on.force[k], on.torque[k]);
+        add_load(&loads[j[k]], back.force[k], back.torque[k]);
     }
-}
-
-V_INLINE void hold_loads(se3di_load *held, const V force[3], const V torque[3])
-{
-    V f[4], t[4];
-    turn_loads(force, torque, f, t);
-    for (int k = 0; k < 4; ++k) {
-        _mm256_store_pd(held[k].force, f[k]);
-        _mm256_store_pd(held[k].torque, t[k]);
-    }
-}
-
-V_INLINE void add_held(se3di_load *load, const se3di_load *held)
-{
-    add_load(load, _mm256_load_pd(held->force), _mm256_load_pd(held->torque));
 }
 
 #include "particles/force.inc"

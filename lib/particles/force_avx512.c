@@ -17,6 +17,7 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX512 ",prefer-vector-width=512")
 #endif
 
 #define LANES    8
+#define BESIDE   1
 #define V_INLINE static inline __attribute__((always_inline))
 
 typedef __m512d V;
@@ -95,6 +96,21 @@ V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i,
     transpose(rows, out);
 }
 
+/* Of i relative to j. */
+V_INLINE void load_apart(const se3di_particle *particles, const uint32_t *i, const uint32_t *j,
+                         V d[4], V v[4])
+{
+    V rows[8], out[8];
+    for (int k = 0; k < 8; ++k) {
+        rows[k] = _mm512_sub_pd(_mm512_load_pd(&particles[i[k]]), _mm512_load_pd(&particles[j[k]]));
+    }
+    transpose(rows, out);
+    for (int a = 0; a < 4; ++a) {
+        d[a] = out[a];
+        v[a] = out[4 + a];
+    }
+}
+
 /* Also what is behind the 15 numbers. */
 V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V out[16])
 {
@@ -130,32 +146,50 @@ V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
     out[2] = z;
 }
 
-V_INLINE void add_loads(se3di_load *loads, const uint32_t *i, const V force[3], const V torque[3])
+/* Force and torque of each lane. */
+typedef struct turned_loads {
+    V load[8];
+} turned_loads;
+
+V_INLINE void turn_loads(const V force[3], const V torque[3], turned_loads *out)
 {
     V zero = _mm512_setzero_pd();
     V rows[8] = {force[0], force[1], force[2], zero, torque[0], torque[1], torque[2], zero};
-    V out[8];
-    transpose(rows, out);
+    transpose(rows, out->load);
+}
+
+V_INLINE void add_load(se3di_load *load, V more)
+{
+    _mm512_store_pd(load, _mm512_add_pd(_mm512_load_pd(load), more));
+}
+
+V_INLINE void add_turned(se3di_load *loads, const uint32_t *i, const turned_loads *of)
+{
     for (int k = 0; k < 8; ++k) {
-        se3di_load *load = &loads[i[k]];
-        _mm512_store_pd(load, _mm512_add_pd(_mm512_load_pd(load), out[k]));
+        add_load(&loads[i[k]], of->load[k]);
     }
 }
 
-/* As add_loads for i and for j, lane by lane. */
+/* The opposite force; the torque as it is. */
+V_INLINE void take_turned(se3di_load *loads, const uint32_t *j, const turned_loads *of)
+{
+    for (int k = 0; k < 8; ++k) {
+        V before = _mm512_load_pd(&loads[j[k]]);
+        V sum = _mm512_add_pd(before, of->load[k]);
+        _mm512_store_pd(&loads[j[k]], _mm512_mask_sub_pd(sum, 0x0f, before, of->load[k]));
+    }
+}
+
+/* For i and for j, lane by lane. */
 V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *j, const V on_i[6],
                           const V on_j[6])
 {
-    V zero = _mm512_setzero_pd();
-    V rows[8] = {on_i[0], on_i[1], on_i[2], zero, on_i[3], on_i[4], on_i[5], zero};
-    V others[8] = {on_j[0], on_j[1], on_j[2], zero, on_j[3], on_j[4], on_j[5], zero};
-    V out[8], back[8];
-    transpose(rows, out);
-    transpose(others, back);
+    turned_loads on, back;
+    turn_loads(on_i, on_i + 3, &on);
+    turn_loads(on_j, on_j + 3, &back);
     for (int k = 0; k < 8; ++k) {
-        se3di_load *load = &loads[i[k]], *other = &loads[j[k]];
-        _mm512_store_pd(load, _mm512_add_pd(_mm512_load_pd(load), out[k]));
-        _mm512_store_pd(other, _mm512_add_pd(_mm512_load_pd(other), back[k]));
+        add_load(&loads[i[k]], on.load[k]);
+        add_load(&loads[j[k]], back.load[k]);
     }
 }
 

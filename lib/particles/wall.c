@@ -59,7 +59,7 @@ static double funnel_distance(const se3di_wall *wall, const double local[3])
     return sqrt(d[0] * d[0] + d[1] * d[1]);
 }
 
-/* As funnel_distance() of force.inc. */
+/* As funnel_distance() of force_walls.inc. */
 static double funnel_nearest(const se3di_wall *wall, const double local[3], double n[3])
 {
     const double rho = funnel_rho(wall, local);
