@@ -8,7 +8,6 @@
  * touch as spheres do.                                          docs/theory/body-contact.md */
 #include "contact/narrow/mesh.h"
 
-#include "contact/shape/mesh.h"
 #include "contact/shape/triangles.h"
 #include "math/vec3.h"
 
@@ -251,14 +250,18 @@ static void touch_corner(const meeting *m, const double x[3], const double *only
 /* A ball of the solid, ground frame. */
 static void touch_ball(const meeting *m, const double x[3], double radius, uint32_t feature)
 {
-    se3di_touch touches[TOUCHES];
-    double local[3];
+    se3di_touch touches[SE3DI_MESH_TOUCHES];
+    double local[3], depth[SE3DI_MESH_TOUCHES];
     se3di_solid_to_local(m->mesh, x, local);
-    size_t count = se3di_mesh_contacts(m->mesh->shape, local, radius, TOUCHES, touches);
+    const size_t count =
+        se3di_mesh_contacts(m->mesh->shape, local, radius, SE3DI_MESH_TOUCHES, touches);
+    se3di_mesh_share_valley(touches, (uint32_t)count, radius, depth);
     for (size_t k = 0; k < count; ++k) {
         const se3di_touch *t = &touches[k];
-        se3di_mesh_add(m, t->point, t->normal, radius - t->distance, radius,
-                       8 * feature + way_of(t->normal));
+        if (depth[k] > 0.0) {
+            se3di_mesh_add(m, t->point, t->normal, depth[k], radius,
+                           8 * feature + way_of(t->normal));
+        }
     }
 }
 

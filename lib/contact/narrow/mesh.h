@@ -4,11 +4,13 @@
 #define SE3DI_CONTACT_NARROW_MESH_H
 
 #include "contact/narrow/internal.h"
+#include "contact/shape/mesh.h"
 
 #define SE3DI_MESH_COPLANAR 0.999 /* cosine of the angle of faces that are one */
 #define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */
 #define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
 #define SE3DI_MESH_WAYS     24
+#define SE3DI_MESH_TOUCHES  8 /* faces that one ball touches */
 
 /* All in the frame of the mesh. */
 typedef struct se3di_mesh_face {
@@ -48,6 +50,10 @@ typedef struct se3di_mesh_edge {
     se3di_mesh_face other; /* beyond it, if it is no border */
 } se3di_mesh_edge;
 
+/* How deep a ball is on each of the faces that it touches, at most SE3DI_MESH_TOUCHES, so that the
+ * depth of each grows from zero as the ball turns into a valley. May be negative: not at all. */
+void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double radius,
+                             double *depth);
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);
