@@ -28,18 +28,24 @@ static void listen(void *ctx, se3d_log_level level, se3d_log_kind kind, const ch
     }
 }
 
-static se3d_model *open(const char *tir, const char *text, heard *h, se3d_model_error *error)
+static se3d_model *open_bytes(const char *tir, size_t size, const char *text, heard *h,
+                              se3d_model_error *error)
 {
     se3d_model *model = NULL;
     se3d_model_options options = se3d_model_options_default();
     options.log = listen;
     options.log_ctx = h;
     h->text[0] = '\0';
-    scratch_write(FILE_NAME, tir, strlen(tir));
+    scratch_write(FILE_NAME, tir, size);
     (void)se3d_model_read_text(text, strlen(text), scratch_path("se3d_test.yaml"), &options, &model,
                                error);
     scratch_remove(FILE_NAME);
     return model;
+}
+
+static se3d_model *open(const char *tir, const char *text, heard *h, se3d_model_error *error)
+{
+    return open_bytes(tir, strlen(tir), text, h, error);
 }
 
 /* All that it tells. */
@@ -105,11 +111,11 @@ static void the_model_file_goes_before_the_tyre_file(void)
     CHECK(fabs(given[SE3D_TYRE_FX]) < fabs(file[SE3D_TYRE_FX]));
 }
 
-static void refuse(const char *tir, const char *text, const char *part)
+static void refuse_bytes(const char *tir, size_t size, const char *text, const char *part)
 {
     heard h;
     se3d_model_error error = {0, 0, ""};
-    se3d_model *model = open(tir, text, &h, &error);
+    se3d_model *model = open_bytes(tir, size, text, &h, &error);
     CHECK(!model);
     CHECK(error.line >= 4);
     if (!strstr(error.message, part)) {
@@ -117,6 +123,11 @@ static void refuse(const char *tir, const char *text, const char *part)
         CHECK(0);
     }
     se3d_model_destroy(model);
+}
+
+static void refuse(const char *tir, const char *text, const char *part)
+{
+    refuse_bytes(tir, strlen(tir), text, part);
 }
 
 /* How many slips lag. */
@@ -294,6 +305,7 @@ static void a_tyre_without_longitudinal_force_is_told(void)
 
 static void files_of_other_kinds_are_refused(void)
 {
+    static const char binary[] = SI "PDX2 = 1\0\n"; /* without the byte it is a good file */
     refuse(SI "PDX2 = 1.2.3\n", MODEL(""), "line 19: PDX2 must be a number");
     refuse(SI "PDX2 = nan\n", MODEL(""), "must be a number");
     refuse(SI "PDX2 = 1e999\n", MODEL(""), "PDX2");
@@ -310,6 +322,7 @@ static void files_of_other_kinds_are_refused(void)
            "FNOMIN");
     refuse(SI, MODEL(", model: brush"), "only mf52 and mf61");
     refuse(SI "PDX1 = 0\n", MODEL(""), "PDX1 = 0, must not be 0");
+    refuse_bytes(binary, sizeof binary - 1, MODEL(""), "has a zero byte, must be text");
 }
 
 int main(void)

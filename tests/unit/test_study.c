@@ -312,6 +312,8 @@ static const struct {
     {"study: {parameters: {H: [1]}, "
      "measures: {a: 1}}",
      "no parameter `H`, did you mean `h`?"},
+    {"study: {parameters: {h: [1]}, measures: {a: {at: block.position.z, event: touch}}}",
+     "event: no event is named `touch`; list it under `events`"},
     {"study: {parameters: {h: []}, measures: {a: 1}}", "is empty, must have at least one value"},
     {"study: {parameters: {h: 3}, measures: {a: 1}}", "must be {from: 1, to: 2}"},
     {"study: {parameters: {h: normal(2}, measures: {a: 1}}", "must be normal(mean, deviation)"},
