@@ -149,6 +149,31 @@ static void a_box_rests_in_a_corner_of_three_faces(void)
     scene_end(&s);
 }
 
+/* A ball lies in a valley between two faces that look nearly the same way, and in a pit of four:
+ * what the contacts do is its weight. */
+static void a_ball_rests_on_faces_that_look_one_way(void)
+{
+    static const double points[] = {-1, -1, 0.3, 1, -1, 0.3, 1, 1, 0.3, -1, 1, 0.3, 0, 0, 0};
+    static const uint32_t pit[] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+    for (int skew = 0; skew < 2; ++skew) {
+        scene s = begin(0.4, 0.2);
+        const double r[3] = {0.0, 0.0, 0.1045}, g[3] = {0.6 * skew, -0.4 * skew, -G};
+        double force[3], torque[3], v[3];
+        CHECK(se3d_system_set_gravity(s.system, g) == SE3D_OK);
+        scene_mesh_on(&s, scene_ground(&s), points, 5, pit, 4);
+        se3d_body ball = scene_ball(&s, 0.1, 2.0, r, scene_zero);
+        run(&s, SE3D_METHOD_CONVEX, 2e-3, 3.0);
+        CHECK(se3d_system_count_contacts(s.system) == 4);
+        CHECK(se3d_body_get_contact_wrench(s.system, ball, force, torque) == SE3D_OK);
+        CHECK(se3d_body_get_velocity(s.system, ball, v) == SE3D_OK);
+        for (int a = 0; a < 3; ++a) {
+            CHECK_NEAR(force[a], -2.0 * g[a], 1e-5);
+            CHECK_NEAR(v[a], 0.0, 1e-7);
+        }
+        scene_end(&s);
+    }
+}
+
 /* A body that is a mesh stands on a plane on its four lowest corners. */
 static void a_mesh_stands_on_a_plane(void)
 {
@@ -245,6 +270,7 @@ int main(void)
     RUN(bodies_slide_over_triangles_as_over_a_plane);
     RUN(a_box_rests_on_a_block_of_triangles);
     RUN(a_box_rests_in_a_corner_of_three_faces);
+    RUN(a_ball_rests_on_faces_that_look_one_way);
     RUN(a_mesh_stands_on_a_plane);
     RUN(a_round_mesh_stands_on_its_whole_rim);
     RUN(a_ball_swings_in_a_bowl);

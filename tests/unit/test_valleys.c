@@ -25,6 +25,17 @@ static void build(se3di_shape *shape, double slope)
     shape->bound = se3di_shape_bound(shape);
 }
 
+/* What the point on the face that falls to `side` is told apart by. */
+static uint32_t feature_of(const se3di_manifold *manifold, double side)
+{
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        if (side * manifold->points[k].normal[0] > 0.0) {
+            return manifold->points[k].feature;
+        }
+    }
+    return UINT32_MAX;
+}
+
 /* The force of springs of 1 N/m on a ball with its centre at (x, 0, z); returns their number. */
 static uint32_t press(const se3di_shape *mesh, double x, double z, double force[3])
 {
@@ -103,8 +114,31 @@ static void two_faces_carry_twice_where_the_pass_is_out_of_reach(void)
     }
 }
 
+/* Faces that look nearly the same way keep their names as the ball goes from one to the other. */
+static void points_keep_their_features(void)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    const se3di_shape ball = {.kind = SE3DI_SHAPE_SPHERE, .radius = RADIUS, .bound = RADIUS};
+    const se3di_shape_pose at = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    se3di_manifold left = {0}, right = {0};
+    se3di_shape_pose there = at;
+    se3di_shape mesh;
+    build(&mesh, 15.0 * PI / 180.0);
+    there.x[2] = RADIUS;
+    there.x[0] = -1e-4;
+    se3di_narrow_find(&mesh, &at, &ball, &there, &left);
+    there.x[0] = 1e-4;
+    se3di_narrow_find(&mesh, &at, &ball, &there, &right);
+    CHECK(left.count == 2 && right.count == 2);
+    CHECK(feature_of(&left, 1.0) != feature_of(&left, -1.0));
+    CHECK(feature_of(&left, 1.0) == feature_of(&right, 1.0));
+    CHECK(feature_of(&left, -1.0) == feature_of(&right, -1.0));
+    se3di_shape_release(&standard, &mesh);
+}
+
 int main(void)
 {
+    RUN(points_keep_their_features);
     RUN(a_valley_takes_over_without_jumps);
     RUN(two_faces_carry_twice_where_the_pass_is_out_of_reach);
     return check_finish();

@@ -27,8 +27,9 @@ se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double p
                                         const double normal[3], double overlap, uint32_t feature);
 /* As if the other shape came first. */
 void se3di_manifold_mirror(se3di_manifold *manifold);
-/* Points are told apart by their features: change those that several have. */
-void se3di_manifold_separate(se3di_manifold *manifold);
+/* Points are told apart by their features: change those that several have, by their normals in the
+ * frame R of one of the bodies. */
+void se3di_manifold_separate(se3di_manifold *manifold, const double R[9]);
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across);
 
 /* Two convex shapes: the normal from i to j along which the least translation of j (the overlap)

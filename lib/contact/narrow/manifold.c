@@ -12,6 +12,8 @@ void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double ac
     bend->r[1] = across;
 }
 
+#define APART 0x01000000u /* features that shapes give are below */
+
 static uint32_t shallowest(const se3di_manifold *manifold)
 {
     uint32_t least = 0;
@@ -56,12 +58,44 @@ void se3di_manifold_mirror(se3di_manifold *manifold)
     }
 }
 
-void se3di_manifold_separate(se3di_manifold *manifold)
+/* The cell of a direction among some 250: of its other two components over its largest. */
+static uint32_t way_among(const double n[3])
 {
+    const int a = fabs(n[2]) > fmax(fabs(n[0]), fabs(n[1])) ? 2 : fabs(n[0]) > fabs(n[1]) ? 0 : 1;
+    const double size = fabs(n[a]) > 0.0 ? fabs(n[a]) : 1.0;
+    const double x = n[(a + 1) % 3] / size, y = n[(a + 2) % 3] / size;
+    const uint32_t column = (uint32_t)fmin(7.5 * (1.0 + fmax(x, -1.0)), 14.0);
+    const uint32_t row = (uint32_t)fmin(7.5 * (1.0 + fmax(y, -1.0)), 14.0);
+    return 15 * row + column;
+}
+
+/* One of several keeps its feature, the others are told apart by where their normals look in the
+ * frame R: by what stays, as their order in the list does not. */
+static void separate_ways(se3di_manifold *manifold, const double R[9])
+{
+    uint32_t way[SE3DI_MANIFOLD_POINTS], feature[SE3DI_MANIFOLD_POINTS];
+    double n[3];
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        se3di_mul_transposed(R, manifold->points[k].normal, n);
+        way[k] = way_among(n);
+        feature[k] = manifold->points[k].feature;
+    }
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        int is_first = 1;
+        for (uint32_t other = 0; is_first && other < manifold->count; ++other) {
+            is_first = feature[other] != feature[k] || way[other] >= way[k];
+        }
+        manifold->points[k].feature += is_first ? 0u : APART * (1u + way[k]);
+    }
+}
+
+void se3di_manifold_separate(se3di_manifold *manifold, const double R[9])
+{
+    separate_ways(manifold, R);
     for (uint32_t k = 1; k < manifold->count; ++k) {
         for (uint32_t other = 0; other < k; ++other) {
             if (manifold->points[other].feature == manifold->points[k].feature) {
-                manifold->points[k].feature += 0x01000000u;
+                manifold->points[k].feature += APART;
                 other = UINT32_MAX; /* all again */
             }
         }

@@ -637,6 +637,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     meeting m;
     se3di_mesh_find(i, mesh, manifold, &m);
     if (se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
+        se3di_manifold_separate(manifold, mesh->at->R);
         return;
     }
     if (m.has_pieces) {
@@ -653,7 +654,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     if (manifold->count == 0) {
         se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
     }
-    se3di_manifold_separate(manifold);
+    se3di_manifold_separate(manifold, mesh->at->R);
 }
 
 #define WAYS 8 /* directions in the plane in which vertices are chosen */

@@ -10,7 +10,7 @@
 #define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */
 #define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
 #define SE3DI_MESH_WAYS     24
-#define SE3DI_MESH_TOUCHES  8 /* faces that one ball touches */
+#define SE3DI_MESH_TOUCHES  16 /* faces that one ball touches */
 
 /* All in the frame of the mesh. */
 typedef struct se3di_mesh_face {

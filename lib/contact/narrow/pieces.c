@@ -120,7 +120,7 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
     if (whole->shape->piece_count > 0) {
         se3di_narrow_judge(cut, whole, manifold);
     }
-    se3di_manifold_separate(manifold);
+    se3di_manifold_separate(manifold, cut->at->R);
     if (turned) {
         se3di_manifold_mirror(manifold);
     }

@@ -755,5 +755,5 @@ void se3di_narrow_surfaces(const se3di_solid *i, const se3di_solid *j, se3di_man
     const size_t second = both[0].count < half ? all - both[0].count : half;
     choose(&both[0], both[1].count < half ? all - both[1].count : half, manifold);
     choose(&both[1], second, manifold);
-    se3di_manifold_separate(manifold);
+    se3di_manifold_separate(manifold, i->at->R);
 }
