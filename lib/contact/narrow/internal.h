@@ -22,7 +22,8 @@ static inline int se3di_solid_is_line(const se3di_solid *solid)
            !se3di_shape_is(solid->shape, SE3DI_SHAPE_IS_BALL);
 }
 
-/* Append a point; if the manifold is full the shallowest gives way. */
+/* Append a point; if the manifold is full, one of the two that are nearest to each other gives way,
+ * this one perhaps. */
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature);
 /* As if the other shape came first. */

@@ -14,26 +14,52 @@ void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double ac
 
 #define APART 0x01000000u /* features that shapes give are below */
 
-static uint32_t shallowest(const se3di_manifold *manifold)
+/* How far two points are apart; another normal counts as much as the extent of all. */
+static double gap_between(const se3di_contact_point *a, const se3di_contact_point *b, double extent)
 {
-    uint32_t least = 0;
-    for (uint32_t k = 1; k < manifold->count; ++k) {
-        least = manifold->points[k].overlap < manifold->points[least].overlap ? k : least;
+    double d[3], n[3];
+    se3di_sub(a->point, b->point, d);
+    se3di_sub(a->normal, b->normal, n);
+    return se3di_dot(d, d) + extent * se3di_dot(n, n);
+}
+
+/* Of two, one that is far less deep, or else the same of them whatever their depths are: a choice
+ * by depth would be another after every step, as what is chosen is pushed out. */
+static uint32_t loser_of(const se3di_manifold *manifold, uint32_t a, uint32_t b)
+{
+    const se3di_contact_point *p = &manifold->points[a], *q = &manifold->points[b];
+    if (p->overlap < 0.5 * q->overlap || q->overlap < 0.5 * p->overlap) {
+        return p->overlap < q->overlap ? a : b;
     }
-    return least;
+    return p->feature > q->feature ? a : b;
+}
+
+/* With one too many: which of them the others stand for best. */
+static uint32_t find_spare(const se3di_manifold *manifold)
+{
+    uint32_t pair[2] = {0, 1};
+    double extent = 0.0, least = HUGE_VAL;
+    for (uint32_t k = 1; k <= SE3DI_MANIFOLD_POINTS; ++k) {
+        extent = fmax(extent, gap_between(&manifold->points[0], &manifold->points[k], 0.0));
+    }
+    for (uint32_t a = 0; a < SE3DI_MANIFOLD_POINTS; ++a) {
+        for (uint32_t b = a + 1; b <= SE3DI_MANIFOLD_POINTS; ++b) {
+            const double gap = gap_between(&manifold->points[a], &manifold->points[b], extent);
+            if (gap < least) {
+                least = gap;
+                pair[0] = a;
+                pair[1] = b;
+            }
+        }
+    }
+    return loser_of(manifold, pair[0], pair[1]);
 }
 
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature)
 {
     static const se3di_bend flat = {{0.0, 0.0, 0.0}, {HUGE_VAL, HUGE_VAL}};
-    uint32_t at = manifold->count;
-    if (at < SE3DI_MANIFOLD_POINTS) {
-        ++manifold->count;
-    } else {
-        at = shallowest(manifold);
-    }
-    se3di_contact_point *p = &manifold->points[at];
+    se3di_contact_point *p = &manifold->points[manifold->count];
     se3di_copy(point, p->point);
     se3di_copy(normal, p->normal);
     p->overlap = overlap;
@@ -43,7 +69,15 @@ se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double p
     p->bend_i = p->bend_j = flat;
     se3di_perpendicular(normal, p->bend_i.u);
     se3di_copy(p->bend_i.u, p->bend_j.u);
-    return p;
+    if (manifold->count < SE3DI_MANIFOLD_POINTS) {
+        ++manifold->count;
+        return p;
+    }
+    const uint32_t spare = find_spare(manifold);
+    if (spare < SE3DI_MANIFOLD_POINTS) {
+        manifold->points[spare] = *p;
+    }
+    return &manifold->points[spare];
 }
 
 void se3di_manifold_mirror(se3di_manifold *manifold)

@@ -24,7 +24,7 @@ typedef struct se3di_contact_point {
 typedef struct se3di_manifold {
     uint32_t count;
     uint32_t reserved;
-    se3di_contact_point points[SE3DI_MANIFOLD_POINTS];
+    se3di_contact_point points[SE3DI_MANIFOLD_POINTS + 1]; /* the last: one too many */
 } se3di_manifold;
 
 /* Whether there is contact between two shapes of these kinds; not between two planes, or two
