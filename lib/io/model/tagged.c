@@ -31,13 +31,11 @@ size_t se3di_tagged_find(const se3di_tagged *particles, se3di_tagged_kind kind, 
     if (!particles) {
         return SIZE_MAX;
     }
-    const size_t counts[] = {[SE3DI_TAGGED_SET] = particles->set_count,
-                             [SE3DI_TAGGED_SINK] = particles->sink_count,
-                             [SE3DI_TAGGED_REGION] = particles->region_count,
-                             [SE3DI_TAGGED_FLOW] = particles->flow_count,
-                             [SE3DI_TAGGED_SERVO] = particles->servo_count,
-                             [SE3DI_TAGGED_BOND] = particles->bond_count,
-                             [SE3DI_TAGGED_CLUMP] = particles->clump_count};
+    const size_t counts[] = {
+#define SE3DI_TAGGED_COUNT(NAME, number, member) [number] = particles->member##_count,
+        SE3DI_TAGGED_LIST(SE3DI_TAGGED_COUNT)
+#undef SE3DI_TAGGED_COUNT
+    };
     for (size_t k = 0; k < counts[kind]; ++k) {
         const char *own = get_name(particles, kind, k);
         if (own && strcmp(own, name) == 0) {

@@ -41,15 +41,21 @@ typedef struct se3di_tagged {
     double period[3];                        /* of the axes; 0: none */
 } se3di_tagged;
 
-/* What has names. Those before clumps are asked for as channels: no two of them share a name. */
+/* X(NAME, number, member): what has names, whose number is member_count. Those before clumps are
+ * asked for as channels: no two of them share a name. */
+#define SE3DI_TAGGED_LIST(X)                                                                       \
+    X(SET, 0, set)                                                                                 \
+    X(SINK, 1, sink)                                                                               \
+    X(REGION, 2, region)                                                                           \
+    X(FLOW, 3, flow)                                                                               \
+    X(SERVO, 4, servo)                                                                             \
+    X(BOND, 5, bond)                                                                               \
+    X(CLUMP, 6, clump)
+
 typedef enum se3di_tagged_kind {
-    SE3DI_TAGGED_SET = 0,
-    SE3DI_TAGGED_SINK = 1,
-    SE3DI_TAGGED_REGION = 2,
-    SE3DI_TAGGED_FLOW = 3,
-    SE3DI_TAGGED_SERVO = 4,
-    SE3DI_TAGGED_BOND = 5,
-    SE3DI_TAGGED_CLUMP = 6
+#define SE3DI_TAGGED(NAME, number, member) SE3DI_TAGGED_##NAME = number,
+    SE3DI_TAGGED_LIST(SE3DI_TAGGED)
+#undef SE3DI_TAGGED
 } se3di_tagged_kind;
 
 /* The index of a name, SIZE_MAX: none. `particles` NULL: there are none. */

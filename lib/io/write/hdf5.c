@@ -82,7 +82,11 @@ static void add_word(se3di_hdf5 *h, se3di_iobytes *b, uint64_t bits, size_t size
 
 size_t se3di_hdf5_size_of(const se3di_hdf5_shape *shape)
 {
-    static const size_t sizes[] = {8, 4, 8, 4, 1};
+    static const size_t sizes[] = {
+#define SE3DI_HDF5_SIZE(NAME, number, bytes) [number] = bytes,
+        SE3DI_HDF5_TYPE_LIST(SE3DI_HDF5_SIZE)
+#undef SE3DI_HDF5_SIZE
+    };
     return shape->type == SE3DI_HDF5_TEXT ? shape->text_size : sizes[shape->type];
 }
 

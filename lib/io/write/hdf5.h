@@ -9,13 +9,19 @@
 #include "io/base/deflate.h"
 #include "io/base/pool.h"
 
+/* X(NAME, number, bytes); TEXT is UTF-8 of a fixed size, filled up with zeros. */
+#define SE3DI_HDF5_TYPE_LIST(X)                                                                    \
+    X(DOUBLE, 0, 8)                                                                                \
+    X(SINGLE, 1, 4)                                                                                \
+    X(INT64, 2, 8)                                                                                 \
+    X(INT32, 3, 4)                                                                                 \
+    X(UINT8, 4, 1)                                                                                 \
+    X(TEXT, 5, 0)
+
 typedef enum se3di_hdf5_type {
-    SE3DI_HDF5_DOUBLE = 0,
-    SE3DI_HDF5_SINGLE = 1,
-    SE3DI_HDF5_INT64 = 2,
-    SE3DI_HDF5_INT32 = 3,
-    SE3DI_HDF5_UINT8 = 4,
-    SE3DI_HDF5_TEXT = 5 /* UTF-8 of a fixed size, filled up with zeros */
+#define SE3DI_HDF5_TYPE(NAME, number, bytes) SE3DI_HDF5_##NAME = number,
+    SE3DI_HDF5_TYPE_LIST(SE3DI_HDF5_TYPE)
+#undef SE3DI_HDF5_TYPE
 } se3di_hdf5_type;
 
 /* What an array holds; rank 0: one value, without dimensions. */

@@ -113,8 +113,11 @@ static void put_piece(FILE *file, const se3di_vtk_file *f)
 /* `data`: of the arrays, compressed; NULL: they are not. */
 static void put_head(FILE *file, const se3di_vtk_file *f, const se3di_iobytes *data)
 {
-    static const char *const names[] = {"PointData", "CellData", "Points",
-                                        "Verts",     "Lines",    "Polys"};
+    static const char *const names[] = {
+#define SE3DI_VTK_ELEMENT(NAME, number, element) [number] = element,
+        SE3DI_VTK_SECTION_LIST(SE3DI_VTK_ELEMENT)
+#undef SE3DI_VTK_ELEMENT
+    };
     const size_t sections = f->grid ? SE3DI_VTK_CELL_DATA + 1 : SE3DI_VTK_SECTION_COUNT;
     size_t offset = 0;
     size_t k = 0;

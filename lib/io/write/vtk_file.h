@@ -11,14 +11,20 @@
 
 #include "se3d/base.h"
 
+/* X(NAME, number, element): in the order of the file; a grid has the first two. */
+#define SE3DI_VTK_SECTION_LIST(X)                                                                  \
+    X(POINT_DATA, 0, "PointData")                                                                  \
+    X(CELL_DATA, 1, "CellData")                                                                    \
+    X(POINTS, 2, "Points")                                                                         \
+    X(VERTS, 3, "Verts")                                                                           \
+    X(LINES, 4, "Lines")                                                                           \
+    X(POLYS, 5, "Polys")
+
 typedef enum se3di_vtk_section {
-    SE3DI_VTK_POINT_DATA = 0,
-    SE3DI_VTK_CELL_DATA = 1,
-    SE3DI_VTK_POINTS = 2,
-    SE3DI_VTK_VERTS = 3,
-    SE3DI_VTK_LINES = 4,
-    SE3DI_VTK_POLYS = 5,
-    SE3DI_VTK_SECTION_COUNT = 6
+#define SE3DI_VTK_SECTION(NAME, number, element) SE3DI_VTK_##NAME = number,
+    SE3DI_VTK_SECTION_LIST(SE3DI_VTK_SECTION)
+#undef SE3DI_VTK_SECTION
+        SE3DI_VTK_SECTION_COUNT = 6
 } se3di_vtk_section;
 
 /* values[k * stride + i], i < width; without values: first + k * step. */
