@@ -487,4 +487,14 @@ static inline double separation_of(const se3di_shape *i, const se3di_shape_pose 
     return d.least > 0.0 && d.least < HUGE_VAL ? d.least + a.radius + b.radius : -HUGE_VAL;
 }
 
+/* Faces of a valley share the overlap of what has no core but a line: the sum of their pushes. */
+static inline double separation_shared(const se3di_shape *solid, const se3di_manifold *m)
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (uint32_t k = 0; se3di_shape_is(solid, SE3DI_SHAPE_IS_SWEPT) && k < m->count; ++k) {
+        se3di_add_scaled(m->points[k].overlap, m->points[k].normal, sum);
+    }
+    return se3di_norm(sum);
+}
+
 #endif

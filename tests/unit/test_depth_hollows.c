@@ -166,16 +166,6 @@ static void show(const char *what, const compound *i, const se3di_shape_pose *at
     }
 }
 
-/* Faces of a valley share the overlap of what has no core but a line: the sum of their pushes. */
-static double shared_depth(const se3di_shape *solid, const se3di_manifold *m)
-{
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (uint32_t k = 0; se3di_shape_is(solid, SE3DI_SHAPE_IS_SWEPT) && k < m->count; ++k) {
-        se3di_add_scaled(m->points[k].overlap, m->points[k].normal, sum);
-    }
-    return se3di_norm(sum);
-}
-
 static void check_pose(const compound *i, se3di_shape_pose *at, const compound *j,
                        const se3di_shape_pose *of, const double way[3], double deeper, tally *t)
 {
@@ -202,7 +192,7 @@ static void check_pose(const compound *i, se3di_shape_pose *at, const compound *
     ++t->counted;
     t->missed += m.count == 0;
     t->deeper += most > deeper + SAME;
-    most = fmax(most, shared_depth(&i->shape, &m));
+    most = fmax(most, separation_shared(&i->shape, &m));
     t->less += m.count > 0 && most < least - SAME;
     t->most = fmax(t->most, most - deeper);
     if (m.count == 0 || most > deeper + SAME || most < least - SAME) {

@@ -263,15 +263,13 @@ static void check_piece(const pose_pair *p, const pieces *all, int piece, const 
         return;
     }
     int found = 0, deeper = 0, less = 0;
-    double sum[3] = {0.0, 0.0, 0.0}; /* faces of a valley share what has no core but a line */
     for (uint32_t k = 0; k < m->count; ++k) {
-        se3di_add_scaled(m->points[k].overlap, m->points[k].normal, sum);
         se3di_sub(m->points[k].normal, n, turn);
         found |= se3di_norm(turn) < SAME && fabs(m->points[k].overlap - wanted) < SAME;
         less |= m->points[k].overlap < wanted - SAME && comes_off(p, &m->points[k]);
         deeper |= all->count == 1 && m->points[k].overlap > wanted + SAME;
     }
-    found |= se3di_shape_is(p->solid, SE3DI_SHAPE_IS_SWEPT) && se3di_norm(sum) > wanted - SAME;
+    found |= separation_shared(p->solid, m) > wanted - SAME;
     ++t->counted;
     t->several += all->count > 1;
     t->less += !found && less;

@@ -631,28 +631,33 @@ void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifo
     }
 }
 
-void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+/* By its rims, corners and edges a solid other than a ball is held; else what is left counts. */
+static void find_rest(meeting *m)
 {
-    const se3di_shape *s = i->shape;
-    meeting m;
-    se3di_mesh_find(i, mesh, manifold, &m);
-    if (se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
-        se3di_manifold_separate(manifold, mesh->at->R);
-        return;
-    }
-    if (m.has_pieces) {
-        se3di_narrow_judge(i, mesh, manifold);
+    const se3di_shape *mesh = m->mesh->shape;
+    const double bound = m->solid->shape->bound;
+    if (m->has_pieces) {
+        se3di_narrow_judge(m->solid, m->mesh, m->manifold);
     } else {
-        se3di_mesh_add_ways(&m);
+        se3di_mesh_add_ways(m);
     }
-    if (manifold->count == 0) {
-        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_rest, &m);
-        if (manifold->count > 0 && !m.has_pieces) {
-            se3di_mesh_add_ways(&m); /* off what is about it */
+    if (m->manifold->count == 0) {
+        se3di_mesh_visit(mesh, m->origin, bound, meet_rest, m);
+        if (m->manifold->count > 0 && !m->has_pieces) {
+            se3di_mesh_add_ways(m); /* off what is about it */
         }
     }
-    if (manifold->count == 0) {
-        se3di_mesh_visit(mesh->shape, m.origin, s->bound, meet_through, &m);
+    if (m->manifold->count == 0) {
+        se3di_mesh_visit(mesh, m->origin, bound, meet_through, m);
+    }
+}
+
+void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+{
+    meeting m;
+    se3di_mesh_find(i, mesh, manifold, &m);
+    if (!se3di_shape_is(i->shape, SE3DI_SHAPE_IS_BALL)) {
+        find_rest(&m);
     }
     se3di_manifold_separate(manifold, mesh->at->R);
 }
