@@ -263,15 +263,19 @@ static void set_middle(se3di_bdf *m)
 /* *error is raised to what contacts would forget of the step, whose end the frames are at. */
 static se3d_status review_contacts(se3di_bdf *m, double *error)
 {
-    const double tolerance = SE3DI_MEMORY_PART * m->integration->settings.tolerance;
+    const se3di_memory_step step = {.t = m->t,
+                                    .h = m->h,
+                                    .tolerance =
+                                        SE3DI_MEMORY_PART * m->integration->settings.tolerance,
+                                    .begin = m->points,
+                                    .scale = &m->past->scale};
     double of_contacts = 0.0;
     if (m->assembly->model->contacts.pair_count == 0) {
         return SE3D_OK;
     }
     se3di_equations_save(m->equations);
     set_middle(m);
-    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t - 0.5 * m->h, m->t, m->h, tolerance,
-                                           &m->past->scale, &of_contacts));
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, &step, m->t - 0.5 * m->h, &of_contacts));
     *error = se3di_larger(*error, of_contacts);
     m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
     return SE3D_OK;

@@ -179,6 +179,7 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
     if (model->contacts.pair_count == 0 || !isfinite(m->tolerance)) {
         return SE3D_OK;
     }
+    show_begin(m, m->bodies[0]);
     m->motion->keep(m->equations, end);
     se3di_equations_save(m->equations);
     for (size_t k = 0; k < m->count; ++k) {
@@ -186,9 +187,13 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
     }
     m->motion->set(m->equations, m->sum3);
     const se3di_state_scale scale = se3di_explicit_measure_by(m);
+    const se3di_memory_step step = {.t = m->past->at.time + h,
+                                    .h = h,
+                                    .tolerance = m->tolerance,
+                                    .begin = m->bodies[0],
+                                    .scale = &scale};
     const se3d_status status =
-        se3di_memory_review_contacts(m->equations, m->past->at.time + 0.5 * h, m->past->at.time + h,
-                                     h, m->tolerance, &scale, &of_contacts);
+        se3di_memory_review_contacts(m->equations, &step, m->past->at.time + 0.5 * h, &of_contacts);
     m->motion->stand(m->equations, end);
     *error = se3di_larger(*error, of_contacts);
     m->step.fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;

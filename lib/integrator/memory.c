@@ -255,6 +255,8 @@ int se3di_memory_meets_stop(const se3di_model *model)
 typedef struct springs {
     double sign, h;
     double *wrench; /* [bodies * 6] */
+    const se3di_assembly *assembly;
+    const double *begin; /* the state that the step begins with */
 } springs;
 
 /* What a spring is off by makes vibrations of its own frequency: it acts for their time at most. */
@@ -275,13 +277,40 @@ static se3d_status add_spring(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
-/* A contact at its cap whose friction drives has turned within the step, and its spring should have
- * begun to unload there: after v/2 (time since then) of the way, at most v h/2. */
+/* The velocity of a body at the place of a contact where the step began. */
+static void velocity_before(const springs *s, const se3di_encounter *e, int k, double v[3])
+{
+    const int32_t at = s->assembly->free_index[e->body[k]];
+    double w[3];
+    memset(v, 0, 3 * sizeof *v);
+    if (at >= 0) {
+        const double *rates = s->begin + SE3DI_STATE_SIZE * (size_t)at + 7;
+        se3di_mul(s->assembly->model->frames[e->body[k]].A, rates + 3, w);
+        se3di_cross(w, e->arm[k], v);
+        se3di_add(v, rates, v);
+    }
+}
+
+/* The contact's friction dissipated where the step began. */
+static int dissipated(const springs *s, const se3di_encounter *e)
+{
+    double v[2][3];
+    for (int k = 0; k < 2; ++k) {
+        velocity_before(s, e, k, v[k]);
+    }
+    se3di_sub(v[1], v[0], v[1]);
+    se3di_add(v[1], e->drift, v[1]);
+    return se3di_dot(e->pull, v[1]) < 0.0;
+}
+
+/* A contact at its cap whose friction has begun to drive has turned within the step, and its spring
+ * should have begun to unload there: after v/2 (time since then) of the way, at most v h/2. One
+ * that drove already is at a cap that falls faster than the spring unloads. */
 static se3d_status add_overshoot(void *ctx, const se3di_encounter *e)
 {
     const springs *s = ctx;
     const double pull = se3di_norm(e->pull);
-    if (!e->memory || !(e->give < 1.0) || !(se3di_dot(e->pull, e->vt) > 0.0)) {
+    if (!e->memory || !(e->give < 1.0) || !(se3di_dot(e->pull, e->vt) > 0.0) || !dissipated(s, e)) {
         return SE3D_OK;
     }
     const double way = 0.5 * s->h * se3di_norm(e->vt);
@@ -315,16 +344,15 @@ static double effect_of(const se3di_model *model, const double *wrench, double h
     return worst;
 }
 
-se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double t_end,
-                                         double h, double tolerance, const se3di_state_scale *scale,
-                                         double *error)
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, const se3di_memory_step *step,
+                                         double within, double *error)
 {
     se3di_assembly *assembly = &equations->assembly;
     se3di_model *model = assembly->model;
     double *wrench = assembly->wrench;
     const size_t count = 6 * model->body_slots.count;
     se3di_error ignored = {0};
-    const se3d_status status = se3di_contacts_show(model, t, &ignored);
+    const se3d_status status = se3di_contacts_show(model, within, &ignored);
     se3di_equations_restore(equations);
     *error = HUGE_VAL;
     if (status == SE3D_ERR_STEP_SIZE) {
@@ -334,13 +362,13 @@ se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, d
         return se3di_error_set(equations->error, status, "%s", ignored.message);
     }
     memset(wrench, 0, count * sizeof *wrench);
-    springs s = {-1.0, h, wrench};
-    (void)se3di_contacts_visit(model, t_end, add_spring, &s);
+    springs s = {-1.0, step->h, wrench, assembly, step->begin};
+    (void)se3di_contacts_visit(model, step->t, add_spring, &s);
     se3di_contacts_hide(model);
     s.sign = 1.0;
-    (void)se3di_contacts_visit(model, t_end, add_spring, &s);
-    (void)se3di_contacts_visit(model, t_end, add_overshoot, &s);
-    *error = effect_of(model, wrench, h, scale) / tolerance;
+    (void)se3di_contacts_visit(model, step->t, add_spring, &s);
+    (void)se3di_contacts_visit(model, step->t, add_overshoot, &s);
+    *error = effect_of(model, wrench, step->h, step->scale) / step->tolerance;
     return SE3D_OK;
 }
 

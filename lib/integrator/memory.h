@@ -37,14 +37,13 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
  * force has a kink there. */
 int se3di_memory_meets_stop(const se3di_model *model);
 
-/* What contacts remember of the end of a step of h is made of the beginning and the end alone: what
- * slips and sticks again on the way, or begins to touch, is forgotten. The frames are those at t,
- * half way; the ones of the end, at t_end, in equations->saved, come back. *error is what the
- * forces at the end would be otherwise, if contacts had been accepted at t, too, times h, relative
- * to the scales and the tolerance. */
-se3d_status se3di_memory_review_contacts(se3di_equations *equations, double t, double t_end,
-                                         double h, double tolerance, const se3di_state_scale *scale,
-                                         double *error);
+/* What contacts remember of the end of a step is made of the beginning and the end alone: what
+ * slips and sticks again on the way, or begins to touch, is forgotten. The frames are those at
+ * `within`, half way; the ones of the end, in equations->saved, come back. *error is what the
+ * forces at the end would be otherwise, if contacts had been accepted at `within`, too, times h,
+ * relative to the scales and the tolerance. Of the step: t, h, tolerance, begin, scale. */
+se3d_status se3di_memory_review_contacts(se3di_equations *equations, const se3di_memory_step *step,
+                                         double within, double *error);
 /* Of the tolerance of a run, for implicit methods: what one step forgets adds up. */
 #define SE3DI_MEMORY_PART 0.03
 /* The part of a step with such an error, above 1, that is tried next: it falls with the square. */

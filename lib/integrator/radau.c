@@ -257,11 +257,15 @@ static se3d_status review_contacts(se3di_radau *m, double tolerance, double *err
     if (m->assembly->model->contacts.pair_count == 0 || !(m->inner > 0.0)) {
         return SE3D_OK;
     }
+    const se3di_memory_step step = {.t = m->t + m->h,
+                                    .h = m->h,
+                                    .tolerance = SE3DI_MEMORY_PART * tolerance,
+                                    .begin = m->y0,
+                                    .scale = &m->scale};
     se3di_equations_save(m->equations);
     se3di_state_set(m->assembly, m->Y + m->count);
-    SE3DI_TRY(se3di_memory_review_contacts(m->equations, m->t + se3di_radau_c[1] * m->h,
-                                           m->t + m->h, m->h, SE3DI_MEMORY_PART * tolerance,
-                                           &m->scale, &of_contacts));
+    SE3DI_TRY(se3di_memory_review_contacts(m->equations, &step, m->t + se3di_radau_c[1] * m->h,
+                                           &of_contacts));
     *error = se3di_larger(*error, of_contacts);
     m->fraction = of_contacts > 1.0 ? se3di_memory_get_fraction(of_contacts) : 0.0;
     return SE3D_OK;

@@ -312,14 +312,21 @@ void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12])
     }
 }
 
-/* The stretch that is kept if the force was capped: shortened as the force is, or to what the
- * cap holds where the damper pulls along with the spring. It so never pulls along the slip. */
+/* The stretch that is kept if the force was capped: if the damper pulls along with the spring, what
+ * the cap holds of it, which so never pulls along the slip; if it pulls against the spring, that
+ * with which both together are at the cap. Shortened by the factor of the force, it would be too
+ * short by a part of what a step exceeds, another one in two halves of the step. */
 static void settled(double k, double cap, double factor, const double pull[3], const double x[3],
                     double out[3])
 {
+    const double held = k * se3di_norm(x);
     se3di_copy(x, out);
-    if (factor < 1.0) {
-        double held = fmin(k * se3di_norm(x), se3di_norm(pull));
+    if (!(factor < 1.0)) {
+        return;
+    }
+    if (held > se3di_norm(pull)) {
+        se3di_add_scaled((1.0 - factor) / k, pull, out);
+    } else {
         se3di_scale(held > cap ? cap / held : 1.0, out, out);
     }
 }
