@@ -35,12 +35,16 @@ se3d_status se3di_force_potential(const se3di_model *model, const se3di_force *f
                                   double *potential)
 {
     const se3di_force_class *type = classes[force->type];
+    se3d_status status = SE3DI_FORCE_LEFT;
     if (type->find_potential && !force->released) {
-        return type->find_potential(model, force, t, potential);
+        status = type->find_potential(model, force, t, potential);
+    }
+    if (status != SE3DI_FORCE_LEFT) {
+        return status;
     }
     se3di_effect effect;
     effect.wants_derivative = 0;
-    const se3d_status status = se3di_force_eval(model, force, t, &effect);
+    status = se3di_force_eval(model, force, t, &effect);
     *potential = effect.potential;
     return status;
 }
@@ -50,6 +54,7 @@ int se3di_force_is_number(const se3di_force *force)
     return force->type == SE3DI_FORCE_EFFORT && force->function[0] < 0;
 }
 
+/* Wrenches begin with it. */
 static se3d_status sum_gravity(const se3di_model *model, double t, se3di_force_sums *sums)
 {
     double g[3], g_t[3];
@@ -58,8 +63,10 @@ static se3d_status sum_gravity(const se3di_model *model, double t, se3di_force_s
     SE3DI_TRY(se3di_gravity_eval(model, t, g, g_t));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
         const se3di_body *body = &model->bodies[b];
+        double *wrench = sums->wrench + 6 * b;
+        memset(wrench, 0, 6 * sizeof *wrench);
         if (body->state == 0) {
-            se3di_add_scaled(body->mass, g, sums->wrench + 6 * b);
+            se3di_add_scaled(body->mass, g, wrench);
         }
         if (changes && !body->fixed && body->state == 0) {
             sums->power[1] -= body->mass * se3di_dot(g_t, model->frames[b].r);
@@ -110,7 +117,6 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
 
 se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums)
 {
-    memset(sums->wrench, 0, 6 * model->body_slots.count * sizeof *sums->wrench);
     sums->power[0] = sums->power[1] = 0.0;
     sums->failed = (uint32_t)model->force_slots.count;
     SE3DI_TRY(sum_gravity(model, t, sums));

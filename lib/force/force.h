@@ -41,13 +41,15 @@ enum {
     SE3DI_FORCE_HOLDS = 4       /* may hold a body in space as a joint does */
 };
 
+#define SE3DI_FORCE_LEFT ((se3d_status)1)
+
 /* A type of elements: one in each file of the folder. */
 typedef struct se3di_force_class {
     const char *name; /* as in the model file */
     /* `effect` comes zeroed but for wants_derivative. @return as se3di_force_eval */
     se3d_status (*eval)(const se3di_model *model, const se3di_force *force, double t,
                         se3di_effect *effect);
-    /* The potential alone, the same bits; NULL: that of `eval`. */
+    /* The potential alone, the same bits; NULL, or where it returns LEFT: that of `eval`. */
     se3d_status (*find_potential)(const se3di_model *model, const se3di_force *force, double t,
                                   double *potential);
     /* The state of the model is accepted; NULL: the type has no memory. */

@@ -62,6 +62,13 @@ void se3di_length_term(const se3di_force *force, se3di_term *term)
     se3di_copy(force->s_j, term->s_j);
 }
 
+/* The direction from one point to the other is lost. */
+static int coincide(const se3di_model *model, const se3di_force *force, double l)
+{
+    const double size = se3di_norm(model->frames[force->body_i].r) + se3di_norm(force->s_i);
+    return l < 1e-14 * (1.0 + size);
+}
+
 /* l = sqrt(D):  l_q = D_q / (2 l),  l_qq = D_qq / (2 l) - l_q^T l_q / l */
 int se3di_measure_length(const se3di_model *model, const se3di_force *force, int wants_H,
                          se3di_measure *measure)
@@ -70,9 +77,8 @@ int se3di_measure_length(const se3di_model *model, const se3di_force *force, int
     se3di_length_term(force, &term);
     se3di_measure_term(model, &term, wants_H, measure);
     double l = sqrt(measure->value);
-    double size = se3di_norm(model->frames[force->body_i].r) + se3di_norm(force->s_i);
     measure->value = l;
-    if (l < 1e-14 * (1.0 + size)) {
+    if (coincide(model, force, l)) {
         memset(measure->g, 0, sizeof measure->g);
         measure->rate = 0.0;
         return 0;
@@ -117,6 +123,19 @@ int se3di_measure_force(const se3di_model *model, const se3di_force *force, int 
     }
     se3di_measure_begin(model, force, &term);
     se3di_measure_term(model, &term, wants_H, measure);
+    return 1;
+}
+
+int se3di_measure_value(const se3di_model *model, const se3di_force *force, double *value)
+{
+    se3di_term term;
+    if (force->coordinate == SE3DI_FORCE_LENGTH) {
+        se3di_length_term(force, &term);
+        *value = sqrt(se3di_term_value(model, &term));
+        return !coincide(model, force, *value);
+    }
+    se3di_measure_begin(model, force, &term);
+    *value = se3di_term_value(model, &term);
     return 1;
 }
 

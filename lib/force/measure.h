@@ -37,6 +37,9 @@ void se3di_measure_gradient(const se3di_model *model, const se3di_force *force,
 int se3di_measure_force(const se3di_model *model, const se3di_force *force, int wants_H,
                         se3di_measure *measure);
 
+/* Its value alone, without which direction it changes in. Returns 0 as above. */
+int se3di_measure_value(const se3di_model *model, const se3di_force *force, double *value);
+
 /* The coordinate of a joint (se3d_joint_coordinate). */
 void se3di_measure_joint(const se3di_model *model, uint32_t joint, int32_t coordinate, int wants_H,
                          se3di_measure *measure);
@@ -61,5 +64,8 @@ void se3di_length_term(const se3di_force *force, se3di_term *term);
  * rest; fills potential and power of the effect too. */
 se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force, double t,
                              const se3di_measure *measure, se3di_effect *effect, se3di_law *law);
+/* The potential where it is that of preload and stiffness alone, as se3di_force_class has it. */
+se3d_status se3di_spring_find_potential(const se3di_model *model, const se3di_force *force,
+                                        double t, double *potential);
 
 #endif

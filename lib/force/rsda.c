@@ -21,5 +21,6 @@ static se3d_status eval_rsda(const se3di_model *model, const se3di_force *force,
 const se3di_force_class se3di_force_class_rsda = {
     .name = "rsda",
     .eval = eval_rsda,
+    .find_potential = se3di_spring_find_potential,
     .traits = SE3DI_FORCE_IS_SCALAR | SE3DI_FORCE_IS_ELASTIC,
 };

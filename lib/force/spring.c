@@ -103,6 +103,11 @@ static se3d_status add_curves(const se3di_model *model, const se3di_force *force
     return SE3D_OK;
 }
 
+static double stiffness_energy(const se3di_force *force, double x)
+{
+    return (force->preload + 0.5 * force->k * x) * x;
+}
+
 se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force, double t,
                              const se3di_measure *measure, se3di_effect *effect, se3di_law *law)
 {
@@ -110,7 +115,7 @@ se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force,
     double rate = measure->rate;
     *law = (se3di_law){
         .n = force->preload + force->k * x + force->c * rate, .n_x = force->k, .n_rate = force->c};
-    effect->potential = (force->preload + 0.5 * force->k * x) * x;
+    effect->potential = stiffness_energy(force, x);
     effect->power[0] = force->c * rate * rate;
     SE3DI_TRY(add_curves(model, force, x, rate, effect, law));
     if (force->function[0] >= 0) {
@@ -126,5 +131,18 @@ se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force,
         law->n_rate += gradient[2];
         effect->power[1] -= jet[0] * rate;
     }
+    return SE3D_OK;
+}
+
+se3d_status se3di_spring_find_potential(const se3di_model *model, const se3di_force *force,
+                                        double t, double *potential)
+{
+    double value;
+    (void)t;
+    if (force->function[0] >= 0 || force->function[3] >= 0 || force->function[4] >= 0 ||
+        !se3di_measure_value(model, force, &value)) {
+        return SE3DI_FORCE_LEFT; /* actuators and curves may fail, coinciding points too */
+    }
+    *potential = stiffness_energy(force, value - force->rest);
     return SE3D_OK;
 }

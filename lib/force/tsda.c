@@ -57,5 +57,6 @@ static se3d_status eval_tsda(const se3di_model *model, const se3di_force *force,
 const se3di_force_class se3di_force_class_tsda = {
     .name = "tsda",
     .eval = eval_tsda,
+    .find_potential = se3di_spring_find_potential,
     .traits = SE3DI_FORCE_IS_SCALAR | SE3DI_FORCE_IS_ELASTIC | SE3DI_FORCE_HOLDS,
 };
