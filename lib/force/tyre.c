@@ -121,7 +121,7 @@ static se3d_status take_height(const se3di_model *model, const se3di_force *forc
                                patch *c)
 {
     const se3di_frame *i = &model->frames[force->body_i], *j = &model->frames[force->body_j];
-    memset(c, 0, sizeof *c);
+    memset(c, 0, offsetof(patch, plane)); /* which is large, and read if there is one */
     se3di_mul(j->A, force->tyre->axis, c->a);
     se3di_mul(j->A, force->s_j, c->s);
     if (force->tyre->surface < 0) {
@@ -640,40 +640,50 @@ static void tell_lag(const se3di_force *force, se3di_tyre_slip *slip,
     values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(aside);
 }
 
-/* Slips of the instant, forces, and slips that lag. */
-static void tell_slip(const se3di_force *force, const patch *c, double values[SE3D_TYRE_VALUES])
+/* Forces, and slips of the instant; `slip` is left with those that the forces follow. */
+static void tell_slip(const se3di_force *force, const patch *c, int wants_forces,
+                      se3di_tyre_slip *slip, double values[SE3D_TYRE_VALUES])
 {
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
-    se3di_tyre_slip slip;
     if (c->touches) {
-        take_slip(force, c, 0, &slip);
+        take_slip(force, c, 0, slip);
     } else {
-        memset(&slip, 0, sizeof slip);
+        memset(slip, 0, sizeof *slip);
     }
-    values[SE3D_TYRE_SLIP_RATIO] = slip.ratio.v;
-    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip.tangent.v);
-    values[SE3D_TYRE_ROLLING_RADIUS] = slip.rolling_radius.v;
-    values[SE3D_TYRE_TURN_SLIP] = c->touches ? c->input[SE3DI_PATCH_TURN] / slip.reference.v : 0.0;
-    if (c->touches) {
-        find_values(force, c, &slip, values + SE3D_TYRE_FX);
+    values[SE3D_TYRE_SLIP_RATIO] = slip->ratio.v;
+    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip->tangent.v);
+    if (c->touches && wants_forces) {
+        find_values(force, c, slip, values + SE3D_TYRE_FX);
     } else {
         memset(values + SE3D_TYRE_FX, 0, 6 * sizeof *values);
-        take_lag(force, c, 0, &slip);
+        take_lag(force, c, 0, slip);
     }
-    tell_lag(force, &slip, values);
 }
 
-se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force,
-                            double values[SE3D_TYRE_VALUES])
+/* What comes behind the slips. */
+static void tell_place(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
+                       double values[SE3D_TYRE_VALUES])
+{
+    values[SE3D_TYRE_ROLLING_RADIUS] = slip->rolling_radius.v;
+    values[SE3D_TYRE_TURN_SLIP] = c->touches ? c->input[SE3DI_PATCH_TURN] / slip->reference.v : 0.0;
+    tell_lag(force, slip, values);
+    values[SE3D_TYRE_INCLINATION] = se3di_asin(fmax(-1.0, fmin(1.0, c->input[SE3DI_PATCH_SINE])));
+    values[SE3D_TYRE_DEFLECTION] = c->input[SE3DI_PATCH_DEFLECTION];
+    values[SE3D_TYRE_LOADED_RADIUS] = c->length;
+    values[SE3D_TYRE_SPEED] = c->input[SE3DI_PATCH_SPEED];
+}
+
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, size_t first,
+                            size_t end, double values[SE3D_TYRE_VALUES])
 {
     patch c;
+    se3di_tyre_slip slip;
     SE3DI_TRY(take_patch(model, force, model->time, &c));
-    tell_slip(force, &c, values);
-    values[SE3D_TYRE_INCLINATION] = se3di_asin(fmax(-1.0, fmin(1.0, c.input[SE3DI_PATCH_SINE])));
-    values[SE3D_TYRE_DEFLECTION] = c.input[SE3DI_PATCH_DEFLECTION];
-    values[SE3D_TYRE_LOADED_RADIUS] = c.length;
-    values[SE3D_TYRE_SPEED] = c.input[SE3DI_PATCH_SPEED];
-    se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
+    tell_slip(force, &c, first <= SE3D_TYRE_MZ, &slip, values);
+    if (end > SE3D_TYRE_INCLINATION) {
+        tell_place(force, &c, &slip, values);
+        se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
+    }
     return SE3D_OK;
 }
 

@@ -290,7 +290,8 @@ se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, si
     }
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    SE3DI_TRY(se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, all)));
+    SE3DI_TRY(
+        se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, first, first + count, all)));
     memcpy(values, all + first, count * sizeof *values);
     return SE3D_OK;
 }

@@ -6,8 +6,21 @@
 #include "golden/tyre_reference.h"
 
 #include <math.h>
+#include <string.h>
 
 #define G 9.81
+
+/* Some of the values are the same bits as among all of them. */
+static void check_ranges(const se3d_system *system, se3d_force tyre, const double *all)
+{
+    for (size_t first = 0; first < SE3D_TYRE_VALUES; ++first) {
+        for (size_t count = 1; count <= SE3D_TYRE_VALUES - first; ++count) {
+            double some[SE3D_TYRE_VALUES];
+            CHECK(!se3d_tyre_get_values(system, tyre, first, count, some));
+            CHECK(memcmp(some, all + first, count * sizeof *some) == 0);
+        }
+    }
+}
 
 /* A wheel in the state {h, g, u, v, W} over the road z = 0, turning about its normal. */
 static void get_forces(const se3d_tyre_def *given, const double state[5], double turning,
@@ -35,6 +48,7 @@ static void get_forces(const se3d_tyre_def *given, const double state[5], double
     def.axis[1] = side;
     CHECK(!se3d_force_create_tyre(system, &def, &tyre));
     CHECK(!se3d_tyre_get_values(system, tyre, 0, SE3D_TYRE_VALUES, values));
+    check_ranges(system, tyre, values);
     se3d_system_destroy(system);
 }
 

@@ -84,15 +84,15 @@
     X(TYRE_MZ, 1, TYRE, 5, MOTION, 2, 2, 1, 0)                                                     \
     X(TYRE_SLIP_RATIO, 1, TYRE, 6, MOTION, 0, 0, 0, 0)                                             \
     X(TYRE_SLIP_ANGLE, 1, TYRE, 7, MOTION, 0, 0, 0, 0)                                             \
-    X(TYRE_INCLINATION, 1, TYRE, 8, MOTION, 0, 0, 0, 0)                                            \
-    X(TYRE_DEFLECTION, 1, TYRE, 9, MOTION, 1, 0, 0, 0)                                             \
-    X(TYRE_LOADED_RADIUS, 1, TYRE, 10, MOTION, 1, 0, 0, 0)                                         \
-    X(TYRE_ROLLING_RADIUS, 1, TYRE, 11, MOTION, 1, 0, 0, 0)                                        \
-    X(TYRE_SPEED, 1, TYRE, 12, MOTION, 1, 1, 0, 0)                                                 \
-    X(TYRE_CONTACT, 3, TYRE, 13, MOTION, 1, 0, 0, 0)                                               \
-    X(TYRE_LAGGED_RATIO, 1, TYRE, 16, MOTION, 0, 0, 0, 0)                                          \
-    X(TYRE_LAGGED_ANGLE, 1, TYRE, 17, MOTION, 0, 0, 0, 0)                                          \
-    X(TYRE_TURN_SLIP, 1, TYRE, 18, MOTION, -1, 0, 0, 0)                                            \
+    X(TYRE_INCLINATION, 1, TYRE_PLACE, 0, MOTION, 0, 0, 0, 0)                                      \
+    X(TYRE_DEFLECTION, 1, TYRE_PLACE, 1, MOTION, 1, 0, 0, 0)                                       \
+    X(TYRE_LOADED_RADIUS, 1, TYRE_PLACE, 2, MOTION, 1, 0, 0, 0)                                    \
+    X(TYRE_ROLLING_RADIUS, 1, TYRE_PLACE, 3, MOTION, 1, 0, 0, 0)                                   \
+    X(TYRE_SPEED, 1, TYRE_PLACE, 4, MOTION, 1, 1, 0, 0)                                            \
+    X(TYRE_CONTACT, 3, TYRE_PLACE, 5, MOTION, 1, 0, 0, 0)                                          \
+    X(TYRE_LAGGED_RATIO, 1, TYRE_PLACE, 8, MOTION, 0, 0, 0, 0)                                     \
+    X(TYRE_LAGGED_ANGLE, 1, TYRE_PLACE, 9, MOTION, 0, 0, 0, 0)                                     \
+    X(TYRE_TURN_SLIP, 1, TYRE_PLACE, 10, MOTION, -1, 0, 0, 0)                                      \
     X(ENERGY_KINETIC, 1, ENERGY, 0, MOTION, 2, 2, 1, 0)                                            \
     X(ENERGY_POTENTIAL, 1, ENERGY, 1, MOTION, 2, 2, 1, 0)                                          \
     X(ENERGY_TOTAL, 1, ENERGY, 2, MOTION, 2, 2, 1, 0)                                              \
@@ -201,7 +201,8 @@ typedef enum se3di_question {
     SE3DI_ASK_WHEEL_AXIS,
     SE3DI_ASK_WHEEL_RIDE,
     SE3DI_ASK_WHEEL_LOAD,
-    SE3DI_ASK_TYRE, /* se3d_tyre_value */
+    SE3DI_ASK_TYRE,       /* se3d_tyre_value up to the slips, */
+    SE3DI_ASK_TYRE_PLACE, /* and those from the inclination on */
     SE3DI_ASK_ENERGY,
     SE3DI_ASK_WORK,
     SE3DI_ASK_VIOLATION,

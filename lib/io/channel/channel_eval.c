@@ -146,7 +146,10 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
         return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_WHEEL_LOAD,
                                        SE3D_WHEEL_MEASURES - SE3D_WHEEL_WHEEL_LOAD, numbers);
     case SE3DI_ASK_TYRE:
-        return se3d_tyre_get_values(system, c->force, 0, SE3D_TYRE_VALUES, numbers);
+        return se3d_tyre_get_values(system, c->force, 0, SE3D_TYRE_INCLINATION, numbers);
+    case SE3DI_ASK_TYRE_PLACE:
+        return se3d_tyre_get_values(system, c->force, SE3D_TYRE_INCLINATION,
+                                    SE3D_TYRE_VALUES - SE3D_TYRE_INCLINATION, numbers);
     default:
         return se3d_force_get_state(system, c->force, numbers, numbers + 1, numbers + 2);
     }
@@ -299,6 +302,7 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_FORCE:
     case SE3DI_ASK_ARMATURE_MOTION:
     case SE3DI_ASK_TYRE:
+    case SE3DI_ASK_TYRE_PLACE:
         return c->force.index1;
     case SE3DI_ASK_STATE_VALUE:
     case SE3DI_ASK_STATE_ITSELF:
