@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FIRST = -19, STEP = 16, DIGITS = 17 };
+enum { FIRST = -19, STEP = 16, DIGITS = 17, ROOM = 16 };
 
 /* T_k, the first 64 bits and the others, k = FIRST ... */
 static const uint64_t powers[][2] = {
@@ -210,24 +210,25 @@ static void write_eight(uint32_t x, char *text)
     write_pair(last % 100, text + 6);
 }
 
-/* The digits as a text without the zeros at its end; @return how many */
-static int write_digits(uint64_t q, char text[DIGITS])
+/* The digits as a text, with zeros behind; @return how many there are without those at the end */
+static int write_digits(uint64_t q, char text[DIGITS + ROOM])
 {
     int count = DIGITS;
     const uint64_t first = q / 100000000;
     write_eight((uint32_t)(q % 100000000), text + 9);
     write_eight((uint32_t)(first % 100000000), text + 1);
     text[0] = (char)('0' + first / 100000000);
+    memset(text + DIGITS, '0', ROOM);
     while (count > 1 && text[count - 1] == '0') {
         --count;
     }
     return count;
 }
 
-static char *put(char *to, const char *from, int count)
+/* As many as are needed and some more, in pieces of known size: they are overwritten. */
+static void put(char *to, const char *digits)
 {
-    memcpy(to, from, (size_t)count);
-    return to + count;
+    memcpy(to, digits, ROOM);
 }
 
 static char *put_exponent(char *to, int exponent)
@@ -245,8 +246,7 @@ static char *put_exponent(char *to, int exponent)
 
 size_t se3di_digits_format(double value, char *text)
 {
-    static const char zeros[] = "0000000000000000";
-    char digits[DIGITS], *to = text;
+    char digits[DIGITS + ROOM], *to = text;
     uint64_t q;
     int exponent;
     if (value == 0.0) {
@@ -261,22 +261,24 @@ size_t se3di_digits_format(double value, char *text)
         *to++ = '-';
     }
     if (exponent < -4 || exponent >= DIGITS) {
-        *to++ = digits[0];
-        if (count > 1) {
-            *to++ = '.';
-            to = put(to, digits + 1, count - 1);
-        }
-        to = put_exponent(to, exponent);
+        to[0] = digits[0];
+        to[1] = '.';
+        put(to + 2, digits + 1);
+        to = put_exponent(to + (count > 1 ? count + 1 : 1), exponent);
     } else if (whole <= 0) {
-        to = put(to, "0.", 2);
-        to = put(to, zeros, -whole);
-        to = put(to, digits, count);
+        memcpy(to, "0.000", 5);
+        to += 2 - whole;
+        put(to, digits);
+        to[ROOM] = digits[ROOM];
+        to += count;
     } else {
-        to = put(to, digits, count < whole ? count : whole);
-        to = put(to, zeros, count < whole ? whole - count : 0);
+        put(to, digits);
+        to[ROOM] = digits[ROOM];
+        to += whole;
         if (count > whole) {
-            *to++ = '.';
-            to = put(to, digits + whole, count - whole);
+            *to = '.';
+            put(to + 1, digits + whole);
+            to += 1 + count - whole;
         }
     }
     *to = '\0';

@@ -12,7 +12,7 @@
 bool se3di_digits_of(double value, uint64_t *digits, int *exponent);
 
 /* Write a number as printf("%.17g") does in the C locale. @return its length, 0: it is not
- * finite, or more digits decide. */
+ * finite, or more digits decide. `text`: 36 bytes, of which less may be used. */
 size_t se3di_digits_format(double value, char *text);
 
 #endif

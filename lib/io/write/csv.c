@@ -139,14 +139,20 @@ void se3di_csv_put_name(se3di_csv *csv, const char *name, bool last)
 
 static void write_pending(se3di_csv *csv)
 {
-    char text[SE3DI_NUMBER_SIZE + 1];
+    char room[SE3DI_NUMBER_SIZE + 1];
     if (!csv->has_pending) {
         return;
     }
     for (size_t k = 0; k < csv->columns; ++k) {
+        const bool fits = BUFFER_SIZE - csv->used >= sizeof room;
+        char *text = fits ? csv->buffer + csv->used : room;
         size_t length = se3di_number_format(csv->pending[k], text);
         text[length++] = k + 1 < csv->columns ? ',' : '\n';
-        put(csv, text, length);
+        if (fits) {
+            csv->used += length;
+        } else {
+            put(csv, text, length);
+        }
     }
     csv->has_pending = false;
     ++csv->rows;
