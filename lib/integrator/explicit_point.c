@@ -293,14 +293,18 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
 
 void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2])
 {
-    double parts[2][4];
+    double parts[2][4], states[2];
     const size_t work = m->count - SE3DI_STATE_WORK;
-    const int can =
-        m->motion->measure && m->motion->measure(m->equations, error, m->bodies[0], parts);
-    const se3di_state_scale scale = measure_both_by(m);
+    if (m->motion->measure) {
+        const se3di_state_scale scale = measure_both_by(m);
+        m->motion->measure(m->equations, error, m->bodies[0], parts, states);
+        for (int k = 0; k < 2; ++k) {
+            size[k] = size_of(&scale, parts[k], error[k] + work) + states[k];
+        }
+        return;
+    }
     for (int k = 0; k < 2; ++k) {
-        size[k] =
-            can ? size_of(&scale, parts[k], error[k] + work) : se3di_explicit_size(m, error[k]);
+        size[k] = se3di_explicit_size(m, error[k]);
     }
 }
 

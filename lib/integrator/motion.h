@@ -36,10 +36,10 @@ typedef struct se3di_motion {
     /* What a small change of y, at the state that was set last, is for the bodies: (dr, turn / 2
      * as of p, dv, dw) in the places of state.h; `out` [se3di_state_count] may not be needed. */
     const double *(*spread)(se3di_equations *equations, const double *change, double *out);
-    /* The same of two changes, if it can be told from the largest squares over all bodies alone,
-     * parts [4] each (see se3di_tree_measure); `room` has 2 se3di_state_count. NULL: it cannot. */
-    int (*measure)(const se3di_equations *equations, const double *const change[2], double *room,
-                   double parts[2][4]);
+    /* The same of two changes: the largest squares over all bodies, and changes of states (see
+     * se3di_tree_measure); `room` has 2 se3di_state_count. NULL: one by one. */
+    void (*measure)(const se3di_equations *equations, const double *const change[2], double *room,
+                    double parts[2][4], double states[2]);
     /* The state that was set onto its constraints at t, see se3di_state_project. */
     se3d_status (*project)(se3di_equations *equations, double t, const se3di_state_scale *scale,
                            double accuracy, int is_factored);

@@ -613,16 +613,10 @@ static const double *spread(se3di_equations *equations, const double *change, do
     return out;
 }
 
-/* Carriers of states are measured one by one. */
-static int measure(const se3di_equations *equations, const double *const change[2], double *room,
-                   double parts[2][4])
+static void measure(const se3di_equations *equations, const double *const change[2], double *room,
+                    double parts[2][4], double states[2])
 {
-    const se3di_tree *tree = equations->tree;
-    if (tree->has_states) {
-        return 0;
-    }
-    se3di_tree_measure(tree, change, room, parts);
-    return 1;
+    se3di_tree_measure(equations->tree, change, room, parts, states);
 }
 
 static void show(se3di_equations *equations, const double *y, double *bodies)

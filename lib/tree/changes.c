@@ -3,6 +3,9 @@
  * pair. The same bits as of each alone. */
 #include "tree/recursion.h"
 
+#include "model/state.h"
+
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -102,17 +105,30 @@ static inline void take_squares(const pair motion[6], const double s[3], double 
     *angle = larger(*angle, square(turned));
 }
 
+/* Of the state that a node carries. */
+static pair measure_state(const se3di_tree *tree, const se3di_tree_node *node,
+                          const double *const change[2])
+{
+    const double size = se3di_state_size(tree->model, node->body);
+    const size_t at = tree->q_count + node->v;
+    return (pair){fabs(change[0][at]) / size, fabs(change[1][at]) / size};
+}
+
 void se3di_tree_measure(const se3di_tree *tree, const double *const change[2], double *room,
-                        double parts[2][4])
+                        double parts[2][4], double states[2])
 {
     move *moves = (move *)(void *)room;
-    pair most[4] = {{0.0, 0.0}};
+    pair most[4] = {{0.0, 0.0}}, state = {0.0, 0.0};
     for (uint32_t i = 0; i < tree->count; ++i) {
         const se3di_tree_node *node = &tree->nodes[i];
         const se3di_tree_link *link = &tree->links[i];
         const double *S = tree->S + 6 * (size_t)node->v;
         const move *from = node->parent < 0 ? NULL : &moves[node->parent];
         pair dq[FREEDOMS_MAX];
+        if (node->type == SE3DI_TREE_CARRIER) {
+            state = larger(state, measure_state(tree, node, change));
+            continue;
+        }
         take_displacements(node, tree->q, change, dq);
         carry(S, node->v_count, link->d, dq, from ? from->way : NULL, moves[i].way);
         take_pairs(change, tree->q_count + node->v, node->v_count, dq);
@@ -124,4 +140,6 @@ void se3di_tree_measure(const se3di_tree *tree, const double *const change[2], d
         parts[0][k] = most[k][0];
         parts[1][k] = most[k][1];
     }
+    states[0] = state[0];
+    states[1] = state[1];
 }

@@ -24,9 +24,10 @@ void se3di_tree_mass_matrix(se3di_tree *tree, double *M);
 
 /* The largest squares over all bodies of what two small changes of q and qdot [positions +
  * velocities] are for a body: of the way of its centre of mass, of half the turn, of the changes of
- * its velocities. No node carries a state; `room`: SE3DI_TREE_CHANGES_ROOM numbers for each. */
+ * its velocities; and of states, relative to their sizes, the largest change. `room`:
+ * SE3DI_TREE_CHANGES_ROOM numbers for each node. */
 void se3di_tree_measure(const se3di_tree *tree, const double *const change[2], double *room,
-                        double parts[2][4]);
+                        double parts[2][4], double states[2]);
 
 /* out[v] = what acts along each freedom: S^T of `wrench` [nodes * 6] about P and of the nodes
  * beyond; the forces of joints do no work. */

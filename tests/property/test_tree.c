@@ -638,6 +638,7 @@ static void changes_are_measured_at_the_bodies(void)
         case_of c;
         double of_q[2 * NUMBERS] = {0.0}, of_qdot[2 * NUMBERS] = {0.0}, none[2 * NUMBERS];
         double room[SE3DI_TREE_CHANGES_ROOM * TREE_BODIES_MAX], parts[2][4], squares[2];
+        double states[2];
         begin(&c, seed);
         for (int k = 0; k < 2 * NUMBERS; ++k) {
             none[k] = (double)NAN;
@@ -647,7 +648,8 @@ static void changes_are_measured_at_the_bodies(void)
         se3di_tree_rates(&c.tree, c.q, c.qdot, of_q);
         memcpy(of_qdot + c.tree.q_count, c.qdot, c.tree.v_count * sizeof *c.qdot);
         const double *const both[2] = {of_q, of_qdot}, *const broken[2] = {none, of_q};
-        se3di_tree_measure(&c.tree, both, room, parts);
+        se3di_tree_measure(&c.tree, both, room, parts, states);
+        CHECK(states[0] == 0.0 && states[1] == 0.0);
         CHECK_NEAR(parts[0][0], squares[0], 1e-13 * squares[0]);
         CHECK_NEAR(4.0 * parts[0][1], squares[1], 1e-13 * squares[1]);
         CHECK(parts[0][2] == 0.0 && parts[0][3] == 0.0);
@@ -655,7 +657,7 @@ static void changes_are_measured_at_the_bodies(void)
         CHECK_NEAR(parts[1][2], squares[0], 1e-13 * squares[0]);
         CHECK_NEAR(parts[1][3], squares[1], 1e-13 * squares[1]);
         const double before[2] = {parts[0][0], parts[0][1]};
-        se3di_tree_measure(&c.tree, broken, room, parts);
+        se3di_tree_measure(&c.tree, broken, room, parts, states);
         CHECK(parts[1][0] == before[0] && parts[1][1] == before[1]);
         for (int k = 0; k < 4 && c.tree.v_count > 0; ++k) {
             CHECK(isnan(parts[0][k]));
