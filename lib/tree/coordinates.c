@@ -545,6 +545,8 @@ void se3di_tree_rates(const se3di_tree *tree, const double *q, const double *qdo
         } else if (n->type == SE3DI_TREE_FREE) {
             se3di_copy(from, to);
             se3di_quat_rate(q + n->q + 3, from + 3, to + 3);
+        } else if (n->v_count == 1) { /* most are */
+            to[0] = from[0];
         } else {
             memcpy(to, from, (size_t)n->v_count * sizeof *to);
         }

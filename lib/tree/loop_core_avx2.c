@@ -20,6 +20,16 @@ typedef __m256d quad;
 #define fnma_of(a, b, c)    _mm256_fnmadd_pd(a, b, c)
 #define scalar_fma(a, b, c) __builtin_fma(a, b, c)
 
+static inline void transpose(const quad a[4], quad o[4])
+{
+    const quad low[2] = {_mm256_unpacklo_pd(a[0], a[1]), _mm256_unpacklo_pd(a[2], a[3])};
+    const quad high[2] = {_mm256_unpackhi_pd(a[0], a[1]), _mm256_unpackhi_pd(a[2], a[3])};
+    o[0] = _mm256_permute2f128_pd(low[0], low[1], 0x20);
+    o[1] = _mm256_permute2f128_pd(high[0], high[1], 0x20);
+    o[2] = _mm256_permute2f128_pd(low[0], low[1], 0x31);
+    o[3] = _mm256_permute2f128_pd(high[0], high[1], 0x31);
+}
+
 #include "tree/loop_core.inc"
 
 SE3DI_TARGET_END

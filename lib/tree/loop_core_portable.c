@@ -58,6 +58,15 @@ static inline quad fnma_of(quad a, quad b, quad c)
     return c;
 }
 
+static inline void transpose(const quad a[SE3DI_STRIP], quad o[SE3DI_STRIP])
+{
+    for (int k = 0; k < SE3DI_STRIP; ++k) {
+        for (int m = 0; m < SE3DI_STRIP; ++m) {
+            o[m].lane[k] = a[k].lane[m];
+        }
+    }
+}
+
 #define scalar_fma(a, b, c) se3di_fma(a, b, c)
 
 #include "tree/loop_core.inc"
