@@ -9,6 +9,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
 #define EQUAL 1e-9 /* parts of limits that differ by less are reached together */
 
@@ -94,8 +95,22 @@ static size_t count_breaks(const se3di_run *run)
     return run->analysis == SE3D_ANALYSIS_DYNAMICS ? count : 0;
 }
 
+/* Joints, their limits and whether they are broken change with these. */
+static int is_listed(se3di_events *events)
+{
+    const se3di_model *model = events->run->model;
+    const uint64_t now[3] = {model->topology_version, model->break_version, model->inputs_version};
+    uint64_t *listed = events->break_versions;
+    const int is = events->break_count == 0 && memcmp(listed, now, sizeof now) == 0;
+    memcpy(listed, now, sizeof now);
+    return is;
+}
+
 se3d_status se3di_breaks_list(se3di_events *events)
 {
+    if (is_listed(events)) {
+        return SE3D_OK;
+    }
     const se3di_model *model = events->run->model;
     const size_t first = events->slots.count, before = events->break_count;
     const size_t count = count_breaks(events->run);

@@ -44,8 +44,9 @@ typedef struct se3di_events {
     se3di_slots slots;
     se3di_event *list; /* the user's, and behind them those of joints that may break */
     size_t capacity;
-    size_t break_count; /* of the latter */
-    char **names;       /* of joints in records, kept as long as these */
+    size_t break_count;         /* of the latter, */
+    uint64_t break_versions[3]; /* as they were at these versions of the model */
+    char **names;               /* of joints in records, kept as long as these */
     size_t name_count, name_capacity;
     se3d_event_record *records;
     size_t record_count, record_capacity;
