@@ -306,8 +306,9 @@ static inline void slope_push(slope *top, double f, unsigned mask, size_t n)
     }
 }
 
-void se3di_program_eval(const se3di_instruction *code, size_t count, const double *x, size_t n,
-                        double *result)
+static inline __attribute__((always_inline)) void eval_slopes(const se3di_instruction *code,
+                                                              size_t count, const double *x,
+                                                              const size_t n, double *result)
 {
     slope stack[SE3DI_PROGRAM_STACK + 1]; /* values begin at stack[1] */
     slope *top = stack;
@@ -376,5 +377,15 @@ void se3di_program_eval(const se3di_instruction *code, size_t count, const doubl
     result[0] = top->f + poison;
     for (size_t k = 0; k < n; ++k) {
         result[1 + k] = top->x[k] + poison;
+    }
+}
+
+void se3di_program_eval(const se3di_instruction *code, size_t count, const double *x, size_t n,
+                        double *result)
+{
+    if (n == 0) { /* without loops over variables */
+        eval_slopes(code, count, x, 0, result);
+    } else {
+        eval_slopes(code, count, x, n, result);
     }
 }

@@ -192,6 +192,15 @@ se3d_status se3di_signal_eval(const se3di_model *model, const se3di_signal *sign
     return SE3D_OK;
 }
 
+/* The value alone, the same bits; slopes that are infinite are no failure of an expression. */
+static se3d_status find_law(const se3di_function *function, const double *x, double jet[3])
+{
+    jet[1] = jet[2] = 0.0;
+    return function->expression && !function->integral
+               ? se3d_expression_eval(function->expression, x, jet)
+               : se3di_function_eval(function, x, jet, NULL);
+}
+
 se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *function,
                            const double *own, double jet[3], double *gradient)
 {
@@ -204,8 +213,7 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
     for (uint32_t k = 0; k < function->signal_count; ++k) {
         SE3DI_TRY(find_value(model, &function->signals[k], own[0], &x[first + k]));
     }
-    SE3DI_TRY(se3di_function_eval(function, x, jet, gradient));
-    return SE3D_OK;
+    return gradient ? se3di_function_eval(function, x, jet, gradient) : find_law(function, x, jet);
 }
 
 static int has_callback(const se3di_model *model, const se3di_function *function)

@@ -28,7 +28,8 @@ uint32_t se3di_law_count_leaves(const se3di_model *model, const se3di_function *
 const se3di_signal *se3di_law_get_leaf(const se3di_model *model, const se3di_function *function,
                                        uint32_t k);
 /* A function at `own`, the variables that its element gives, and at its signals; jet and gradient
- * [SE3D_FUNCTION_VARIABLES_MAX] (or NULL) as those of se3di_function_eval, own variables first. */
+ * [SE3D_FUNCTION_VARIABLES_MAX] (or NULL) as those of se3di_function_eval, own variables first.
+ * Of a function of signals without a gradient: the value alone. */
 se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *function,
                            const double *own, double jet[3], double *gradient);
 /* Whether the law of an element is the user's code, or depends on such a function. */
