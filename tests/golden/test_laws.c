@@ -34,6 +34,18 @@ static void a_torque_of_an_angle_is_a_spring(void)
     }
 }
 
+/* sqrt(t) rises infinitely fast at t = 0, which explicit methods need not know:
+ * 2 theta'' = sqrt(t). */
+static void a_law_may_rise_infinitely_fast(void)
+{
+    text_model m = text_model_open(HEAD "forces: [{name: u, type: torque, body: arm, value: [0, 0, "
+                                        "\"sqrt(t) + 0*pin.angle\"]}]\n" TAIL OUT,
+                                   SE3D_METHOD_DOP853, -1, 0.0);
+    text_model_run(&m, 1.0);
+    CHECK_NEAR(text_model_get(&m, 0, 0), 1.0 + 2.0 / 15.0, 1e-8);
+    text_model_close(&m);
+}
+
 /* Two bodies that know of each other by channels only: a spring and damper written as two laws,
  * whose Jacobian has blocks between bodies that no element joins. With x = angle - displacement,
  * 2 theta'' = -(k x + c x'), 2 s'' = k x + c x': x'' = -(k x + c x'), theta + s = 1.5 t. */
@@ -564,6 +576,7 @@ int main(void)
     RUN(a_follower_takes_its_part_in_frequencies);
     RUN(followers_are_checked_and_given_back);
     RUN(a_torque_of_an_angle_is_a_spring);
+    RUN(a_law_may_rise_infinitely_fast);
     RUN(bodies_that_no_element_joins_are_coupled);
     RUN(a_length_of_another_spring_is_as_good_as_its_own);
     RUN(a_clone_has_its_own_laws);
