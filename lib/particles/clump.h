@@ -7,7 +7,7 @@
 
 #include "particles/set.h"
 
-#define SE3DI_CLUMP_LANES 8 /* clumps that are moved side by side */
+#define SE3DI_CLUMP_LANES 8 /* clumps that the kernels move side by side */
 
 /* clump_mass.c: what a template's balls (r in the frame of the definition) weigh together: fills
  * volume, centre, mass, inertia and axes for density 1, and turns the balls into the principal
@@ -41,10 +41,6 @@ void se3di_clump_energy(const se3di_particles *set, const se3di_clump *clump, do
  * mass (ground frame), in the order of the spheres. */
 void se3di_clump_loads(const se3di_particles *set, const se3di_clump *clump, double force[3],
                        double torque[3]);
-/* Move clumps [begin, end) with their spheres; *fastest, *hasty: the largest squared speed of a
- * sphere, and the same over its squared small reach; larger ones stay. */
-void se3di_clumps_move(se3di_particles *set, size_t begin, size_t end,
-                       const se3di_particle_motion *motion, double *fastest, double *hasty);
 /* What a unit force along n moves the particle of this id by, if it is of a clump; else `alone`. */
 double se3di_clump_mobility(const se3di_particles *set, uint32_t id, const double n[3],
                             double alone);

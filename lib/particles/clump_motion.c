@@ -1,24 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The motion of clumps, in the step of the particles: half kicks by the sums over their spheres,
- * and between them a drift that is symplectic, reversible and keeps the angular momentum:
- *
- *     kick    v += h/2 (F/m + g),  L += h/2 A^T T          L in the principal axes
- *     drift   x += h v,  and turns about the principal axes by h L_k/I_k, one after the other:
- *             1 (h/2), 2 (h/2), 3 (h), 2 (h/2), 1 (h/2)
- *
- * (Dullweber, Leimkuhler and McLachlan, J. Chem. Phys. 107, 5840, 1997). A turn about axis k leaves
- * L_k, so that any function of it may stand for the angle: here its tangent is a polynomial.
- *                                                                         docs/theory/clumps.md */
+/* What acts on a clump, its motion as others ask for it or set it, and what its spheres have of
+ * that, one clump at a time. Steps are in clumps.inc.                    docs/theory/clumps.md */
 #include "particles/clump.h"
 
-#include "base/floats.h"
-#include "math/larger.h"
 #include "math/quaternion.h"
 
 #include <math.h>
-
-/* The other two axes. */
-static const int second[3] = {1, 2, 0}, third[3] = {2, 0, 1};
 
 void se3di_clump_loads(const se3di_particles *set, const se3di_clump *clump, double force[3],
                        double torque[3])
@@ -36,88 +23,6 @@ void se3di_clump_loads(const se3di_particles *set, const se3di_clump *clump, dou
         for (int a = 0; a < 3; ++a) {
             force[a] += load->force[a];
             torque[a] += load->torque[a] + turned[a];
-        }
-    }
-}
-
-/* Clumps that turn side by side: each operation waits for the one before, and those of one clump
- * leave the processor idle. */
-#define LANES SE3DI_CLUMP_LANES
-
-typedef struct top {
-    double q[4][LANES], L[3][LANES];
-    double by[LANES], inertia[3][LANES]; /* angle = by L / inertia */
-} top;
-
-/* Turn about principal axis k: q <- q (1, t e_k), not of unit length; L <- R^T L. */
-static inline void turn(top *of, int k, double part)
-{
-    const int b = second[k], c = third[k];
-    double *const q_0 = of->q[0], *const q_k = of->q[1 + k];
-    double *const q_b = of->q[1 + b], *const q_c = of->q[1 + c];
-    double *const L_k = of->L[k], *const L_b = of->L[b], *const L_c = of->L[c];
-    for (int n = 0; n < LANES; ++n) {
-        const double angle = part * of->by[n] * L_k[n] / of->inertia[k][n];
-        const double u = 0.5 * angle, u2 = u * u;
-        const double t = u * (1.0 + u2 * (1.0 / 3.0 + u2 * (2.0 / 15.0))); /* tan(angle/2) */
-        const double scale = 1.0 / (1.0 + t * t);
-        const double cosine = (1.0 - t * t) * scale, sine = 2.0 * t * scale;
-        const double old_b = L_b[n], old_0 = q_0[n], turned_b = q_b[n];
-        L_b[n] = cosine * old_b + sine * L_c[n];
-        L_c[n] = cosine * L_c[n] - sine * old_b;
-        q_0[n] -= t * q_k[n];
-        q_k[n] += t * old_0;
-        q_b[n] += t * q_c[n];
-        q_c[n] -= t * turned_b;
-    }
-}
-
-/* Clumps [0, count), at most LANES: lanes that are left over repeat the first. */
-static void drift(const se3di_particles *set, se3di_clump *clumps, size_t count, double h)
-{
-    top of;
-    for (size_t n = 0; n < LANES; ++n) {
-        const se3di_clump *clump = &clumps[n < count ? n : 0];
-        const se3di_clump_template *like = &set->templates[clump->template_index];
-        of.by[n] = h / (clump->factor * clump->scale * clump->scale);
-        for (int a = 0; a < 3; ++a) {
-            of.L[a][n] = clump->spin[a];
-            of.inertia[a][n] = like->inertia[a];
-        }
-        for (int a = 0; a < 4; ++a) {
-            of.q[a][n] = clump->q[a];
-        }
-    }
-    turn(&of, 0, 0.5);
-    turn(&of, 1, 0.5);
-    turn(&of, 2, 1.0);
-    turn(&of, 1, 0.5);
-    turn(&of, 0, 0.5);
-    for (size_t n = 0; n < count; ++n) {
-        se3di_clump *clump = &clumps[n];
-        const double q[4] = {of.q[0][n], of.q[1][n], of.q[2][n], of.q[3][n]};
-        se3di_add_scaled(h, clump->v, clump->x);
-        for (int a = 0; a < 3; ++a) {
-            clump->spin[a] = of.L[a][n];
-        }
-        (void)se3di_quat_normalize(q, clump->q);
-        se3di_quat_to_matrix(clump->q, clump->A);
-    }
-}
-
-static void kick(const se3di_particles *set, se3di_clump *clump,
-                 const se3di_particle_motion *motion)
-{
-    const double half = 0.5 * motion->h, mobility = 1.0 / se3di_clump_mass(set, clump);
-    double force[3], torque[3], turned[3];
-    se3di_clump_loads(set, clump, force, torque);
-    se3di_mul_transposed(clump->A, torque, turned);
-    for (int a = 0; a < 3; ++a) {
-        const double dv = half * (force[a] * mobility + set->gravity[a]);
-        const double dL = half * turned[a];
-        for (int n = 0; n < motion->kicks; ++n) {
-            clump->v[a] += dv;
-            clump->spin[a] += dL;
         }
     }
 }
@@ -157,64 +62,6 @@ void se3di_clump_place(se3di_particles *set, const se3di_clump *clump, int poses
         place_ball(clump, &set->balls[of->begin + k], w, x, particle->v);
         se3di_copy(poses ? x : particle->x, particle->x);
         se3di_copy(w, set->spins[index].w);
-    }
-}
-
-/* The image of x that is nearest to where the particle was: spheres of a clump may be on both sides
- * of a period. */
-static void follow(const se3di_particles *set, const double before[3], double x[3])
-{
-    for (int a = 0; a < 3; ++a) {
-        if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-            const double length = set->upper[a] - set->lower[a];
-            x[a] -= length * se3di_nearest((x[a] - before[a]) / length);
-        }
-    }
-}
-
-/* The spheres after a kick (drift 0) or a drift: how far each came is known exactly. */
-static void carry(se3di_particles *set, const se3di_clump *clump, double drift, double *fastest,
-                  double *hasty)
-{
-    const se3di_clump_template *of = &set->templates[clump->template_index];
-    const double *wear = se3di_particles_wear(set);
-    const double rate = drift != 0.0 ? 1.0 / (drift * drift) : 0.0;
-    double w[3];
-    get_turn_rate(set, clump, w);
-    for (uint32_t k = 0; k < of->count; ++k) {
-        const size_t index = set->index_of[clump->first + k];
-        se3di_particle *particle = &set->particles[index];
-        double x[3], way[3];
-        place_ball(clump, &set->balls[of->begin + k], w, x, particle->v);
-        se3di_copy(w, set->spins[index].w);
-        if (drift == 0.0) {
-            continue;
-        }
-        follow(set, particle->x, x);
-        se3di_sub(x, particle->x, way);
-        se3di_copy(x, particle->x);
-        set->loads[index] = (se3di_load){{0.0}, {0.0}};
-        const double v2 = se3di_dot(way, way) * rate, worn = v2 * wear[index];
-        *fastest = se3di_larger(*fastest, v2);
-        *hasty = se3di_larger(*hasty, worn);
-    }
-}
-
-void se3di_clumps_move(se3di_particles *set, size_t begin, size_t end,
-                       const se3di_particle_motion *motion, double *fastest, double *hasty)
-{
-    for (size_t first = begin; first < end; first += LANES) {
-        const size_t count = end - first < LANES ? end - first : LANES;
-        se3di_clump *clumps = set->clumps + first;
-        for (size_t k = 0; k < count && motion->kicks > 0; ++k) {
-            kick(set, &clumps[k], motion);
-        }
-        if (motion->drift != 0.0) {
-            drift(set, clumps, count, motion->drift);
-        }
-        for (size_t k = 0; k < count; ++k) {
-            carry(set, &clumps[k], motion->drift, fastest, hasty);
-        }
     }
 }
 

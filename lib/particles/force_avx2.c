@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX2 and FMA, chosen at run time.  docs/theory/particles.md */
 #include "contact/shape/mesh_tree.h"
+#include "math/larger.h"
 #include "particles/clump.h"
 #include "particles/sift.h"
 #include "particles/wall.h"
@@ -100,6 +101,40 @@ V_INLINE void load_apart(const se3di_particle *particles, const uint32_t *i, con
     transpose(high, v);
 }
 
+V_INLINE void load_four(const double *const at[4], V out[4])
+{
+    V rows[4];
+    for (int k = 0; k < 4; ++k) {
+        rows[k] = _mm256_loadu_pd(at[k]);
+    }
+    transpose(rows, out);
+}
+
+V_INLINE void store_four(double *const at[4], const V in[4])
+{
+    V rows[4];
+    transpose(in, rows);
+    for (int k = 0; k < 4; ++k) {
+        _mm256_storeu_pd(at[k], rows[k]);
+    }
+}
+
+/* What is behind the three numbers stays. */
+V_INLINE void store_three(double *const at[4], const V in[3])
+{
+    const V four[4] = {in[0], in[1], in[2], _mm256_setzero_pd()};
+    V rows[4];
+    transpose(four, rows);
+    for (int k = 0; k < 4; ++k) {
+        _mm256_storeu_pd(at[k], _mm256_blend_pd(rows[k], _mm256_loadu_pd(at[k]), 8));
+    }
+}
+
+V_INLINE V load_each(const double *const at[4])
+{
+    return _mm256_set_pd(*at[3], *at[2], *at[1], *at[0]);
+}
+
 /* Also what is behind the 15 numbers. */
 V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V out[16])
 {
@@ -173,10 +208,11 @@ V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *
     }
 }
 
+#include "particles/clumps.inc"
 #include "particles/force.inc"
 #include "particles/sift.inc"
 
-static const se3di_kernels core_table = {"avx2", pairs, walls, sift};
+static const se3di_kernels core_table = {"avx2", pairs, walls, sift, clumps};
 
 SE3DI_TARGET_END
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The force kernels for x86-64 with AVX-512, chosen at run time.       docs/theory/particles.md */
 #include "contact/shape/mesh_tree.h"
+#include "math/larger.h"
 #include "particles/clump.h"
 #include "particles/sift.h"
 #include "particles/wall.h"
@@ -124,26 +125,69 @@ V_INLINE void load_facets(const se3di_mesh_facet *facets, const uint32_t *at, V 
 }
 
 /* Halves of two rows side by side make one transposition of four do for eight. */
-V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
+V_INLINE void transpose_halves(const V in[4], V out[4])
 {
-    V rows[4];
-    for (int k = 0; k < 4; ++k) {
-        V low = _mm512_castpd256_pd512(_mm256_load_pd(spins[i[k]].w));
-        rows[k] = _mm512_insertf64x4(low, _mm256_load_pd(spins[i[4 + k]].w), 1);
-    }
-    V a = _mm512_unpacklo_pd(rows[0], rows[1]);
-    V b = _mm512_unpackhi_pd(rows[0], rows[1]);
-    V c = _mm512_unpacklo_pd(rows[2], rows[3]);
-    V d = _mm512_unpackhi_pd(rows[2], rows[3]);
+    V a = _mm512_unpacklo_pd(in[0], in[1]);
+    V b = _mm512_unpackhi_pd(in[0], in[1]);
+    V c = _mm512_unpacklo_pd(in[2], in[3]);
+    V d = _mm512_unpackhi_pd(in[2], in[3]);
     const __m512i first = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0);
     const __m512i third = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
     /* [0 1 | 8 9 | 4 5 | 12 13]: lanes 0..3 come from the low halves, 4..7 from the high ones */
-    V x = _mm512_permutex2var_pd(a, first, c);
-    V y = _mm512_permutex2var_pd(b, first, d);
-    V z = _mm512_permutex2var_pd(a, third, c);
-    out[0] = x;
-    out[1] = y;
-    out[2] = z;
+    out[0] = _mm512_permutex2var_pd(a, first, c);
+    out[1] = _mm512_permutex2var_pd(b, first, d);
+    out[2] = _mm512_permutex2var_pd(a, third, c);
+    out[3] = _mm512_permutex2var_pd(b, third, d);
+}
+
+V_INLINE void load_four(const double *const at[8], V out[4])
+{
+    V rows[4];
+    for (int k = 0; k < 4; ++k) {
+        V low = _mm512_castpd256_pd512(_mm256_loadu_pd(at[k]));
+        rows[k] = _mm512_insertf64x4(low, _mm256_loadu_pd(at[4 + k]), 1);
+    }
+    transpose_halves(rows, out);
+}
+
+V_INLINE void store_four(double *const at[8], const V in[4])
+{
+    V rows[4];
+    transpose_halves(in, rows);
+    for (int k = 0; k < 4; ++k) {
+        _mm256_storeu_pd(at[k], _mm512_castpd512_pd256(rows[k]));
+        _mm256_storeu_pd(at[4 + k], _mm512_extractf64x4_pd(rows[k], 1));
+    }
+}
+
+/* What is behind the three numbers stays. */
+V_INLINE void store_three(double *const at[8], const V in[3])
+{
+    const V four[4] = {in[0], in[1], in[2], _mm512_setzero_pd()};
+    V rows[4];
+    transpose_halves(four, rows);
+    for (int k = 0; k < 4; ++k) {
+        _mm256_mask_storeu_pd(at[k], 7, _mm512_castpd512_pd256(rows[k]));
+        _mm256_mask_storeu_pd(at[4 + k], 7, _mm512_extractf64x4_pd(rows[k], 1));
+    }
+}
+
+V_INLINE V load_each(const double *const at[8])
+{
+    return _mm512_set_pd(*at[7], *at[6], *at[5], *at[4], *at[3], *at[2], *at[1], *at[0]);
+}
+
+V_INLINE void load_spins(const se3di_spin *spins, const uint32_t *i, V out[3])
+{
+    const double *at[8];
+    V four[4];
+    for (int k = 0; k < 8; ++k) {
+        at[k] = spins[i[k]].w;
+    }
+    load_four(at, four);
+    out[0] = four[0];
+    out[1] = four[1];
+    out[2] = four[2];
 }
 
 /* Force and torque of each lane. */
@@ -193,10 +237,11 @@ V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *
     }
 }
 
+#include "particles/clumps.inc"
 #include "particles/force.inc"
 #include "particles/sift.inc"
 
-static const se3di_kernels core_table = {"avx512", pairs, walls, sift};
+static const se3di_kernels core_table = {"avx512", pairs, walls, sift, clumps};
 
 SE3DI_TARGET_END
 

@@ -275,7 +275,7 @@ static void walls(se3di_force_task *task)
 
 const se3di_kernels *se3di_particle_kernels_callback(void)
 {
-    static const se3di_kernels table = {"callback", pairs, walls,
-                                        NULL}; /* never sifts: see mesh.c */
+    /* never sifts, see mesh.c, nor moves: the set's own kernels do */
+    static const se3di_kernels table = {"callback", pairs, walls, NULL, NULL};
     return &table;
 }

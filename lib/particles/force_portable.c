@@ -2,6 +2,7 @@
 /* The force kernels in plain C, for every machine.                     docs/theory/particles.md */
 #include "contact/shape/mesh_tree.h"
 #include "math/fma.h"
+#include "math/larger.h"
 #include "particles/clump.h"
 #include "particles/sift.h"
 #include "particles/wall.h"
@@ -11,7 +12,7 @@
 
 const se3di_kernels *se3di_particle_kernels_portable(void)
 {
-    static const se3di_kernels table = {"portable", pairs, walls, sift};
+    static const se3di_kernels table = {"portable", pairs, walls, sift, clumps};
     const se3di_kernels *fused = se3di_particle_kernels_fma();
     return fused ? fused : &table;
 }

@@ -300,14 +300,13 @@ typedef struct se3di_clump_template {
     double most;      /* mobility of one */
 } se3di_clump_template;
 
-/* A rigid body whose spheres are particles of the set. */
+/* A rigid body whose spheres are particles of the set. The kernels take it in rows of four. */
 typedef struct se3di_clump {
-    double x[3], q[4];    /* centre of mass; principal axes -> ground, */
-    double A[9];          /* the same as a matrix */
-    double v[3], spin[3]; /* angular momentum, in the principal axes */
-    double scale;         /* of lengths, */
-    double factor;        /* and of masses, over those of the template */
-    uint32_t first;       /* id of its first sphere; the others follow */
+    double x[3], scale;  /* centre of mass; of lengths, */
+    double v[3], factor; /* and of masses, over those of the template */
+    double q[4], A[9];   /* principal axes -> ground, the same as a matrix */
+    double spin[3];      /* angular momentum, in the principal axes */
+    uint32_t first;      /* id of its first sphere; the others follow */
     uint32_t template_index;
 } se3di_clump;
 
@@ -600,6 +599,10 @@ struct se3di_kernels {
     void (*walls)(se3di_force_task *task);
     /* Which of the first `count` pairs of spheres and triangles of a mesh touch. */
     void (*sift)(const se3di_wall *wall, size_t count, struct se3di_sift *pairs);
+    /* Move clumps [begin, end) with their spheres; *fastest, *hasty: the largest squared speed of a
+     * sphere, and the same over its squared small reach; larger ones stay. */
+    void (*clumps)(se3di_particles *set, size_t begin, size_t end,
+                   const se3di_particle_motion *motion, double *fastest, double *hasty);
 };
 
 /* For a user-defined law. */

@@ -205,7 +205,7 @@ static void pass_part(se3di_particles *set, size_t c, void *ctx)
     if (set->flow_count > 0) {
         se3di_flows_mark_clumps(set, first, end);
     }
-    se3di_clumps_move(set, first, end, w->motion, &w->most[c].fastest, &w->most[c].hasty);
+    set->kernels->clumps(set, first, end, w->motion, &w->most[c].fastest, &w->most[c].hasty);
 }
 
 static void move_all(se3di_particles *set, const se3di_particle_motion *motion)

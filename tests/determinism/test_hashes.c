@@ -21,6 +21,7 @@
 
 #include "support/analyses.h"
 #include "support/avalanche.h"
+#include "support/clump_mix.h"
 #include "support/models.h"
 #include "support/scene.h"
 
@@ -271,6 +272,18 @@ static uint64_t run_bed(const row *r, int32_t threads)
     return hash;
 }
 
+/* Clumps of different numbers of spheres that meet, across periods, too. */
+static uint64_t run_clumps(const row *r, int32_t threads)
+{
+    bed b;
+    clump_mix_open(&b, threads, 0, r->law);
+    CHECK(se3d_particles_step(b.particles, 2000) == SE3D_OK);
+    CHECK(se3d_particles_count_contacts(b.particles) > 30);
+    const uint64_t hash = se3d_particles_hash(b.particles);
+    bed_destroy(&b);
+    return hash;
+}
+
 /* A turned box and a ball that fall into a bed: walls that give way. */
 static uint64_t run_pushed(const row *r, int32_t threads)
 {
@@ -375,6 +388,11 @@ static void fill_table(void)
     for (int k = 0; k < 4; ++k) {
         row *r = add(k / 2 ? "pushed-bed" : "bed", laws[k % 2], 0, k % 2);
         r->run = k / 2 ? run_pushed : run_bed;
+        r->threads_max = 4;
+    }
+    for (int k = 0; k < 2; ++k) {
+        row *r = add("clumps", laws[k], 0, 0);
+        r->run = run_clumps;
         r->threads_max = 4;
     }
 }

@@ -6,6 +6,7 @@
 #include "check.h"
 #include "se3d/se3d.h"
 #include "support/avalanche.h"
+#include "support/clump_mix.h"
 
 static uint64_t run(int32_t threads, int32_t portable, int32_t law)
 {
@@ -110,11 +111,14 @@ static void open_clumps(bed *b, int32_t threads, int32_t portable, int32_t law)
     CHECK(se3d_particles_count_clumps(b->particles) > 100);
 }
 
+typedef void opener(bed *b, int32_t threads, int32_t portable, int32_t law);
+
 /* In one piece, or cut, with a copy that goes on from the middle. */
-static uint64_t run_clumps(int32_t threads, int32_t portable, int32_t law, size_t piece)
+static uint64_t run_clumps(opener *open, int32_t threads, int32_t portable, int32_t law,
+                           size_t piece)
 {
     bed b;
-    open_clumps(&b, threads, portable, law);
+    open(&b, threads, portable, law);
     for (size_t k = 0; k < 1200; k += piece) {
         CHECK(se3d_particles_step(b.particles, piece) == SE3D_OK);
     }
@@ -133,12 +137,15 @@ static uint64_t run_clumps(int32_t threads, int32_t portable, int32_t law, size_
 
 static void clumps_have_the_same_bits(void)
 {
-    for (int32_t law = 0; law < 2; ++law) {
-        const uint64_t one = run_clumps(1, 0, law, 1200);
-        CHECK(run_clumps(1, 1, law, 1200) == one); /* another level of instructions */
-        CHECK(run_clumps(1, 0, law, 40) == one);
+    static opener *const openers[] = {open_clumps, clump_mix_open};
+    for (int n = 0; n < 4; ++n) {
+        opener *open = openers[n / 2];
+        const int32_t law = n % 2;
+        const uint64_t one = run_clumps(open, 1, 0, law, 1200);
+        CHECK(run_clumps(open, 1, 1, law, 1200) == one); /* another level of instructions */
+        CHECK(run_clumps(open, 1, 0, law, 40) == one);
         for (int32_t threads = 2; threads <= 4; ++threads) {
-            CHECK(run_clumps(threads, 0, law, 1200) == one);
+            CHECK(run_clumps(open, threads, 0, law, 1200) == one);
         }
     }
 }
