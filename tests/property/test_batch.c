@@ -499,6 +499,105 @@ static void what_a_batch_cannot_have_is_named(void)
     se3d_system_destroy(system);
 }
 
+/* No batch of the system; the message has `text`. */
+static void check_refused(se3d_system *system, const char *text)
+{
+    se3d_batch *b;
+    CHECK(se3d_batch_create(system, 1, 1, &b) == SE3D_ERR_UNSUPPORTED && !b);
+    CHECK_CONTAINS(se3d_system_get_error(system), text);
+}
+
+static void joints_that_may_break_are_named(void)
+{
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_batch *b;
+    se3d_system *system = make_pendulum(&joint, &bar);
+    CHECK(!se3d_joint_set_break(system, joint, 100.0, 0.0));
+    check_refused(system, "'' (revolute) may break");
+    CHECK(!se3d_joint_set_break(system, joint, 0.0, 50.0));
+    check_refused(system, "'' (revolute) may break");
+    CHECK(!se3d_joint_set_break(system, joint, 0.0, 0.0));
+    CHECK(!se3d_batch_create(system, 1, 1, &b));
+    se3d_batch_destroy(b);
+    se3d_system_destroy(system);
+}
+
+/* A spring about an axis of its own has an angle that no joint counts. */
+static void turns_that_no_joint_counts_are_named(void)
+{
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_force force;
+    se3d_batch *b;
+    se3d_system *system = make_pendulum(&joint, &bar);
+    se3d_rsda_def def = se3d_rsda_def_default();
+    CHECK(!se3d_system_get_ground(system, &def.body_i));
+    def.body_j = bar;
+    def.axis_i[0] = 0.0;
+    def.axis_i[2] = 1.0;
+    def.k = 3.0;
+    def.name = "coil";
+    CHECK(!se3d_force_create_rsda(system, &def, &force));
+    check_refused(system, "'coil' (rsda) counts turns that are not a joint's");
+    CHECK(!se3d_force_destroy(system, force));
+    def.joint = joint;
+    CHECK(!se3d_force_create_rsda(system, &def, &force));
+    CHECK(!se3d_batch_create(system, 1, 1, &b));
+    se3d_batch_destroy(b);
+    se3d_system_destroy(system);
+}
+
+/* Shapes are fine as long as they touch nothing. */
+static void shapes_that_may_touch_are_named(void)
+{
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_shape shapes[2];
+    se3d_material material;
+    se3d_batch *b;
+    se3d_system *system = make_pendulum(&joint, &bar);
+    se3d_material_def steel = se3d_material_def_default();
+    se3d_shape_def def = se3d_shape_def_default();
+    steel.density = 7800.0;
+    steel.stiffness = 1e6;
+    CHECK(!se3d_material_create(system, &steel, &material));
+    def.radius = 0.1;
+    def.body = bar;
+    def.name = "knob";
+    CHECK(!se3d_shape_create_sphere(system, &def, &shapes[0]));
+    def.name = "rail";
+    def.body = (se3d_body){0, 0};
+    def.material = material;
+    CHECK(!se3d_shape_create_sphere(system, &def, &shapes[1]));
+    CHECK(!se3d_batch_create(system, 1, 1, &b));
+    se3d_batch_destroy(b);
+    CHECK(!se3d_shape_destroy(system, shapes[0]));
+    def.name = "hard knob";
+    def.body = bar;
+    CHECK(!se3d_shape_create_sphere(system, &def, &shapes[0]));
+    check_refused(system, "may touch: a batch has no contact");
+    CHECK_CONTAINS(se3d_system_get_error(system), "'hard knob'");
+    CHECK_CONTAINS(se3d_system_get_error(system), "'rail'");
+    se3d_system_destroy(system);
+}
+
+static void particles_and_states_are_refused(void)
+{
+    se3d_constraint joint;
+    se3d_body bar;
+    se3d_state state;
+    se3d_particles *particles;
+    se3d_system *system = make_pendulum(&joint, &bar);
+    const se3d_state_def def = se3d_state_def_default();
+    CHECK(!se3d_state_create(system, &def, &state));
+    check_refused(system, "no user-defined states");
+    CHECK(!se3d_state_destroy(system, state));
+    CHECK(!se3d_particles_create(system, NULL, &particles));
+    check_refused(system, "no particles");
+    se3d_system_destroy(system);
+}
+
 static void counts_beyond_memory_are_refused(void)
 {
     static const size_t counts[] = {SIZE_MAX, SIZE_MAX - 1, SIZE_MAX - 8, SIZE_MAX / 8 + 1};
@@ -527,6 +626,10 @@ int main(void)
     RUN(callbacks_work_but_do_not_reach_the_batch);
     RUN(callbacks_are_not_called_for_states_that_failed);
     RUN(what_a_batch_cannot_have_is_named);
+    RUN(joints_that_may_break_are_named);
+    RUN(turns_that_no_joint_counts_are_named);
+    RUN(shapes_that_may_touch_are_named);
+    RUN(particles_and_states_are_refused);
     RUN(counts_beyond_memory_are_refused);
     return check_finish();
 }

@@ -274,11 +274,107 @@ static void flat_hulls_and_meshes_without_area_are_refused(void)
     se3d_system_destroy(system);
 }
 
+/* The shape is not made, whatever it is, and the message has `text`. */
+static void refused(se3d_system *system, const se3d_shape_def *def,
+                    se3d_status (*create)(se3d_system *, const se3d_shape_def *, se3d_shape *),
+                    const char *text)
+{
+    se3d_shape shape = {7, 7};
+    CHECK(create(system, def, &shape) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(shape.index1 == 0 && shape.generation == 0);
+    CHECK_CONTAINS(se3d_system_get_error(system), text);
+}
+
+static void hulls_and_meshes_have_bounds(void)
+{
+    enum { TOO_MANY = 10001 };
+    static double points[3 * TOO_MANY];
+    const uint32_t beyond[6] = {0, 1, 2, 0, 2, 3};
+    se3d_system *system;
+    se3d_shape shape;
+    se3d_shape_def def = se3d_shape_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    for (int k = 0; k < 3 * TOO_MANY; ++k) {
+        points[k] = uniform(-1.0, 1.0);
+    }
+    def.vertices = points;
+    def.vertex_count = TOO_MANY;
+    refused(system, &def, se3d_shape_create_hull, "vertex_count = 10001 of a hull");
+    def.vertex_count = 3;
+    def.triangle_count = 2;
+    CHECK(se3d_shape_create_mesh(system, &def, &shape) == SE3D_ERR_NULL);
+    def.triangles = beyond;
+    refused(system, &def, se3d_shape_create_mesh, "triangles[5] = 3, must be less than");
+    def.triangle_count = 0;
+    refused(system, &def, se3d_shape_create_mesh, "triangle_count = 0, must be");
+    def.triangle_count = UINT32_MAX;
+    refused(system, &def, se3d_shape_create_mesh, "triangle_count = 4294967295, must be");
+    def.triangle_count = 1;
+    CHECK(!se3d_shape_create_mesh(system, &def, &shape));
+    se3d_system_destroy(system);
+}
+
+static void heightfields_have_bounds(void)
+{
+    double heights[6] = {0.0, 0.1, 0.2, 0.1, 0.0, 0.3};
+    se3d_system *system;
+    se3d_shape shape;
+    const struct grid {
+        size_t columns, rows;
+        double spacing[2];
+        const char *text;
+    } grids[] = {
+        {1, 3, {0.1, 0.1}, "column_count = 1, must be from 2"},
+        {2, 1, {0.1, 0.1}, "row_count = 1, must be from 2"},
+        {UINT32_MAX, 2, {0.1, 0.1}, "column_count = 4294967295, must be from 2"},
+        {2, UINT32_MAX, {0.1, 0.1}, "row_count = 4294967295, must be from 2"},
+        {9000, 9000, {0.1, 0.1}, "row_count * column_count = 9000 * 9000, must be at most"},
+        {2, 3, {NAN, 0.1}, "spacing[0] = nan m, must be finite"},
+        {2, 3, {0.1, HUGE_VAL}, "spacing[1] = inf m, must be finite"},
+        {2, 3, {0.1, 1e-10}, "spacing[1] = 1e-10 m, must be finite and at least 1e-09"},
+    };
+    se3d_shape_def def = se3d_shape_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    for (size_t k = 0; k < sizeof grids / sizeof *grids; ++k) {
+        se3d_shape_def bad = def;
+        bad.heights = heights;
+        bad.column_count = grids[k].columns;
+        bad.row_count = grids[k].rows;
+        memcpy(bad.spacing, grids[k].spacing, sizeof bad.spacing);
+        refused(system, &bad, se3d_shape_create_heightfield, grids[k].text);
+    }
+    def.column_count = 2;
+    def.row_count = 3;
+    def.spacing[0] = def.spacing[1] = 0.1;
+    CHECK(se3d_shape_create_heightfield(system, &def, &shape) == SE3D_ERR_NULL);
+    def.heights = heights;
+    heights[5] = -HUGE_VAL;
+    refused(system, &def, se3d_shape_create_heightfield, "heights[5] = -inf m, must be finite");
+    heights[5] = 0.3;
+    CHECK(!se3d_shape_create_heightfield(system, &def, &shape));
+    se3d_system_destroy(system);
+}
+
+/* Radii so small that no triangle has an area. */
+static void funnels_without_area_are_refused(void)
+{
+    se3d_system *system;
+    se3d_shape_def def = se3d_shape_def_default();
+    CHECK(!se3d_system_create(NULL, &system));
+    def.bottom_radius = 1e-200;
+    def.length = 1e-200;
+    refused(system, &def, se3d_shape_create_funnel, "none of the funnel's triangles has an area");
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(nearest_points_are_where_a_search_finds_them);
     RUN(centres_and_surface_points_have_normals);
     RUN(hull_of_a_cloud_holds_it);
     RUN(flat_hulls_and_meshes_without_area_are_refused);
+    RUN(hulls_and_meshes_have_bounds);
+    RUN(heightfields_have_bounds);
+    RUN(funnels_without_area_are_refused);
     return check_finish();
 }
