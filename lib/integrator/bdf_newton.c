@@ -227,10 +227,10 @@ se3d_status se3di_bdf_close(se3di_bdf *m)
 {
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
-    const double weight = 1.0 / (m->c * m->c);
     if (!se3di_is_fast(&m->fast)) {
-        return SE3D_OK;
+        return SE3D_OK; /* a step to start from may have no coefficient c */
     }
+    const double weight = 1.0 / (m->c * m->c);
     for (int round = 0; round < CLOSINGS && assembly->row_count > 0; ++round) {
         se3di_assembly_eval_jacobian(assembly);
         se3di_assembly_eval_phi(assembly, equations->c);

@@ -229,8 +229,18 @@ void se3di_mjcf_sort_shapes(se3di_mjcf *f)
     }
 }
 
-/* What it touches with. A damping ratio of a spring and damper makes a restitution, one below 1 of
- * exp(-pi z / sqrt(1 - z^2)); MuJoCo's stiffness goes with the masses and is none of a material. */
+/* A damping ratio z of a spring and damper makes a restitution, one below 1 of
+ * exp(-pi z / sqrt(1 - z^2)). `solref`: time constant and z, or what is negative. */
+static double restitution_of(const double solref[2])
+{
+    const double z = solref[1];
+    if (!(z >= 0.0 && z < 1.0 && solref[0] > 0.0)) {
+        return 0.01;
+    }
+    return io_exp(-3.14159265358979323846 * z / sqrt(1.0 - z * z));
+}
+
+/* What it touches with. MuJoCo's stiffness goes with the masses and is none of a material. */
 static bool take_material(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_machine_shape *shape)
 {
     se3di_machine_material material = {.friction = 1.0, .poisson = 0.3};
@@ -246,10 +256,8 @@ static bool take_material(se3di_mjcf *f, const se3di_mjcf_element *e, se3di_mach
         !se3di_mjcf_numbers(f, e, "solref", solref, 2, &count)) {
         return false;
     }
-    const double z = solref[1];
-    const double way = -3.14159265358979323846 * z / sqrt(1.0 - z * z);
     material.friction = friction[0];
-    material.restitution = z >= 0.0 && z < 1.0 && solref[0] > 0.0 ? io_exp(way) : 0.01;
+    material.restitution = restitution_of(solref);
     snprintf(name, sizeof name, "friction_%.4g", material.friction);
     for (char *at = name; *at; ++at) {
         *at = *at == '.' ? '_' : *at;

@@ -230,7 +230,7 @@ static bool read_pitch(se3di_machine *m, const se3di_xml *node, double *pitch)
         return false;
     }
     if (!se3di_xml_child(node, "screw_thread_pitch")) {
-        *pitch = 0.0 - 2.0 * PI / thread;
+        *pitch = thread != 0.0 ? 0.0 - 2.0 * PI / thread : 0.0;
     }
     return (isfinite(*pitch) && fabs(*pitch) > 0.0) ||
            se3di_machine_fail(m, node->line, node->column, "the pitch of `%.80s` is %g",
