@@ -10,6 +10,15 @@
 
 #define THREADS_MAX 1024
 
+/* A call that changes a batch, whose system lives as long as it does. */
+#define BATCH_EDIT(batch)                                                                          \
+    do {                                                                                           \
+        if (!(batch)) {                                                                            \
+            return SE3D_ERR_NULL;                                                                  \
+        }                                                                                          \
+        SE3DI_EDIT((batch)->system);                                                               \
+    } while (0)
+
 struct se3d_batch {
     se3d_system *system; /* its own */
     se3di_batch of;
@@ -154,7 +163,7 @@ static se3d_status check_quaternions(const se3d_batch *batch, size_t first, size
 se3d_status se3d_batch_set_state(se3d_batch *batch, size_t first, size_t count, const double *q,
                                  const double *qdot)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     const se3di_batch_part positions = se3di_batch_positions(&batch->of);
     const se3di_batch_part velocities = se3di_batch_velocities(&batch->of);
     SE3DI_TRY(check_range(batch, first, count));
@@ -216,7 +225,7 @@ static se3d_status set(se3d_batch *batch, const char *what, const se3di_batch_pa
 
 se3d_status se3d_batch_set_time(se3d_batch *batch, size_t first, size_t count, const double *time)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     const se3di_batch_part part = se3di_batch_time(&batch->of);
     return set(batch, "time", &part, first, count, time);
 }
@@ -233,7 +242,7 @@ se3d_status se3d_batch_get_time(const se3d_batch *batch, size_t first, size_t co
 se3d_status se3d_batch_set_efforts(se3d_batch *batch, size_t first, size_t count,
                                    const double *effort)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     const se3di_batch_part part = se3di_batch_efforts(&batch->of);
     return set(batch, "effort", &part, first, count, effort);
 }
@@ -241,7 +250,7 @@ se3d_status se3d_batch_set_efforts(se3d_batch *batch, size_t first, size_t count
 se3d_status se3d_batch_set_gravity(se3d_batch *batch, size_t first, size_t count,
                                    const double *gravity)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     const se3di_batch_part part = se3di_batch_gravity(&batch->of);
     return set(batch, "gravity", &part, first, count, gravity);
 }
@@ -250,7 +259,7 @@ se3d_status se3d_batch_set_mass(se3d_batch *batch, se3d_body body, size_t first,
                                 const double *mass, const double *inertia)
 {
     uint32_t index;
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     se3d_system *system = batch->system;
     SE3DI_TRY(se3di_find_body(system, "body", body, &index));
     SE3DI_TRY(se3di_check_pointer(system, "mass", mass));
@@ -299,7 +308,7 @@ static se3d_status report(se3d_batch *batch)
 
 se3d_status se3d_batch_step(se3d_batch *batch, se3d_method method, double step, uint64_t steps)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     const se3di_integrator *integrator = se3di_integrator_find((int32_t)method);
     const se3di_rk_tableau *tableau = integrator ? integrator->tableau : NULL;
     if (!tableau || tableau->stages > SE3DI_BATCH_STAGES) {
@@ -319,7 +328,7 @@ se3d_status se3d_batch_step(se3d_batch *batch, se3d_method method, double step, 
 
 se3d_status se3d_batch_compute_accelerations(se3d_batch *batch, double *qddot)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     SE3DI_TRY(se3di_check_pointer(batch->system, "qddot", qddot));
     se3di_work_begin(batch->system);
     se3di_batch_accelerate(&batch->of, qddot);
@@ -328,7 +337,7 @@ se3d_status se3d_batch_compute_accelerations(se3d_batch *batch, double *qddot)
 
 se3d_status se3d_batch_compute_efforts(se3d_batch *batch, const double *qddot, double *effort)
 {
-    SE3DI_EDIT_OF(batch);
+    BATCH_EDIT(batch);
     SE3DI_TRY(se3di_check_pointer(batch->system, "effort", effort));
     if (batch->of.has_loops) {
         return SE3DI_FAIL(batch->system, SE3D_ERR_UNSUPPORTED,

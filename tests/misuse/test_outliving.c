@@ -65,6 +65,100 @@ static void a_clone_of_particles_may_outlive_their_system(void)
     se3d_solver_destroy(w.solver);
 }
 
+/* Each call that reads or edits says STATE, as there is no system to tell why. */
+static void no_call_reaches_a_system_that_is_gone(void)
+{
+    world w;
+    se3d_particles *copy;
+    uint32_t at = 7;
+    size_t count = 7;
+    double x[64] = {0.0}, *y = x + 32;
+    se3d_average average;
+    se3d_field_grid grid = se3d_field_grid_default();
+    se3d_particles_contact contact;
+    se3d_flow_def flow = se3d_flow_def_default();
+    se3d_clump_def clump = se3d_clump_def_default();
+    se3d_bond_def bond = se3d_bond_def_default();
+    se3d_servo_def servo = se3d_servo_def_default();
+    se3d_cell_def cell = se3d_cell_def_default();
+    se3d_fill_def fill = se3d_fill_def_default();
+    se3d_particles_source_def source = se3d_particles_source_def_default();
+    se3d_particles_sink_def sink = se3d_particles_sink_def_default();
+    leave_behind(&w, &copy);
+    const se3d_status calls[] = {
+        se3d_particles_get_average(copy, x, y, -1, &average),
+        se3d_particles_get_fields(copy, &grid, 1, x),
+        se3d_particles_get_contacts(copy, 1, &contact),
+        se3d_particles_get_wall_map(copy, w.pad, 1, x, &count),
+        se3d_particles_get_wall_corners(copy, w.pad, 1, x, &count),
+        se3d_particles_add(copy, w.stuff, 1, x, y, NULL, NULL, NULL),
+        se3d_particles_add_clump_template(copy, &clump, &at),
+        se3d_particles_add_clumps(copy, 0, w.stuff, 1, x, NULL, NULL, NULL),
+        se3d_particles_set_clumps(copy, 0, NULL, NULL, NULL, NULL),
+        se3d_particles_bond(copy, &bond, 0, NULL, NULL, &at),
+        se3d_particles_bond_near(copy, &bond, -1, -1, &count, &at),
+        se3d_particles_bond_shape(copy, &bond, w.pad, -1, &count, &at),
+        se3d_particles_add_cell_stage(copy, &cell, &at),
+        se3d_particles_add_flow(copy, &flow, &at),
+        se3d_particles_add_servo(copy, &servo, &at),
+        se3d_particles_fill_lattice(copy, &fill, &count),
+        se3d_particles_fill_random(copy, &fill),
+        se3d_particles_add_source(copy, &source, &at),
+        se3d_particles_remove_source(copy, 0),
+        se3d_particles_add_sink(copy, &sink, &at),
+        se3d_particles_remove_sink(copy, 0),
+        se3d_particles_set_tags(copy, 0, NULL, 1),
+        se3d_particles_remove(copy, 0, NULL),
+        se3d_particles_set_all(copy, 0, NULL, NULL, NULL),
+        se3d_solver_set_shown(w.solver, SE3D_SHOWN_ALL),
+        se3d_solver_read(w.solver, x, sizeof x),
+    };
+    for (size_t k = 0; k < sizeof calls / sizeof *calls; ++k) {
+        if (calls[k] != SE3D_ERR_STATE) {
+            fprintf(stderr, "call %zu: %d\n", k, (int)calls[k]);
+        }
+        CHECK(calls[k] == SE3D_ERR_STATE);
+    }
+    CHECK(se3d_particles_count(copy) == 3);
+    se3d_particles_destroy(copy);
+    se3d_solver_destroy(w.solver);
+}
+
+static void coordinates_may_outlive_their_system(void)
+{
+    world w;
+    se3d_coordinates *c;
+    double q[64] = {0.0}, out[4096];
+    size_t freedoms;
+    world_open(&w, SE3D_METHOD_RK4);
+    se3d_snapshot_destroy(w.snapshot);
+    se3d_solver_destroy(w.solver);
+    c = w.coordinates;
+    CHECK(se3d_coordinates_count(c) > 0);
+    se3d_system_destroy(w.system);
+    const se3d_status calls[] = {
+        se3d_coordinates_get_entry(c, 0, NULL, NULL, NULL, NULL, NULL),
+        se3d_coordinates_get(c, q, NULL),
+        se3d_coordinates_set(c, q, NULL),
+        se3d_coordinates_move(c, q, q, out),
+        se3d_coordinates_compute_accelerations(c, NULL, out),
+        se3d_coordinates_compute_efforts(c, q, out),
+        se3d_coordinates_compute_gravity(c, out),
+        se3d_coordinates_compute_mass_matrix(c, out),
+        se3d_coordinates_multiply_mass(c, q, out),
+        se3d_coordinates_solve_mass(c, q, out),
+        se3d_coordinates_compute_jacobian(c, (se3d_marker){0, 0}, out, NULL),
+        se3d_coordinates_compute_transposed(c, (se3d_marker){0, 0}, q, out),
+        se3d_coordinates_compute_momentum(c, q, NULL),
+        se3d_coordinates_compute_loop_jacobian(c, out),
+        se3d_coordinates_compute_null_space(c, out, &freedoms),
+    };
+    for (size_t k = 0; k < sizeof calls / sizeof *calls; ++k) {
+        CHECK(calls[k] == SE3D_ERR_STATE);
+    }
+    se3d_coordinates_destroy(c);
+}
+
 static void nothing_is_lost_in_any_order(void)
 {
     for (int order = 0; order < 6; ++order) {
@@ -101,6 +195,8 @@ int main(void)
 {
     RUN(a_solver_may_outlive_its_system);
     RUN(a_clone_of_particles_may_outlive_their_system);
+    RUN(no_call_reaches_a_system_that_is_gone);
+    RUN(coordinates_may_outlive_their_system);
     RUN(nothing_is_lost_in_any_order);
     return check_finish();
 }

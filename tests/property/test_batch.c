@@ -392,11 +392,20 @@ static se3d_status meddle(void *ctx, double t, const se3d_body_motion motion[2],
                           double *K, double *D)
 {
     se3d_batch *b = *(se3d_batch **)ctx;
-    double time;
+    double time = 0.0;
+    int32_t status;
+    const se3d_body body = {0, 0};
     (void)motion, (void)K, (void)D;
     if (b) {
         CHECK(se3d_batch_step(b, SE3D_METHOD_RK4, STEP, 1) == SE3D_ERR_STATE);
         CHECK(se3d_batch_set_state(b, 0, 0, NULL, NULL) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_set_time(b, 0, 1, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_set_efforts(b, 0, 1, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_set_gravity(b, 0, 0, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_set_mass(b, body, 0, 0, &time, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_compute_accelerations(b, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_compute_efforts(b, NULL, &time) == SE3D_ERR_STATE);
+        CHECK(se3d_batch_get_status(b, 0, 1, &status) == SE3D_ERR_STATE);
         CHECK(se3d_batch_get_time(b, 0, 1, &time) == SE3D_ERR_STATE);
         se3d_batch_destroy(b);
     }
