@@ -2,6 +2,7 @@
 /* Quaternions, rotation kernels, exponential map, inertia tensors. */
 #include "check.h"
 
+#include "base/floats.h"
 #include "math/inertia.h"
 #include "math/larger.h"
 #include "math/quaternion.h"
@@ -583,6 +584,25 @@ static void the_larger_one_keeps_what_is_not_a_number(void)
     CHECK(isnan(se3di_larger(HUGE_VAL, (double)NAN)) && isnan(se3di_larger((double)NAN, HUGE_VAL)));
 }
 
+/* Of two that are as near the even one; x + 0.5 of the number below 0.5 is 1 by rounding. */
+static void the_nearest_integer_is_found(void)
+{
+    static const double cases[][2] = {{0.0, 0.0},
+                                      {0.5, 0.0},
+                                      {0.49999999999999994, 0.0},
+                                      {0.50000000000000011, 1.0},
+                                      {1.5, 2.0},
+                                      {2.5, 2.0},
+                                      {-0.5, 0.0},
+                                      {-1.5, -2.0},
+                                      {-2.5, -2.0},
+                                      {-0.75, -1.0},
+                                      {4503599627370494.5, 4503599627370494.0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        CHECK_NEAR(se3di_nearest(cases[k][0]), cases[k][1], 0.0);
+    }
+}
+
 int main(void)
 {
     RUN(a_quarter_turn_about_z_maps_x_to_y);
@@ -607,5 +627,6 @@ int main(void)
     RUN(inertia_that_is_not_finite_is_not_physical);
     RUN(absolute_values_of_symmetric_matrices);
     RUN(the_larger_one_keeps_what_is_not_a_number);
+    RUN(the_nearest_integer_is_found);
     return check_finish();
 }

@@ -86,6 +86,38 @@ static void where_there_is_no_shelf_nothing_is_found(void)
     CHECK(atomic_load(&living) == 0);
 }
 
+/* Somebody who is at the shelf while it is asked. */
+typedef struct visitor {
+    se3di_shelf *shelf;
+    thing *brought;
+    int visits;
+} visitor;
+
+static int visit(const se3di_shelf_item *item, const void *wanted)
+{
+    visitor *v = *(visitor *const *)wanted;
+    ++v->visits;
+    CHECK(find(v->shelf, ((const thing *)(const void *)item)->number) == NULL);
+    se3di_shelf_put(v->shelf, &v->brought->item);
+    return 0;
+}
+
+static void who_comes_while_another_is_there_goes_without(void)
+{
+    support_counting counting = {0};
+    visitor v = {.shelf = create(&counting), .brought = make_thing(2)};
+    visitor *wanted = &v;
+    thing *first = make_thing(1);
+    se3di_shelf_put(v.shelf, &first->item);
+    se3di_shelf_item_drop(&first->item);
+    CHECK(se3di_shelf_find(v.shelf, visit, &wanted) == NULL && v.visits == 1);
+    CHECK(find(v.shelf, 2) == NULL);
+    se3di_shelf_item_drop(&v.brought->item);
+    CHECK(atomic_load(&living) == 1);
+    se3di_shelf_drop(v.shelf);
+    CHECK(atomic_load(&living) == 0 && counting.live == 0);
+}
+
 /* More kinds of things than there are places: they come and go all the time. */
 static void *take_and_put(void *ctx)
 {
@@ -211,6 +243,7 @@ int main(void)
 {
     RUN(what_was_put_is_found_until_others_take_its_place);
     RUN(where_there_is_no_shelf_nothing_is_found);
+    RUN(who_comes_while_another_is_there_goes_without);
     RUN(owners_may_be_at_work_in_several_threads);
     RUN(solvers_of_one_pattern_share_its_structure_and_no_bit_changes);
     return check_finish();
