@@ -316,7 +316,7 @@ se3d_status se3di_linear_eval_matrices(se3di_linear *linear, double t, const dou
                                        const double *lambda)
 {
     se3di_tangent *tangent = &linear->tangent;
-    SE3DI_TRY(se3di_tangent_eval(tangent, t, vdot, lambda));
+    SE3DI_TRY(se3di_tangent_eval(tangent, t, vdot, lambda, linear->equations->error));
     const int coupled = linear->equations->assembly.armature_count > 0;
     fill_dense(linear, linear->M, tangent->M, coupled ? tangent->M_upper : NULL, tangent->M_lower);
     fill_dense(linear, linear->D, tangent->D, tangent->D_upper, tangent->D_lower);

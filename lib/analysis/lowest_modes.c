@@ -539,7 +539,8 @@ static se3d_status evaluate(lanczos *z, double t)
     se3di_assembly_eval_jacobian(&equations->assembly);
     SE3DI_TRY(se3di_assembly_eval_forces(&equations->assembly, t, z->work, equations->error));
     se3di_assembly_get_acceleration(&equations->assembly, equations->x);
-    return se3di_tangent_eval(&z->tangent, t, equations->x, equations->assembly.model->lambda);
+    return se3di_tangent_eval(&z->tangent, t, equations->x, equations->assembly.model->lambda,
+                              equations->error);
 }
 
 static se3d_status run(lanczos *z, double t, se3di_eigen *eigen, int32_t *freedoms, int32_t *found)

@@ -381,7 +381,8 @@ se3d_status se3di_static_newton_eval(se3di_static_newton *newton, double t, cons
 {
     newton->tangent.is_convex = is_convex;
     newton->floor = STIFFNESS_FLOOR;
-    SE3DI_TRY(se3di_tangent_eval(&newton->tangent, t, newton->zero, lambda));
+    SE3DI_TRY(
+        se3di_tangent_eval(&newton->tangent, t, newton->zero, lambda, newton->equations->error));
     weigh_stiffness(newton, load, lambda);
     eval_penalty(newton);
     combine_pairs(newton);

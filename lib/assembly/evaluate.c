@@ -264,14 +264,7 @@ static se3d_status sum_elements(se3di_assembly *assembly, double t, se3di_force_
     sums->wrench = assembly->wrench;
     const se3d_status status = se3di_forces_sum(model, t, sums);
     if (status < 0) {
-        const uint32_t failed = sums->failed;
-        int is_gravity = failed >= model->force_slots.count;
-        const char *name = is_gravity ? "gravity" : model->forces[failed].name;
-        return se3di_error_set(
-            error, status, "t = %g s: force element %s (%s): %s", t, name ? name : "without a name",
-            is_gravity ? "gravity" : se3di_force_class_of(&model->forces[failed])->name,
-            status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
-                                        : "its function is not finite or failed");
+        return se3di_force_fail(model, sums->failed, status, t, error);
     }
     memcpy(assembly->power, sums->power, sizeof assembly->power);
     return SE3D_OK;

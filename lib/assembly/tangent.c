@@ -6,6 +6,7 @@
 #include "assembly/fused.h"
 #include "assembly/left_out.h"
 #include "assembly/loads.h"
+#include "assembly/user.h"
 #include "base/sort.h"
 #include "force/measure.h"
 #include "force/signal.h"
@@ -448,24 +449,34 @@ static se3d_status add_lag(se3di_tangent *tangent, const se3di_force *state, dou
     return SE3D_OK;
 }
 
-static se3d_status add_forces(se3di_tangent *tangent, double t)
+static se3d_status add_force(se3di_tangent *tangent, size_t k, double t)
 {
     const se3di_model *model = tangent->assembly->model;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
-        const uint32_t bodies[2] = {force->body_i, force->body_j};
-        se3di_effect effect;
-        effect.wants_derivative = 1;
-        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
-        leave_excess(model, force, tangent->excess ? tangent->excess[k] : 0.0, &effect);
-        add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
-        if (force->tyre_index >= 0 && !tangent->is_convex) {
-            SE3DI_TRY(add_lag(tangent, force, t));
+    const se3di_force *force = &model->forces[k];
+    const uint32_t bodies[2] = {force->body_i, force->body_j};
+    se3di_effect effect;
+    effect.wants_derivative = 1;
+    SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    leave_excess(model, force, tangent->excess ? tangent->excess[k] : 0.0, &effect);
+    add_load(tangent, bodies, effect.wrench, effect.K, effect.D);
+    if (force->tyre_index >= 0 && !tangent->is_convex) {
+        SE3DI_TRY(add_lag(tangent, force, t));
+    }
+    for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
+        if (force->function[c] >= 0) {
+            SE3DI_TRY(add_signals(tangent, force, c, t));
         }
-        for (int c = 0; c < 3 && !tangent->is_convex; ++c) {
-            if (force->function[c] >= 0) {
-                SE3DI_TRY(add_signals(tangent, force, c, t));
-            }
+    }
+    return SE3D_OK;
+}
+
+static se3d_status add_forces(se3di_tangent *tangent, double t, se3di_error *error)
+{
+    const se3di_model *model = tangent->assembly->model;
+    for (uint32_t k = 0; k < model->force_slots.count; ++k) {
+        const se3d_status status = add_force(tangent, k, t);
+        if (status < 0) {
+            return se3di_force_fail(model, k, status, t, error);
         }
     }
     return SE3D_OK;
@@ -646,13 +657,19 @@ static se3d_status add_user_curvature(se3di_tangent *tangent, const se3di_constr
     return SE3D_OK;
 }
 
-static se3d_status add_user_curvatures(se3di_tangent *tangent, double t, const double *lambda)
+static se3d_status add_user_curvatures(se3di_tangent *tangent, double t, const double *lambda,
+                                       se3di_error *error)
 {
-    const se3di_model *model = tangent->assembly->model;
-    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+    se3di_model *model = tangent->assembly->model;
+    for (uint32_t k = 0; k < model->constraint_slots.count; ++k) {
         const se3di_constraint *constraint = &model->constraints[k];
         if (se3di_is_user(constraint) && !se3di_is_broken(constraint, model->rows)) {
-            SE3DI_TRY(add_user_curvature(tangent, constraint, t, lambda));
+            const se3d_status status = add_user_curvature(tangent, constraint, t, lambda);
+            if (status < 0) {
+                model->user_failure =
+                    (se3di_user_failure){.time = t, .status = (int32_t)status, .constraint = k};
+                return se3di_user_report(model, error);
+            }
         }
     }
     return SE3D_OK;
@@ -713,7 +730,7 @@ static void add_rp_terms(const se3di_body *body, const se3di_frame *frame, const
 }
 
 se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
-                               const double *lambda)
+                               const double *lambda, se3di_error *error)
 {
     const se3di_assembly *assembly = tangent->assembly;
     const se3di_model *model = assembly->model;
@@ -736,11 +753,11 @@ se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *v
     }
     add_armatures(tangent, vdot);
     add_curvature(tangent, lambda);
-    SE3DI_TRY(add_user_curvatures(tangent, t, lambda));
+    SE3DI_TRY(add_user_curvatures(tangent, t, lambda, error));
     if (tangent->is_convex) {
         se3di_convex_blocks(tangent);
     }
-    SE3DI_TRY(add_forces(tangent, t));
+    SE3DI_TRY(add_forces(tangent, t, error));
     return se3di_contacts_visit(model, t, add_contact, tangent);
 }
 

@@ -34,9 +34,10 @@ se3d_status se3di_tangent_init(se3di_tangent *tangent, const se3di_assembly *ass
 void se3di_tangent_destroy(se3di_tangent *tangent);
 
 /* Evaluate M, K and D at the state of the model. vdot [unknowns] (r-p: with the multipliers of the
- * normalisation), lambda [rows]. @return OK, SINGULAR, NOT_FINITE, CALLBACK of a force element */
+ * normalisation), lambda [rows]. @return OK, SINGULAR, NOT_FINITE, CALLBACK of a force element or
+ * user constraint, which `error` names */
 se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
-                               const double *lambda);
+                               const double *lambda, se3di_error *error);
 /* rows, laid out as C: += c d(Phi_q qdot)/dq, but for those of user constraints. Formulations with
  * velocities (v, w) only. */
 void se3di_assembly_add_rate_gradient(const se3di_assembly *assembly, double c, double *rows);

@@ -31,6 +31,18 @@ se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force,
     return force->released ? SE3D_OK : classes[force->type]->eval(model, force, t, effect);
 }
 
+se3d_status se3di_force_fail(const se3di_model *model, uint32_t failed, se3d_status status,
+                             double t, se3di_error *error)
+{
+    const int is_gravity = failed >= model->force_slots.count;
+    const char *name = is_gravity ? "gravity" : model->forces[failed].name;
+    return se3di_error_set(
+        error, status, "t = %g s: force element %s (%s): %s", t, name ? name : "without a name",
+        is_gravity ? "gravity" : se3di_force_class_of(&model->forces[failed])->name,
+        status == SE3D_ERR_SINGULAR ? "its two points coincide, it has no direction"
+                                    : "its function is not finite or failed");
+}
+
 se3d_status se3di_force_potential(const se3di_model *model, const se3di_force *force, double t,
                                   double *potential)
 {

@@ -29,6 +29,11 @@ typedef struct se3di_effect {
 se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect);
 
+/* Say which element has failed with `status`; `failed`: its number, or that of elements: gravity.
+ * @return status */
+se3d_status se3di_force_fail(const se3di_model *model, uint32_t failed, se3d_status status,
+                             double t, se3di_error *error);
+
 /* The potential of one element [J], without what else `eval` makes, if its type can. @return the
  * same */
 se3d_status se3di_force_potential(const se3di_model *model, const se3di_force *force, double t,

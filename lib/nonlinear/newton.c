@@ -142,14 +142,12 @@ static se3d_status factor(se3di_newton *newton, double t, const double *vdot, co
                           const se3di_newton_weights *weights)
 {
     se3di_equations *equations = newton->equations;
-    se3d_status status = se3di_tangent_eval(&newton->tangent, t, vdot, lambda);
-    if (status >= 0) {
-        combine_all(newton, weights);
-        set_columns(newton, lambda);
-        se3di_kkt_values values = values_of(newton);
-        ++equations->counters.factorizations;
-        status = se3di_kkt_factor(newton->kkt, &values, NULL);
-    }
+    SE3DI_TRY(se3di_tangent_eval(&newton->tangent, t, vdot, lambda, equations->error));
+    combine_all(newton, weights);
+    set_columns(newton, lambda);
+    const se3di_kkt_values values = values_of(newton);
+    ++equations->counters.factorizations;
+    const se3d_status status = se3di_kkt_factor(newton->kkt, &values, NULL);
     return status < 0 ? se3di_error_set(equations->error, status,
                                         "t = %g s: the Newton matrix is singular or not finite", t)
                       : status;

@@ -351,7 +351,7 @@ static void check_formulation(const se3di_formulation *formulation)
         CHECK(se3di_assembly_eval_functions(&assembly, 0.3, NULL) == SE3D_OK);
         random_vector(vdot, 8 * BODIES, 5.0);
         random_vector(lambda, 64, 10.0);
-        CHECK(se3di_tangent_eval(&tangent, 0.3, vdot, lambda) == SE3D_OK);
+        CHECK(se3di_tangent_eval(&tangent, 0.3, vdot, lambda, NULL) == SE3D_OK);
         double coarse = tangent_error(&assembly, &tangent, vdot, lambda, 1e-3);
         double fine = tangent_error(&assembly, &tangent, vdot, lambda, 2.5e-4);
         CHECK(coarse < 2e-2);
@@ -523,7 +523,7 @@ static void check_states(se3d_system *(*build_one)(void), size_t couplings, doub
         CHECK(!se3di_tangent_init(&tangent, &assembly));
         CHECK(tangent.coupling_count == couplings);
         random_vector(vdot, 8 * BODIES, 1.0);
-        CHECK(!se3di_tangent_eval(&tangent, 0.3, vdot, lambda));
+        CHECK(!se3di_tangent_eval(&tangent, 0.3, vdot, lambda, NULL));
         const double coarse = tangent_error(&assembly, &tangent, vdot, lambda, h);
         const double fine = tangent_error(&assembly, &tangent, vdot, lambda, 0.25 * h);
         CHECK(coarse < 2e-3);

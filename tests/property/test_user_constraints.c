@@ -11,7 +11,9 @@
 /* d.d - f(t) with f = (length + rate sin(2 t))^2, d = A_1 s_1 + r_1 - A_0 s_0 - r_0 */
 typedef struct distance {
     double s[2][3], length, rate;
-    int fail_after, calls, wrong_number;
+    int fail_after, calls;
+    int wrong_number; /* 1 phi, 2 nu, 3 gamma, 4 the Jacobian is not finite */
+    int bent;         /* > 0: the call, of those for the Jacobian alone, that fails */
 } distance;
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -42,6 +44,16 @@ static void rotate_back(const double p[4], const double y[3], double out[3])
 {
     const double back[4] = {p[0], -p[1], -p[2], -p[3]};
     rotate(back, y, out);
+}
+
+/* What is to be wrong. */
+static se3d_status spoil(distance *c, double *phi, double *jacobian, double *nu, double *gamma)
+{
+    double *const wrong[] = {NULL, phi, nu, gamma, jacobian ? jacobian + 11 : NULL};
+    if (wrong[c->wrong_number]) {
+        *wrong[c->wrong_number] = c->wrong_number % 2 ? (double)NAN : HUGE_VAL;
+    }
+    return jacobian && !phi && !nu && !gamma && c->bent > 0 && --c->bent == 0 ? -78 : SE3D_OK;
 }
 
 static se3d_status distance_eval(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
@@ -78,7 +90,7 @@ static se3d_status distance_eval(void *ctx, double t, const se3d_body_motion *bo
         }
     }
     if (phi) {
-        phi[0] = c->wrong_number ? (double)NAN : dot(d, d) - f * f;
+        phi[0] = dot(d, d) - f * f;
     }
     if (nu) {
         nu[0] = 2.0 * f * f1;
@@ -86,7 +98,7 @@ static se3d_status distance_eval(void *ctx, double t, const se3d_body_motion *bo
     if (gamma) {
         gamma[0] = 2.0 * (f1 * f1 + f * f2) - 2.0 * dot(ddot, ddot) - 2.0 * dot(d, turned);
     }
-    return SE3D_OK;
+    return spoil(c, phi, jacobian, nu, gamma);
 }
 
 typedef struct world {
@@ -376,7 +388,132 @@ static void a_callback_that_fails_stops_the_analysis_with_its_name(void)
     }
 }
 
+/* The curvature of a constraint is differences of its Jacobian, each of which may fail. */
+static void a_jacobian_that_fails_stops_exact_newton_steps(void)
+{
+    for (int at = 1; at <= 25; ++at) {
+        world w;
+        se3d_solver *solver;
+        open_world(&w, 1, 0.2);
+        se3d_solver_def def = se3d_solver_def_default();
+        def.method = SE3D_METHOD_RADAU;
+        CHECK(!se3d_solver_create(w.system, &def, &solver));
+        CHECK(!se3d_solver_run(solver, 0.01));
+        w.data.bent = at;
+        CHECK(se3d_solver_run(solver, 0.5) == SE3D_ERR_CALLBACK && w.data.bent == 0);
+        CHECK_CONTAINS(se3d_system_get_error(w.system), "link");
+        CHECK(!se3d_solver_run(solver, 0.5));
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(w.system);
+    }
+}
+
+/* A spring to the ground that fails in one of its calls. */
+static se3d_status push(void *ctx, double t, const se3d_body_motion motion[2], double wrench[12],
+                        double *K, double *D)
+{
+    int *left = ctx;
+    (void)t, (void)K, (void)D;
+    for (int k = 0; k < 3; ++k) {
+        wrench[6 + k] = -50.0 * motion[1].r[k];
+    }
+    return *left > 0 && --*left == 0 ? -80 : SE3D_OK;
+}
+
+/* Also where the force is differentiated for the matrix of Newton's method. One call is of
+ * the audit of work, which says so. */
+static void a_force_that_fails_in_newton_steps_is_named(void)
+{
+    int named = 0;
+    for (int at = 1; at <= 60; ++at) {
+        int left = 0;
+        world w;
+        se3d_force force;
+        se3d_solver *solver;
+        se3d_force_callback_def def = se3d_force_callback_def_default();
+        se3d_solver_def settings = se3d_solver_def_default();
+        open_world(&w, 0, 0.0);
+        def.name = "push";
+        def.body_j = w.body[1];
+        def.callback = push;
+        def.ctx = &left;
+        CHECK(!se3d_system_get_ground(w.system, &def.body_i));
+        CHECK(!se3d_force_create_callback(w.system, &def, &force));
+        settings.method = SE3D_METHOD_RADAU;
+        CHECK(!se3d_solver_create(w.system, &settings, &solver));
+        CHECK(!se3d_solver_run(solver, 0.01));
+        left = at;
+        CHECK(se3d_solver_run(solver, 0.5) == SE3D_ERR_CALLBACK && left == 0);
+        named += strstr(se3d_system_get_error(w.system), "force element push (callback)") != NULL;
+        CHECK(!se3d_solver_run(solver, 0.5));
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(w.system);
+    }
+    CHECK(named >= 59);
+}
+
+/* Says nothing about its bodies; fails in one of its calls. */
+static se3d_status nothing_eval(void *ctx, double t, const se3d_body_motion *bodies, double *phi,
+                                double *jacobian, double *nu, double *gamma)
+{
+    int *left = ctx;
+    (void)t, (void)bodies, (void)phi, (void)jacobian, (void)nu, (void)gamma;
+    return *left > 0 && --*left == 0 ? -79 : SE3D_OK;
+}
+
+/* 0 = 0 is left out, and what is left out has no gap that counts, also if it cannot be asked. */
+static void an_equation_without_content_is_left_out(void)
+{
+    int refused = 0, passed = 0;
+    for (int at = 0; at < 100; ++at) {
+        int left = 0;
+        world w;
+        se3d_constraint nothing;
+        se3d_solver *solver;
+        open_world(&w, 0, 0.0);
+        se3d_user_constraint_def def = se3d_user_constraint_def_default();
+        def.name = "nothing";
+        def.callback = nothing_eval;
+        def.ctx = &left;
+        def.body_count = 2;
+        def.bodies[0] = w.body[0];
+        def.bodies[1] = w.body[1];
+        CHECK(!se3d_user_constraint_create(w.system, &def, &nothing));
+        const se3d_solver_def settings = se3d_solver_def_default();
+        CHECK(se3d_solver_create(w.system, &settings, &solver) >= 0);
+        left = at;
+        const se3d_status status = se3d_solver_run(solver, 0.02);
+        CHECK(status == SE3D_ERR_CALLBACK || status >= 0);
+        CHECK(at > 0 || status >= 0);
+        refused += status < 0;
+        passed += status >= 0 && at > 0 && left == 0;
+        left = 0;
+        CHECK(se3d_solver_run(solver, 0.05) >= 0);
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(w.system);
+    }
+    CHECK(refused > 0 && passed > 0);
+}
+
 static void numbers_that_are_not_finite_are_refused(void)
+{
+    for (int wrong = 1; wrong <= 4; ++wrong) {
+        world w;
+        se3d_solver *solver;
+        open_world(&w, 1, 0.0);
+        const se3d_solver_def def = se3d_solver_def_default();
+        CHECK(!se3d_solver_create(w.system, &def, &solver));
+        w.data.wrong_number = wrong;
+        CHECK(se3d_solver_run(solver, 1.0) == SE3D_ERR_NOT_FINITE);
+        CHECK_CONTAINS(se3d_system_get_error(w.system), "link");
+        w.data.wrong_number = 0;
+        CHECK(!se3d_solver_run(solver, 1.0));
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(w.system);
+    }
+}
+
+static void a_reader_gives_zeros_for_what_is_not_finite(void)
 {
     world w;
     se3d_solver *solver;
@@ -489,7 +626,11 @@ int main(void)
     RUN(equations_and_jacobians_are_those_of_the_primitive);
     RUN(a_bead_on_a_turning_line_moves_as_the_hyperbolic_cosine);
     RUN(a_callback_that_fails_stops_the_analysis_with_its_name);
+    RUN(a_jacobian_that_fails_stops_exact_newton_steps);
+    RUN(a_force_that_fails_in_newton_steps_is_named);
+    RUN(an_equation_without_content_is_left_out);
     RUN(numbers_that_are_not_finite_are_refused);
+    RUN(a_reader_gives_zeros_for_what_is_not_finite);
     RUN(definitions_out_of_range_are_refused);
     RUN(clones_and_runs_agree_bit_by_bit);
     RUN(a_copy_of_a_constraint_is_named_as_redundant);
