@@ -53,7 +53,7 @@ typedef struct simplex {
 } simplex;
 
 /* Solve the n <= 3 symmetric equations G x = b; 0 if they are singular. */
-static int solve_gram(int n, double G[3][3], double b[3], double x[3])
+static inline int solve_gram(int n, double G[3][3], double b[3], double x[3])
 {
     for (int k = 0; k < n; ++k) {
         int pivot = k;
@@ -91,8 +91,8 @@ static int solve_gram(int n, double G[3][3], double b[3], double x[3])
 
 /* The point of the affine hull of some corners nearest to the origin: weights, all positive, and
  * the point; 0 if it is not between them. */
-static int nearest_of_part(const simplex *s, const int *part, int count, double weight[4],
-                           double point[3])
+static inline int nearest_of(const simplex *s, const int *part, int count, double weight[4],
+                             double point[3])
 {
     double e[3][3], G[3][3], b[3], x[3] = {0.0, 0.0, 0.0};
     const double *base = s->v[part[0]].p;
@@ -122,12 +122,36 @@ static int nearest_of_part(const simplex *s, const int *part, int count, double 
     return first > 0.0;
 }
 
-/* Reduce the simplex to the part whose nearest point is the nearest of all. */
-static void reduce(simplex *s, double point[3])
+/* The compiler makes one of it for each count. */
+static int nearest_of_part(const simplex *s, const int *part, int count, double weight[4],
+                           double point[3])
+{
+    switch (count) {
+    case 1:
+        weight[part[0]] = 1.0;
+        se3di_copy(s->v[part[0]].p, point);
+        return 1;
+    case 2:
+        return nearest_of(s, part, 2, weight, point);
+    case 3:
+        return nearest_of(s, part, 3, weight, point);
+    default:
+        return nearest_of(s, part, 4, weight, point);
+    }
+}
+
+/* Reduce the simplex to the part whose nearest point is the nearest of all. Of the first `known`
+ * corners together the point is that of `s->weight`, and no part of them has a nearer one. */
+static void reduce(simplex *s, int known, double point[3])
 {
     double least = HUGE_VAL, best_weight[4] = {0.0, 0.0, 0.0, 0.0};
     int best = 1;
-    for (int mask = 1; mask < 1 << s->count; ++mask) {
+    if (known > 0) {
+        least = se3di_dot(point, point);
+        best = (1 << known) - 1;
+        memcpy(best_weight, s->weight, sizeof best_weight);
+    }
+    for (int mask = 1 << known; mask < 1 << s->count; ++mask) {
         int part[4] = {0, 0, 0, 0}, count = 0;
         double weight[4] = {0.0, 0.0, 0.0, 0.0}, here[3];
         for (int k = 0; k < s->count; ++k) {
@@ -167,8 +191,10 @@ static int holds(const simplex *s, const vertex *v)
     return 0;
 }
 
-/* The distance; 0 if the origin is within rounding of the simplex. */
-static double walk(const difference *D, simplex *s, double point[3])
+/* The distance; 0 if the origin is within rounding of the simplex. If all that is asked is whether
+ * it is more than `enough` (>= 0), a bound that tells is returned: D lies behind the plane through
+ * its point farthest along any direction. */
+static double walk(const difference *D, simplex *s, double point[3], double enough)
 {
     double d[3];
     se3di_sub(D->j->at->x, D->i->at->x, d);
@@ -179,20 +205,31 @@ static double walk(const difference *D, simplex *s, double point[3])
     s->count = 1;
     s->weight[0] = 1.0;
     se3di_copy(s->v[0].p, point);
+    const double size = se3di_norm(d);
+    if (enough >= 0.0 && -se3di_dot(point, d) > enough * size) {
+        return -se3di_dot(point, d) / size;
+    }
     for (int k = 0; k < WALKS; ++k) {
         vertex next;
         double square = se3di_dot(point, point);
         if (!(square > GAIN * GAIN * D->size * D->size) || s->count == 4) {
             return 0.0;
         }
-        se3di_scale(-1.0 / sqrt(square), point, d);
-        support(D, d, &next);
         double distance = sqrt(square);
-        if (distance + se3di_dot(next.p, d) <= GAIN * D->size || holds(s, &next)) {
+        if (distance <= enough) {
+            return distance;
+        }
+        se3di_scale(-1.0 / distance, point, d);
+        support(D, d, &next);
+        const double least = -se3di_dot(next.p, d);
+        if (enough >= 0.0 && least > enough) {
+            return least;
+        }
+        if (distance - least <= GAIN * D->size || holds(s, &next)) {
             return distance;
         }
         s->v[s->count++] = next;
-        reduce(s, point);
+        reduce(s, s->count - 1, point);
         if (!(se3di_dot(point, point) < square)) {
             return sqrt(se3di_dot(point, point));
         }
@@ -365,7 +402,7 @@ static void find_witness(const polytope *P, const polytope_face *nearest, double
             continue;
         }
         simplex s = {.count = 3, .v = {P->v[f->v[0]], P->v[f->v[1]], P->v[f->v[2]]}};
-        reduce(&s, point);
+        reduce(&s, 0, point);
         if (se3di_norm(point) < least) {
             least = se3di_norm(point);
             witness(s.v, s.weight, s.count, a, b);
@@ -486,7 +523,8 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
     simplex s;
     double point[3];
     memset(&s, 0, sizeof s);
-    return walk(&D, &s, point) > fmax(distance, APART * D.size);
+    const double enough = fmax(distance, APART * D.size);
+    return walk(&D, &s, point, enough) > enough;
 }
 
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
@@ -505,7 +543,7 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
         return known;
     }
     memset(&s, 0, sizeof s);
-    double distance = walk(&D, &s, point);
+    double distance = walk(&D, &s, point, -1.0);
     witness(s.v, s.weight, s.count, on_i, on_j);
     if (distance > least) {
         double overlap = smooth ? HUGE_VAL : -distance;

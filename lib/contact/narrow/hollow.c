@@ -31,7 +31,9 @@ typedef struct way {
     const se3di_shape *own, *piece;
     se3di_shape_pose at, of;
     int is_out;
-    double depth, n[3]; /* into the piece, ground frame */
+    uint32_t place_count;
+    double depth, n[3];                      /* into the piece, ground frame */
+    double places[SE3DI_MANIFOLD_POINTS][3]; /* of the surface, at which it leaves */
 } way;
 
 typedef struct ways {
@@ -102,6 +104,15 @@ static const se3di_shape *place_part(const se3di_solid *solid, size_t k, se3di_s
     return &s->pieces[k];
 }
 
+static void note_places(const ways *all, way *w)
+{
+    w->place_count = all->touched.count;
+    for (uint32_t c = 0; c < w->place_count; ++c) {
+        se3di_copy(all->touched.points[c].point, w->places[c]);
+        se3di_add_scaled(-0.5 * all->touched.points[c].overlap, w->n, w->places[c]);
+    }
+}
+
 static void find_overlap(ways *all, size_t a, size_t b)
 {
     way *w = &all->list[all->count];
@@ -111,7 +122,9 @@ static void find_overlap(ways *all, size_t a, size_t b)
     w->is_out = 0;
     w->depth = 0.0;
     se3di_sub(w->of.x, w->at.x, d);
-    if (!(se3di_norm(d) < w->piece->bound + w->own->bound)) {
+    const se3di_solid own = {w->own, &w->at}, piece = {w->piece, &w->of};
+    if (!(se3di_norm(d) < w->piece->bound + w->own->bound) ||
+        se3di_convex_are_apart(&own, &piece, se3di_core_radius(w->own))) {
         return;
     }
     touch(all, w);
@@ -122,6 +135,7 @@ static void find_overlap(ways *all, size_t a, size_t b)
         }
     }
     all->count += w->depth > 0.0;
+    note_places(all, w);
 }
 
 static void find_overlaps(ways *all)
@@ -141,14 +155,8 @@ static int find_ways_out(ways *all)
     for (int k = 0; k < all->count; ++k) {
         way *w = &all->list[k];
         w->is_out = all->count == 1;
-        if (!w->is_out) {
-            touch(all, w);
-        }
-        for (uint32_t c = 0; c < all->touched.count && !w->is_out; ++c) {
-            double x[3];
-            se3di_copy(all->touched.points[c].point, x);
-            se3di_add_scaled(-0.5 * all->touched.points[c].overlap, w->n, x);
-            w->is_out = is_open(all, k, x);
+        for (uint32_t c = 0; c < w->place_count && !w->is_out; ++c) {
+            w->is_out = is_open(all, k, w->places[c]);
         }
         found += w->is_out;
     }
@@ -215,7 +223,8 @@ static void show(ways *all, int k)
     }
 }
 
-void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
+                       se3di_narrow_finder find)
 {
     ways all;
     uint32_t kept = 0;
@@ -225,8 +234,12 @@ void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_man
     all.manifold = manifold;
     all.count = 0;
     find_overlaps(&all);
+    if (all.count == 0) {
+        return 0;
+    }
+    find(i, mesh, manifold);
     if (find_ways_out(&all) == 0) {
-        return;
+        return 1;
     }
     for (uint32_t k = 0; k < manifold->count; ++k) {
         se3di_contact_point *c = &manifold->points[k];
@@ -240,4 +253,5 @@ void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_man
             show(&all, k);
         }
     }
+    return 1;
 }

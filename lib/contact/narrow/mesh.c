@@ -380,28 +380,27 @@ static int is_far(const meeting *m, const edge *e)
     return se3di_norm(d) > m->solid->shape->bound + BESIDE * m->size;
 }
 
+/* What is cheaper comes first: most edges are apart from the solid. */
 static void touch_edge(meeting *m, edge *e, uint32_t feature)
 {
-    double n[3], on_i[3], on_j[3];
     se3di_shape line;
     se3di_shape_pose at;
-    se3di_solid segment = {&line, &at};
+    const se3di_solid segment = {&line, &at};
     if (is_far(m, e)) {
         return;
     }
     const double length = place_edge(e, &line, &at);
+    const double beside = m->has_pieces ? 0.0 : BESIDE * m->size;
+    if (se3di_convex_are_apart(m->solid, &segment, se3di_core_radius(m->solid->shape) + beside)) {
+        return;
+    }
     se3di_mesh_visit(m->mesh->shape, e->middle, SAME * length, meet_neighbour, e);
     if (e->is_flat) {
         return;
     }
-    const double overlap = se3di_convex_distance(m->solid, &segment, n, on_i, on_j) +
-                           se3di_core_radius(m->solid->shape);
-    if (!(overlap > -BESIDE * m->size)) {
-        return;
-    }
     se3di_manifold lines = {.count = 0};
-    if (overlap > 0.0) {
-        se3di_narrow_convex(m->solid, &segment, &lines);
+    se3di_narrow_convex(m->solid, &segment, &lines);
+    if (lines.count > 0) {
         add_lines(m, &lines, e, feature);
     }
     if (!m->has_pieces) {
@@ -421,6 +420,9 @@ static void meet_edges(void *ctx, uint32_t triangle)
     }
     const se3di_shape *s = m->mesh->shape;
     for (uint32_t k = 0; k < 3; ++k) {
+        if (s->closed != 0 && !se3di_mesh_edge_bulges(s, triangle, k)) {
+            continue;
+        }
         edge e = {.m = m,
                   .a = se3di_mesh_corner(s, triangle, k),
                   .b = se3di_mesh_corner(s, triangle, k + 1),
@@ -605,8 +607,8 @@ static void find_center(meeting *m)
     se3di_solid_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
-void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
-                     meeting *m)
+static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
+                  se3di_manifold *manifold)
 {
     const se3di_shape *s = i->shape;
     memset(m, 0, offsetof(meeting, ways));
@@ -617,18 +619,30 @@ void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifo
     m->has_pieces = mesh->shape->piece_count > 0 && !se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT);
     find_center(m);
     find_side(m);
+}
+
+static void find_parts(meeting *m)
+{
+    const se3di_shape *s = m->solid->shape, *mesh = m->mesh->shape;
     if (se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT)) {
         touch_ends(m);
     } else if (se3di_shape_is(s, SE3DI_SHAPE_HAS_RIMS)) {
-        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_rims, m);
+        se3di_mesh_visit(mesh, m->origin, s->bound, meet_rims, m);
     } else if (se3di_shape_is(s, SE3DI_SHAPE_IS_SMOOTH)) {
-        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_lowest, m);
+        se3di_mesh_visit(mesh, m->origin, s->bound, meet_lowest, m);
     } else {
         touch_corners(m);
     }
     if (!se3di_shape_is(s, SE3DI_SHAPE_IS_BALL)) {
-        se3di_mesh_visit(mesh->shape, m->origin, s->bound, meet_edges, m);
+        se3di_mesh_visit(mesh, m->origin, s->bound, meet_edges, m);
     }
+}
+
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+{
+    meeting m;
+    begin(&m, i, mesh, manifold);
+    find_parts(&m);
 }
 
 /* By its rims, corners and edges a solid other than a ball is held; else what is left counts. */
@@ -636,9 +650,7 @@ static void find_rest(meeting *m)
 {
     const se3di_shape *mesh = m->mesh->shape;
     const double bound = m->solid->shape->bound;
-    if (m->has_pieces) {
-        se3di_narrow_judge(m->solid, m->mesh, m->manifold);
-    } else {
+    if (!m->has_pieces) {
         se3di_mesh_add_ways(m);
     }
     if (m->manifold->count == 0) {
@@ -655,7 +667,12 @@ static void find_rest(meeting *m)
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     meeting m;
-    se3di_mesh_find(i, mesh, manifold, &m);
+    begin(&m, i, mesh, manifold);
+    if (!m.has_pieces) {
+        find_parts(&m);
+    } else if (!se3di_narrow_judge(i, mesh, manifold, se3di_mesh_find)) {
+        return; /* it overlaps none of them */
+    }
     if (!se3di_shape_is(i->shape, SE3DI_SHAPE_IS_BALL)) {
         find_rest(&m);
     }

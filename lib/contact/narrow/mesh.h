@@ -81,11 +81,13 @@ void se3di_mesh_add_ways(se3di_mesh_meeting *m);
 
 /* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
 int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack);
-/* The places where corners, round ends and edges touch; what else there is of a solid is `m`. */
-void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
-                     se3di_mesh_meeting *m);
-/* Of contacts of a solid, or a mesh that convex pieces make up, with such a mesh keep those that
- * are ways out of the pieces, and add what is missing. */
-void se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
+/* The places where corners, round ends and edges touch. */
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
+/* Of contacts of a solid, or a mesh that convex pieces make up, with such a mesh, which `find` finds
+ * if any pieces overlap, keep those that are ways out of the pieces, and add what is missing. */
+typedef void (*se3di_narrow_finder)(const se3di_solid *i, const se3di_solid *mesh,
+                                    se3di_manifold *manifold);
+int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
+                       se3di_narrow_finder find);
 
 #endif

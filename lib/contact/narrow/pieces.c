@@ -80,8 +80,7 @@ static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
     }
     const se3di_solid solid = {piece, &at};
     if (mesh->shape->piece_count > 0) {
-        se3di_mesh_meeting m;
-        se3di_mesh_find(&solid, mesh, &own, &m);
+        se3di_mesh_find(&solid, mesh, &own);
     } else {
         se3di_narrow_mesh(&solid, mesh, &own);
     }
@@ -105,6 +104,13 @@ static int is_second(const se3di_solid *i, const se3di_solid *j)
     return b > 0 && (a == 0 || b < a);
 }
 
+static void find_pieces(const se3di_solid *cut, const se3di_solid *whole, se3di_manifold *manifold)
+{
+    for (size_t k = 0; k < cut->shape->piece_count; ++k) {
+        add_piece(cut, k, whole, manifold);
+    }
+}
+
 void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const int turned = is_second(i, j);
@@ -114,11 +120,10 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
         se3di_narrow_surfaces(i, j, manifold);
         return;
     }
-    for (size_t k = 0; k < cut->shape->piece_count; ++k) {
-        add_piece(cut, k, whole, manifold);
-    }
     if (whole->shape->piece_count > 0) {
-        se3di_narrow_judge(cut, whole, manifold);
+        (void)se3di_narrow_judge(cut, whole, manifold, find_pieces);
+    } else {
+        find_pieces(cut, whole, manifold);
     }
     se3di_manifold_separate(manifold, cut->at->R);
     if (turned) {
