@@ -527,6 +527,15 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
     return walk(&D, &s, point, enough) > enough;
 }
 
+int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const double n[3],
+                            double distance)
+{
+    difference D = {i, j, size_of(i) + size_of(j), 0};
+    vertex v;
+    support(&D, n, &v);
+    return -se3di_dot(v.p, n) > fmax(distance, APART * D.size);
+}
+
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3])
 {

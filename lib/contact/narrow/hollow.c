@@ -14,8 +14,10 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
-#define WAYS_MOST   64
+#define WAYS_MOST   128
+#define POINTS_MOST 64
 #define ALONG       0.985 /* cosine: a contact is along a way */
 #define LEAN        1.02  /* by how much it may be deeper then */
 #define NEAR_DEPTHS 10.0  /* near a place: depths */
@@ -24,6 +26,8 @@
 #define WITHIN      1e-2   /* of that: so far within a piece the other one is in it */
 #define EXACT       1e-9   /* of the size: depths that are one */
 #define RIM         3.1e-5 /* of the size: by how much points of an upright rim are too shallow */
+#define ALIKE       1e-4   /* rad: ways that are about the same */
+#define SHALLOWER   0.05   /* of a way's depth: by how much a contact that shows it may be */
 #define FEATURE     0xa0000000u
 
 /* How a piece of the one (all of it if it is convex) comes off a piece of the other. */
@@ -39,10 +43,11 @@ typedef struct way {
 typedef struct ways {
     const se3di_solid *i, *mesh;
     double size;
-    se3di_manifold *manifold;
     int count;
-    way list[WAYS_MOST];    /* of those that overlap */
-    se3di_manifold touched; /* of one */
+    uint32_t point_count;
+    way list[WAYS_MOST];                         /* of those that overlap */
+    se3di_contact_point points[POINTS_MOST + 1]; /* all contacts */
+    se3di_manifold touched;                      /* of one */
 } ways;
 
 /* Whether what moves, by `by`, is off what of a piece is near x, but for its border. */
@@ -59,7 +64,15 @@ static int is_off(const way *w, const double by[3], const double x[3], double de
         small.R[k] *= share * (1.0 - WITHIN);
     }
     const se3di_solid solid = {w->own, &moved}, part = {w->piece, &small};
-    return se3di_convex_are_apart(&solid, &part, se3di_core_radius(w->own));
+    const double radius = se3di_core_radius(w->own);
+    return se3di_convex_are_parted(&solid, &part, w->n, radius) ||
+           se3di_convex_are_apart(&solid, &part, radius);
+}
+
+/* Whether a place (the mesh's frame) is on the piece of a way, to the depth of that. */
+static int is_on(const ways *all, const way *w, const double local[3])
+{
+    return se3di_piece_holds(w->piece, local, w->depth + EXACT * all->size);
 }
 
 /* Whether a place where it leaves is on the surface of the mesh. */
@@ -163,27 +176,59 @@ static int find_ways_out(ways *all)
     return found;
 }
 
-/* Cut a contact down to the ways out of the pieces that it is on, or of any if none of those has
- * one; returns whether there is one. */
-static int is_along(const ways *all, se3di_contact_point *c)
+/* How deep a contact may be at most: as the ways out of the pieces that it is on are, or as any if
+ * none of those has one. 0: it leads into the mesh. */
+static double find_limit(const ways *all, const double point[3], const double normal[3],
+                         double overlap)
 {
-    double local[3], most[2] = {0.0, 0.0};
-    int is_on = 0;
-    se3di_solid_to_local(all->mesh, c->point, local);
+    double local[3], here = 0.0, anywhere = 0.0;
+    se3di_solid_to_local(all->mesh, point, local);
     for (int k = 0; k < all->count; ++k) {
         const way *w = &all->list[k];
-        const int along =
-            se3di_dot(w->n, c->normal) > ALONG && c->overlap < LEAN * w->depth + EXACT * all->size;
-        const int on = se3di_piece_holds(w->piece, local, w->depth + EXACT * all->size);
-        if (w->is_out) {
-            is_on |= on;
-            most[0] = along && on ? fmax(most[0], w->depth) : most[0];
-            most[1] = along ? fmax(most[1], w->depth) : most[1];
+        if (w->is_out && w->depth > here && se3di_dot(w->n, normal) > ALONG &&
+            overlap < LEAN * w->depth + EXACT * all->size) {
+            anywhere = fmax(anywhere, w->depth);
+            here = is_on(all, w, local) ? w->depth : here;
         }
     }
-    const double limit = most[is_on ? 0 : 1];
-    c->overlap = fmin(c->overlap, limit);
-    return limit > 0.0;
+    if (here > 0.0 || !(anywhere > 0.0)) {
+        return here;
+    }
+    for (int k = 0; k < all->count; ++k) {
+        if (all->list[k].is_out && is_on(all, &all->list[k], local)) {
+            return 0.0;
+        }
+    }
+    return anywhere;
+}
+
+static int keeps(const void *ctx, const double point[3], const double normal[3], double overlap)
+{
+    return find_limit(ctx, point, normal, overlap) > 0.0;
+}
+
+static void add_point(ways *all, const se3di_contact_point *p)
+{
+    all->points[all->point_count] = *p;
+    all->point_count = se3di_contact_points_thin(all->points, all->point_count + 1, POINTS_MOST);
+}
+
+/* Whether a contact is along a way, or hardly leans from it and is about as deep on the same piece:
+ * pieces of faces that lie on each other come apart by as many ways, which differ by little, and
+ * each is as good as all others. */
+static int is_shown_by(const ways *all, const way *w, const se3di_contact_point *c)
+{
+    double turn[3], local[3];
+    se3di_sub(c->normal, w->n, turn);
+    const double angle = se3di_norm(turn);
+    if (angle < SE3DI_MESH_SAME) {
+        return 1;
+    }
+    if (!(angle < ALIKE && c->overlap > (1.0 - SHALLOWER) * w->depth)) {
+        return 0;
+    }
+    se3di_solid_to_local(all->mesh, c->point, local);
+    return is_on(all, w, local);
 }
 
 /* The way out of piece k as the deepest contact along it; if there is none, added. */
@@ -193,15 +238,13 @@ static void show(ways *all, int k)
     const double slack =
         se3di_shape_is(w->own, SE3DI_SHAPE_HAS_RIMS) ? RIM * w->own->bound : EXACT * all->size;
     se3di_contact_point *deepest = NULL;
-    for (uint32_t c = 0; c < all->manifold->count; ++c) {
-        se3di_contact_point *at = &all->manifold->points[c];
-        double turn[3];
-        se3di_sub(at->normal, w->n, turn);
-        if (se3di_norm(turn) < SE3DI_MESH_SAME && (!deepest || at->overlap > deepest->overlap)) {
+    for (uint32_t c = 0; c < all->point_count; ++c) {
+        se3di_contact_point *at = &all->points[c];
+        if ((!deepest || at->overlap > deepest->overlap) && is_shown_by(all, w, at)) {
             deepest = at;
         }
     }
-    if (deepest && deepest->overlap > w->depth - slack) {
+    if (deepest && deepest->overlap > w->depth - fmax(slack, SHALLOWER * w->depth)) {
         if (deepest->overlap < w->depth + EXACT * all->size) {
             se3di_copy(w->n, deepest->normal);
             deepest->overlap = w->depth;
@@ -212,46 +255,75 @@ static void show(ways *all, int k)
     for (uint32_t c = 0; c < all->touched.count; ++c) {
         const se3di_contact_point *from = &all->touched.points[c];
         if (!(from->overlap < w->depth)) {
-            se3di_contact_point *to = se3di_manifold_add(all->manifold, from->point, w->n, w->depth,
-                                                         FEATURE + (uint32_t)k);
-            se3di_add_scaled(-0.5 * w->depth, w->n, to->point); /* on the mesh */
-            to->share = 1.0;
-            to->bend_i = from->bend_i;
-            to->bend_j = from->bend_j;
+            se3di_contact_point to;
+            se3di_contact_point_set(&to, from->point, w->n, w->depth, FEATURE + (uint32_t)k);
+            se3di_add_scaled(-0.5 * w->depth, w->n, to.point); /* on the mesh */
+            to.share = 1.0;
+            to.bend_i = from->bend_i;
+            to.bend_j = from->bend_j;
+            add_point(all, &to);
             return;
         }
     }
 }
 
+static int overlaps_any(const ways *all, const se3di_shape *part)
+{
+    int k = 0;
+    while (k < all->count && all->list[k].own != part) {
+        ++k;
+    }
+    return k < all->count || all->count == WAYS_MOST;
+}
+
+/* The contacts of one part, but for those that lead into the mesh: there may be many. */
+static void add_part(ways *all, size_t part, se3di_part_finder find, int has_way_out)
+{
+    const se3di_shape *s = all->i->shape;
+    const int in_pieces = s->piece_count > 0;
+    const double slack = SE3DI_MESH_SAME * s->bound;
+    se3di_manifold own = {.count = 0};
+    if (!overlaps_any(all, in_pieces ? &s->pieces[part] : s)) {
+        return;
+    }
+    const se3di_mesh_filter filter = {keeps, all};
+    find(all->i, part, all->mesh, has_way_out ? &filter : NULL, &own);
+    for (uint32_t k = 0; k < own.count; ++k) {
+        se3di_contact_point *c = &own.points[k];
+        if (in_pieces && se3di_contact_points_have(all->points, all->point_count, c, slack)) {
+            continue;
+        }
+        c->overlap = has_way_out
+                         ? fmin(c->overlap, find_limit(all, c->point, c->normal, c->overlap))
+                         : c->overlap;
+        if (c->overlap > 0.0) {
+            add_point(all, c);
+        }
+    }
+}
+
+/* Of all the points those go first that others stand for, when it is known which show ways out. */
 int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
-                       se3di_narrow_finder find)
+                       se3di_part_finder find)
 {
     ways all;
-    uint32_t kept = 0;
     all.i = i;
     all.mesh = mesh;
     all.size = se3di_shape_contact_size(i->shape);
-    all.manifold = manifold;
     all.count = 0;
+    all.point_count = 0;
     find_overlaps(&all);
-    if (all.count == 0) {
-        return 0;
+    const int has_way_out = find_ways_out(&all) > 0;
+    const size_t parts = i->shape->piece_count;
+    for (size_t k = 0; k < (parts > 0 ? parts : 1) && all.count > 0; ++k) {
+        add_part(&all, k, find, has_way_out);
     }
-    find(i, mesh, manifold);
-    if (find_ways_out(&all) == 0) {
-        return 1;
-    }
-    for (uint32_t k = 0; k < manifold->count; ++k) {
-        se3di_contact_point *c = &manifold->points[k];
-        if (is_along(&all, c)) {
-            manifold->points[kept++] = *c;
-        }
-    }
-    manifold->count = kept;
     for (int k = 0; k < all.count; ++k) {
         if (all.list[k].is_out) {
             show(&all, k);
         }
     }
-    return 1;
+    manifold->count = se3di_contact_points_thin(all.points, all.point_count, SE3DI_MANIFOLD_POINTS);
+    memcpy(manifold->points, all.points, manifold->count * sizeof *all.points);
+    return all.count > 0;
 }

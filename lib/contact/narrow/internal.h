@@ -26,6 +26,12 @@ static inline int se3di_solid_is_line(const se3di_solid *solid)
  * this one perhaps. */
 se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
                                         const double normal[3], double overlap, uint32_t feature);
+/* A point between two flat surfaces. */
+void se3di_contact_point_set(se3di_contact_point *p, const double point[3], const double normal[3],
+                             double overlap, uint32_t feature);
+/* Of points that are more than `most` one after the other that is near another one goes. Returns
+ * how many there are then. */
+uint32_t se3di_contact_points_thin(se3di_contact_point *points, uint32_t count, uint32_t most);
 /* As if the other shape came first. */
 void se3di_manifold_mirror(se3di_manifold *manifold);
 /* Points are told apart by their features: change those that several have, by their normals in the
@@ -40,6 +46,9 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
 
 /* Whether the cores of two are apart by more than a distance. */
 int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance);
+/* Whether the planes across a unit direction, from i to j, part them so; if not, others may. */
+int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const double n[3],
+                            double distance);
 
 /* How far a box, or the line of a capsule, overlaps a cylinder, or such a line (not two lines), the
  * normal from the first to the second, and the places that are farthest in each other. <= 0: the

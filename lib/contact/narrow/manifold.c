@@ -4,6 +4,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across)
 {
@@ -12,6 +13,7 @@ void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double ac
     bend->r[1] = across;
 }
 
+#define TIE   1e-2        /* gaps that are one but for this: the first of them */
 #define APART 0x01000000u /* features that shapes give are below */
 
 /* How far two points are apart; another normal counts as much as the extent of all. */
@@ -25,41 +27,40 @@ static double gap_between(const se3di_contact_point *a, const se3di_contact_poin
 
 /* Of two, one that is far less deep, or else the same of them whatever their depths are: a choice
  * by depth would be another after every step, as what is chosen is pushed out. */
-static uint32_t loser_of(const se3di_manifold *manifold, uint32_t a, uint32_t b)
+static uint32_t loser_of(const se3di_contact_point *points, uint32_t a, uint32_t b)
 {
-    const se3di_contact_point *p = &manifold->points[a], *q = &manifold->points[b];
+    const se3di_contact_point *p = &points[a], *q = &points[b];
     if (p->overlap < 0.5 * q->overlap || q->overlap < 0.5 * p->overlap) {
         return p->overlap < q->overlap ? a : b;
     }
     return p->feature > q->feature ? a : b;
 }
 
-/* With one too many: which of them the others stand for best. */
-static uint32_t find_spare(const se3di_manifold *manifold)
+/* Of points that are too many: which of them the others stand for best. */
+static uint32_t find_spare(const se3di_contact_point *points, uint32_t count)
 {
     uint32_t pair[2] = {0, 1};
     double extent = 0.0, least = HUGE_VAL;
-    for (uint32_t k = 1; k <= SE3DI_MANIFOLD_POINTS; ++k) {
-        extent = fmax(extent, gap_between(&manifold->points[0], &manifold->points[k], 0.0));
+    for (uint32_t k = 1; k < count; ++k) {
+        extent = fmax(extent, gap_between(&points[0], &points[k], 0.0));
     }
-    for (uint32_t a = 0; a < SE3DI_MANIFOLD_POINTS; ++a) {
-        for (uint32_t b = a + 1; b <= SE3DI_MANIFOLD_POINTS; ++b) {
-            const double gap = gap_between(&manifold->points[a], &manifold->points[b], extent);
-            if (gap < least) {
+    for (uint32_t a = 0; a + 1 < count; ++a) {
+        for (uint32_t b = a + 1; b < count; ++b) {
+            const double gap = gap_between(&points[a], &points[b], extent);
+            if (gap < (1.0 - TIE) * least) {
                 least = gap;
                 pair[0] = a;
                 pair[1] = b;
             }
         }
     }
-    return loser_of(manifold, pair[0], pair[1]);
+    return loser_of(points, pair[0], pair[1]);
 }
 
-se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
-                                        const double normal[3], double overlap, uint32_t feature)
+void se3di_contact_point_set(se3di_contact_point *p, const double point[3], const double normal[3],
+                             double overlap, uint32_t feature)
 {
     static const se3di_bend flat = {{0.0, 0.0, 0.0}, {HUGE_VAL, HUGE_VAL}};
-    se3di_contact_point *p = &manifold->points[manifold->count];
     se3di_copy(point, p->point);
     se3di_copy(normal, p->normal);
     p->overlap = overlap;
@@ -69,11 +70,27 @@ se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double p
     p->bend_i = p->bend_j = flat;
     se3di_perpendicular(normal, p->bend_i.u);
     se3di_copy(p->bend_i.u, p->bend_j.u);
+}
+
+uint32_t se3di_contact_points_thin(se3di_contact_point *points, uint32_t count, uint32_t most)
+{
+    for (; count > most; --count) {
+        const uint32_t spare = find_spare(points, count);
+        memmove(points + spare, points + spare + 1, (count - spare - 1) * sizeof *points);
+    }
+    return count;
+}
+
+se3di_contact_point *se3di_manifold_add(se3di_manifold *manifold, const double point[3],
+                                        const double normal[3], double overlap, uint32_t feature)
+{
+    se3di_contact_point *p = &manifold->points[manifold->count];
+    se3di_contact_point_set(p, point, normal, overlap, feature);
     if (manifold->count < SE3DI_MANIFOLD_POINTS) {
         ++manifold->count;
         return p;
     }
-    const uint32_t spare = find_spare(manifold);
+    const uint32_t spare = find_spare(manifold->points, SE3DI_MANIFOLD_POINTS + 1);
     if (spare < SE3DI_MANIFOLD_POINTS) {
         manifold->points[spare] = *p;
     }

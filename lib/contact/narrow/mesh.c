@@ -83,6 +83,9 @@ void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], dou
         }
         return;
     }
+    if (m->filter && !m->filter->keeps(m->filter->ctx, point, normal, overlap)) {
+        return;
+    }
     se3di_contact_point *p = se3di_manifold_add(m->manifold, point, normal, overlap, feature);
     p->share = 1.0;
     p->bend_i.r[0] = p->bend_i.r[1] = radius;
@@ -638,11 +641,20 @@ static void find_parts(meeting *m)
     }
 }
 
-void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, const se3di_mesh_filter *filter,
+                     se3di_manifold *manifold)
 {
     meeting m;
     begin(&m, i, mesh, manifold);
+    m.filter = filter;
     find_parts(&m);
+}
+
+static void find_whole(const se3di_solid *i, size_t part, const se3di_solid *mesh,
+                       const se3di_mesh_filter *filter, se3di_manifold *manifold)
+{
+    (void)part;
+    se3di_mesh_find(i, mesh, filter, manifold);
 }
 
 /* By its rims, corners and edges a solid other than a ball is held; else what is left counts. */
@@ -670,7 +682,7 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
     begin(&m, i, mesh, manifold);
     if (!m.has_pieces) {
         find_parts(&m);
-    } else if (!se3di_narrow_judge(i, mesh, manifold, se3di_mesh_find)) {
+    } else if (!se3di_narrow_judge(i, mesh, manifold, find_whole)) {
         return; /* it overlaps none of them */
     }
     if (!se3di_shape_is(i->shape, SE3DI_SHAPE_IS_BALL)) {

@@ -37,8 +37,15 @@ typedef struct se3di_mesh_meeting {
     int has_pieces; /* which tell the ways off it */
     int reserved;
     se3di_manifold *manifold;
+    const struct se3di_mesh_filter *filter; /* NULL: all contacts are kept */
     se3di_mesh_way ways[SE3DI_MESH_WAYS];
 } se3di_mesh_meeting;
+
+/* Which contacts are kept: there may be many others, which must not take their places. */
+typedef struct se3di_mesh_filter {
+    int (*keeps)(const void *ctx, const double point[3], const double normal[3], double overlap);
+    const void *ctx;
+} se3di_mesh_filter;
 
 typedef struct se3di_mesh_edge {
     const se3di_mesh_meeting *m;
@@ -82,12 +89,17 @@ void se3di_mesh_add_ways(se3di_mesh_meeting *m);
 /* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
 int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack);
 /* The places where corners, round ends and edges touch. */
-void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
-/* Of contacts of a solid, or a mesh that convex pieces make up, with such a mesh, which `find` finds
- * if any pieces overlap, keep those that are ways out of the pieces, and add what is missing. */
-typedef void (*se3di_narrow_finder)(const se3di_solid *i, const se3di_solid *mesh,
-                                    se3di_manifold *manifold);
+void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, const se3di_mesh_filter *filter,
+                     se3di_manifold *manifold);
+/* Contacts of one part of a shape, all of it if it has no pieces, with a mesh. */
+typedef void (*se3di_part_finder)(const se3di_solid *i, size_t part, const se3di_solid *mesh,
+                                  const se3di_mesh_filter *filter, se3di_manifold *manifold);
+/* Of the contacts that `find` finds of the parts of i that overlap pieces of a mesh keep those that
+ * are ways out of the pieces, and add what is missing. Returns 0 if none overlap. */
 int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
-                       se3di_narrow_finder find);
+                       se3di_part_finder find);
+/* Whether one of some contacts is this one. */
+int se3di_contact_points_have(const se3di_contact_point *points, uint32_t count,
+                              const se3di_contact_point *p, double slack);
 
 #endif

@@ -10,8 +10,9 @@
 
 #include <math.h>
 
-#define BEYOND      1e-6 /* of the size: past the place where the way ends */
-#define PIECE_SHIFT 26   /* of features: the low bits are triangles and corners */
+#define BEYOND      1e-6  /* of the size: past the place where the way ends */
+#define SHARP       100.0 /* slacks by which their planes are off the sharpest corner */
+#define PIECE_SHIFT 26    /* of features: the low bits are triangles and corners */
 
 static void place(const se3di_solid *mesh, const se3di_shape *piece, se3di_shape_pose *at)
 {
@@ -23,13 +24,18 @@ int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
 {
     double d[3];
     se3di_sub(x, piece->x, d);
+    const double far = piece->bound + SHARP * slack;
+    if (se3di_dot(d, d) > far * far) {
+        return 0;
+    }
     for (size_t k = 0; k < piece->triangle_count; ++k) {
         const double *corner[3];
         double u[3], n[3];
         se3di_triangle_corners(piece, k, corner);
         se3di_triangle_span(corner, n);
         se3di_sub(d, corner[0], u);
-        if (!(se3di_dot(u, n) < slack * se3di_norm(n))) {
+        const double over = se3di_dot(u, n);
+        if (!(over < 0.0) && !(over < slack * se3di_norm(n))) {
             return 0;
         }
     }
@@ -52,10 +58,11 @@ static int stays_within(const se3di_solid *i, size_t k, const se3di_contact_poin
     return 0;
 }
 
-static int is_known(const se3di_manifold *manifold, const se3di_contact_point *p, double slack)
+int se3di_contact_points_have(const se3di_contact_point *points, uint32_t count,
+                              const se3di_contact_point *p, double slack)
 {
-    for (uint32_t k = 0; k < manifold->count; ++k) {
-        const se3di_contact_point *other = &manifold->points[k];
+    for (uint32_t k = 0; k < count; ++k) {
+        const se3di_contact_point *other = &points[k];
         double d[3];
         se3di_sub(other->point, p->point, d);
         if (se3di_norm(d) < slack && se3di_dot(other->normal, p->normal) > SE3DI_MESH_COPLANAR) {
@@ -65,14 +72,14 @@ static int is_known(const se3di_manifold *manifold, const se3di_contact_point *p
     return 0;
 }
 
-/* What one piece finds. */
-static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
-                      se3di_manifold *manifold)
+/* What piece k finds. */
+static void find_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
+                       const se3di_mesh_filter *filter, se3di_manifold *manifold)
 {
     const se3di_shape *piece = &i->shape->pieces[k];
     se3di_shape_pose at;
-    se3di_manifold own = {.count = 0};
     double local[3];
+    uint32_t kept = 0;
     place(i, piece, &at);
     se3di_solid_to_local(mesh, at.x, local);
     if (se3di_mesh_is_clear(mesh->shape, local, piece->bound)) {
@@ -80,21 +87,17 @@ static void add_piece(const se3di_solid *i, size_t k, const se3di_solid *mesh,
     }
     const se3di_solid solid = {piece, &at};
     if (mesh->shape->piece_count > 0) {
-        se3di_mesh_find(&solid, mesh, &own);
+        se3di_mesh_find(&solid, mesh, filter, manifold);
     } else {
-        se3di_narrow_mesh(&solid, mesh, &own);
+        se3di_narrow_mesh(&solid, mesh, manifold);
     }
-    for (uint32_t n = 0; n < own.count; ++n) {
-        const se3di_contact_point *from = &own.points[n];
-        if (stays_within(i, k, from) ||
-            is_known(manifold, from, SE3DI_MESH_SAME * i->shape->bound)) {
-            continue;
+    for (uint32_t n = 0; n < manifold->count; ++n) {
+        if (!stays_within(i, k, &manifold->points[n])) {
+            manifold->points[kept] = manifold->points[n];
+            manifold->points[kept++].feature += (uint32_t)k << PIECE_SHIFT;
         }
-        se3di_contact_point *p =
-            se3di_manifold_add(manifold, from->point, from->normal, from->overlap, from->feature);
-        *p = *from;
-        p->feature += (uint32_t)k << PIECE_SHIFT;
     }
+    manifold->count = kept;
 }
 
 /* The one with the fewer pieces is taken apart. */
@@ -106,8 +109,16 @@ static int is_second(const se3di_solid *i, const se3di_solid *j)
 
 static void find_pieces(const se3di_solid *cut, const se3di_solid *whole, se3di_manifold *manifold)
 {
+    const double slack = SE3DI_MESH_SAME * cut->shape->bound;
     for (size_t k = 0; k < cut->shape->piece_count; ++k) {
-        add_piece(cut, k, whole, manifold);
+        se3di_manifold own = {.count = 0};
+        find_piece(cut, k, whole, NULL, &own);
+        for (uint32_t n = 0; n < own.count; ++n) {
+            const se3di_contact_point *p = &own.points[n];
+            if (!se3di_contact_points_have(manifold->points, manifold->count, p, slack)) {
+                *se3di_manifold_add(manifold, p->point, p->normal, p->overlap, p->feature) = *p;
+            }
+        }
     }
 }
 
@@ -121,7 +132,7 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
         return;
     }
     if (whole->shape->piece_count > 0) {
-        (void)se3di_narrow_judge(cut, whole, manifold, find_pieces);
+        (void)se3di_narrow_judge(cut, whole, manifold, find_piece);
     } else {
         find_pieces(cut, whole, manifold);
     }
