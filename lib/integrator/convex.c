@@ -280,7 +280,12 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     const double taken = se3di_convex_work(c, &equations->assembly);
     se3di_contacts_begin(model, 0.0, 1.0, 0);
     model->contacts.frozen = c->asleep_count > 0 ? c->frozen : NULL;
+    se3di_convex_follow(c, model);
+    model->contacts.followed = c->followed;
+    model->contacts.followed_count = c->followed_count;
     const se3d_status status = se3di_state_prepare(equations, t1);
+    model->contacts.followed = NULL;
+    model->contacts.followed_count = 0;
     if (status >= 0) {
         se3di_convex_record(c, model);
         se3di_convex_store(c, model, taken);

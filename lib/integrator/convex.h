@@ -109,6 +109,10 @@ typedef struct se3di_convex {
     double *reach;   /* [free bodies]: of its shapes */
     size_t sleep_capacity, nest_capacity, reach_capacity;
     size_t asleep_count;
+    /* Contacts that are followed, see convex_follow.c: */
+    double *marks; /* [6 * contacts of the list] */
+    se3di_body_contact *followed;
+    size_t followed_count, mark_capacity, followed_capacity;
     size_t changed;    /* slopes of contacts since the preconditioner was made */
     int32_t sleeps;    /* it is wanted */
     int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
@@ -218,6 +222,11 @@ void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly);
 int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly);
 /* Islands that have been at rest for long enough fall asleep at the end of a step. */
 void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly);
+
+/* convex_follow.c: what is to be known of contacts at the start of a step; @return OK, NO_MEMORY */
+se3d_status se3di_convex_mark(se3di_convex *c, const se3di_assembly *assembly);
+/* those that are known at its end. */
+void se3di_convex_follow(se3di_convex *c, const se3di_model *model);
 
 /* convex_solve.c: v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);

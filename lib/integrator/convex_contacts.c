@@ -299,9 +299,9 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
     const se3d_status status = se3di_array_reserve(
         &model->allocator, &contacts, &convex->contact_capacity, count, sizeof *convex->contacts);
     convex->contacts = contacts;
-    if (status < 0) {
-        return se3di_error_set(error, status, "t = %g s: no memory for %zu contacts", model->time,
-                               count);
+    if (status < 0 || se3di_convex_mark(convex, assembly) < 0) {
+        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for %zu contacts",
+                               model->time, count);
     }
     convex->contact_count = 0;
     memset(convex->touched, 0, assembly->body_count);
@@ -426,7 +426,7 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
             continue;
         }
         r->kind = SE3DI_CONTACT_NEW;
-        r->energy = r->twist = 0.0;
+        r->energy = 0.0;
         memset(r->force, 0, sizeof r->force);
         memset(r->torque, 0, sizeof r->torque);
         memset(r->roll, 0, sizeof r->roll);

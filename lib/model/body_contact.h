@@ -22,7 +22,8 @@ typedef struct se3di_body_contact {
     int32_t kind;                    /* SE3DI_CONTACT_ */
     double anchor_i[3], anchor_j[3]; /* body frames; j's minus i's is the stretch of the spring */
     double roll[3], twist; /* R* times the angle of rolling (ground frame), of torsion; of stepped
-                              contacts: how their velocity changes as the point wanders [m/s^2] */
+                              contacts: how their velocity changes as the point wanders [m/s^2],
+                              how far the bodies have moved since the shapes were looked at [m] */
     double turn[4];        /* orientation of body j in body i */
     double point[3], normal[3]; /* ground frame, the normal from i to j */
     double overlap;
@@ -61,6 +62,8 @@ typedef struct se3di_body_contacts {
     size_t kept;            /* contacts of `next` that are in `list` */
     const uint8_t *frozen;  /* [bodies] they stay where they are in the step under way, and so do
                                the contacts of two of them; NULL: none */
+    const struct se3di_body_contact *followed; /* the same of pairs of shapes whose contacts are */
+    size_t followed_count; /* known at the end of the step under way without a look at them */
 } se3di_body_contacts;
 
 #endif

@@ -10,13 +10,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The first remembered point of a pair of shapes; the list is in order of the pairs. */
-static size_t find_pair(const se3di_body_contacts *contacts, uint32_t i, uint32_t j)
+/* The first point of a pair of shapes; the list is in order of the pairs. */
+static size_t find_pair(const se3di_body_contact *list, size_t count, uint32_t i, uint32_t j)
 {
-    size_t low = 0, high = contacts->count;
+    size_t low = 0, high = count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        const se3di_body_contact *c = &contacts->list[middle];
+        const se3di_body_contact *c = &list[middle];
         if (c->shape_i < i || (c->shape_i == i && c->shape_j < j)) {
             low = middle + 1;
         } else {
@@ -41,6 +41,23 @@ static const se3di_body_contact *find_memory(const se3di_body_contacts *contacts
     return NULL;
 }
 
+/* The points of a pair that are known: where they are in the list, and how many. */
+static size_t find_known(const se3di_model *model, uint32_t i, uint32_t j,
+                         const se3di_body_contact **known)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    const int is_frozen = se3di_contact_is_frozen(model, i, j);
+    const se3di_body_contact *list = is_frozen ? c->list : c->followed;
+    const size_t count = is_frozen ? c->count : c->followed_count;
+    const size_t first = find_pair(list, count, i, j);
+    size_t end = first;
+    while (end < count && list[end].shape_i == i && list[end].shape_j == j) {
+        ++end;
+    }
+    *known = list ? list + first : NULL;
+    return end - first;
+}
+
 typedef struct visit {
     const se3di_model *model;
     double elapsed; /* since the state of what is remembered */
@@ -54,7 +71,8 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
 {
     const visit *v = ctx;
     const se3di_model *model = v->model;
-    if (v->keep && se3di_contact_is_frozen(model, i, j)) {
+    const se3di_body_contact *known;
+    if (v->keep && (se3di_contact_is_frozen(model, i, j) || find_known(model, i, j, &known) > 0)) {
         return v->keep(v->ctx, i, j);
     }
     const se3di_shape *a = &model->shapes[i];
@@ -65,7 +83,8 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
     se3di_shape_place(a, &model->frames[a->body], &at_a);
     se3di_shape_place(b, &model->frames[b->body], &at_b);
     se3di_narrow_find(a, &at_a, b, &at_b, &manifold);
-    size_t memory = manifold.count > 0 ? find_pair(&model->contacts, i, j) : 0;
+    size_t memory =
+        manifold.count > 0 ? find_pair(model->contacts.list, model->contacts.count, i, j) : 0;
     for (uint32_t k = 0; k < manifold.count; ++k) {
         se3di_encounter *e = &points[k];
         *e = (se3di_encounter){
@@ -190,7 +209,6 @@ typedef struct preparation {
     double t;
     double overlap_limit;
     se3di_error *error;
-    size_t place; /* in the list, of the last pair that stays */
 } preparation;
 
 const char *se3di_shape_describe(const se3di_model *model, uint32_t shape)
@@ -255,32 +273,26 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
     return SE3D_OK;
 }
 
-/* The contacts of two bodies that stay go on as they are. */
+/* The contacts of two bodies that stay go on as they are, those that are followed as is known. */
 static se3d_status keep_pair(void *ctx, uint32_t i, uint32_t j)
 {
     preparation *p = ctx;
     se3di_body_contacts *c = &p->model->contacts;
-    while (p->place < c->count &&
-           (c->list[p->place].shape_i < i ||
-            (c->list[p->place].shape_i == i && c->list[p->place].shape_j < j))) {
-        ++p->place;
-    }
-    const size_t first = p->place;
-    size_t end = first;
-    while (end < c->count && c->list[end].shape_i == i && c->list[end].shape_j == j) {
-        ++end;
-    }
+    const se3di_body_contact *known;
+    const size_t count = find_known(p->model, i, j, &known);
     void *next = c->next;
     const se3d_status status = se3di_array_reserve(&p->model->allocator, &next, &c->next_capacity,
-                                                   c->next_count + end - first, sizeof *c->next);
+                                                   c->next_count + count, sizeof *c->next);
     c->next = next;
     if (status < 0) {
         return se3di_error_set(p->error, status, "t = %g s: no memory for %zu contacts", p->t,
-                               c->next_count + end - first);
+                               c->next_count + count);
     }
-    memcpy(c->next + c->next_count, c->list + first, (end - first) * sizeof *c->next);
-    c->next_count += end - first;
-    c->kept += end - first;
+    if (count > 0) {
+        memcpy(c->next + c->next_count, known, count * sizeof *c->next);
+    }
+    c->next_count += count;
+    c->kept += count;
     return SE3D_OK;
 }
 
@@ -304,7 +316,7 @@ se3d_status se3di_contacts_reserve(se3di_model *model, double t, se3di_error *er
 
 static se3d_status note_all(se3di_model *model, double t, double overlap_limit, se3di_error *error)
 {
-    preparation p = {model, t, overlap_limit, error, 0};
+    preparation p = {model, t, overlap_limit, error};
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     model->contacts.next_time = t;
