@@ -87,6 +87,29 @@ int se3di_crowd_bears(const se3di_model *model, double h)
            !bounces(model) && !has_element(model, SE3DI_FORCE_CALLBACK);
 }
 
+static int may_lie_on(const se3di_model *model, const se3di_shape *mesh, const se3di_shape *s)
+{
+    return mesh->body != s->body && se3di_shapes_meet(mesh, s) &&
+           !(model->bodies[mesh->body].fixed && model->bodies[s->body].fixed) &&
+           !se3di_shape_is(s, SE3DI_SHAPE_IS_BALL | SE3DI_SHAPE_IS_HALF_SPACE);
+}
+
+int se3di_crowd_has_mesh(const se3di_model *model)
+{
+    const se3di_shape *shapes = model->shapes;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        if (!se3di_shape_is(&shapes[k], SE3DI_SHAPE_IS_SURFACE)) {
+            continue;
+        }
+        for (size_t other = 0; other < model->shape_slots.count; ++other) {
+            if (may_lie_on(model, &shapes[k], &shapes[other])) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
 /* Shapes follow each other body by body, or a body counts once more; what no group and mask lets
  * touch anything does not count. */
 int se3di_crowd_has(const se3di_model *model, size_t least)

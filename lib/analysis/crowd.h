@@ -13,6 +13,8 @@ int se3di_crowd_suits(const se3di_model *model);
 /* Steps of h are short beside spins and the oscillations of springs and dampers, no impact gives
  * back nearly all, and no element is the user's own. */
 int se3di_crowd_bears(const se3di_model *model, double h);
+/* A mesh may touch something of another body that has more than one point of contact with it. */
+int se3di_crowd_has_mesh(const se3di_model *model);
 /* At least so many free bodies have shapes that may touch. */
 int se3di_crowd_has(const se3di_model *model, size_t least);
 

@@ -165,7 +165,7 @@ static int32_t may_crowd(const se3di_run *run)
     const se3di_model *model = run->model;
     if (!run->automatic || run->analysis != SE3D_ANALYSIS_DYNAMICS || run->has_tolerance ||
         !(run->integration.settings.step <= STEP_CROWD) || !se3di_crowd_may_touch(model) ||
-        !se3di_crowd_has(model, SE3DI_CROWD_HELD)) {
+        !(se3di_crowd_has(model, SE3DI_CROWD_HELD) || se3di_crowd_has_mesh(model))) {
         return SE3DI_CROWD_NONE;
     }
     if (se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model)) {

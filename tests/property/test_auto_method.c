@@ -71,6 +71,30 @@ static void contacts_that_do_not_hold_the_steps_are_followed(void)
     }
 }
 
+/* One body on a mesh has many points of contact, each a stiff spring; on a plane it is followed. */
+static void a_single_box_that_is_pressed_on_a_mesh_goes_on_by_convex(void)
+{
+    static const char *const floors[] = {
+        "{type: plane, material: m}",
+        "{type: heightfield, heights: [[0, 0], [0, 0]], spacing: 1, material: m}"};
+    for (int k = 0; k < 2; ++k) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "se3d: 1\ngravity: [0, 0, -9.81]\nmaterials: [{name: m, density: 7800, friction: "
+                 "0.2, restitution: 0.2, stiffness: 1e10}]\ncontact: {law: hooke}\nbodies:\n"
+                 "  - {name: ground, shapes: [%s]}\n  - {name: box, mass: 0.1, inertia: [1e-5, "
+                 "1e-5, 1e-5], position: [0, 0, 0.01], orientation: {axis: [1, 0, 0], angle: 0.05},"
+                 " shapes: [{type: box, size: [0.02, 0.02, 0.02], material: m}]}\nforces: [{type: "
+                 "force, body: box, value: [\"0\", \"0\", \"-3000\"]}]\n"
+                 "analysis: {type: dynamics, duration: 1}\n",
+                 floors[k]);
+        text_model m = text_model_open(text, SE3D_METHOD_AUTO, -1, 0.0);
+        CHECK(text_model_run(&m, 0.007));
+        CHECK(moves_by(m.solver, k ? "convex" : "dop853"));
+        text_model_close(&m);
+    }
+}
+
 static void it_depends_on_what_acts_and_on_the_loops(void)
 {
     static const struct {
@@ -463,6 +487,7 @@ int main(void)
 {
     RUN(it_depends_on_what_acts_and_on_the_loops);
     RUN(contacts_that_do_not_hold_the_steps_are_followed);
+    RUN(a_single_box_that_is_pressed_on_a_mesh_goes_on_by_convex);
     RUN(it_is_decided_again_when_the_structure_changes);
     RUN(steps_between_runs_are_made_by_dop853);
     RUN(it_is_decided_again_when_gravity_varies);

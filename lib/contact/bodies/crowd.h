@@ -6,7 +6,7 @@
 #include "model/model.h"
 
 #define SE3DI_CROWD      10 /* free bodies */
-#define SE3DI_CROWD_HELD 3  /* if following contacts holds steps short */
+#define SE3DI_CROWD_HELD 3  /* if following contacts holds steps short, but on a mesh */
 
 /* What a method is left for. */
 enum {
