@@ -389,38 +389,85 @@ static void eval_rate(const se3di_encounter *e, const geometry *g, const se3di_e
     wrench_rate(e, c, &d, out);
 }
 
+static void put_column(double *matrix, int column, double sign, const double out[12])
+{
+    for (int r = 0; r < 12; ++r) {
+        matrix[12 * r + column] = sign * out[r];
+    }
+}
+
+/* A translation of one body is the opposite one of the other: 3 columns stand for 6. Those of a body
+ * that is fixed nobody reads. */
+static void eval_stiffness(const se3di_encounter *e, const geometry *g, double K[144])
+{
+    double out[12];
+    for (int a = 0; a < 3; ++a) {
+        se3di_encounter_change pose;
+        memset(&pose, 0, sizeof pose);
+        pose.r[1][a] = 1.0;
+        eval_rate(e, g, &pose, out);
+        put_column(K, 6 + a, 1.0, out);
+        put_column(K, a, -1.0, out);
+    }
+    for (int k = 0; k < 2; ++k) {
+        const double *A = e->model->frames[e->body[k]].A;
+        for (int a = 0; a < 3 && !e->model->bodies[e->body[k]].fixed; ++a) {
+            se3di_encounter_change pose;
+            memset(&pose, 0, sizeof pose);
+            for (int i = 0; i < 3; ++i) {
+                pose.turn[k][i] = A[3 * i + a];
+            }
+            eval_rate(e, g, &pose, out);
+            put_column(K, 6 * k + 3 + a, 1.0, out);
+        }
+    }
+}
+
+/* Velocities act by that of j relative to i at the point, and by how fast j turns on i, which only
+ * some laws see. */
+static void eval_damping(const se3di_encounter *e, const geometry *g, double D[144])
+{
+    const int is_felt =
+        e->law == SE3DI_LAW_CALLBACK || e->pair.rolling > 0.0 || e->pair.torsion > 0.0;
+    double slid[3][12], spun[3][12];
+    memset(spun, 0, sizeof spun);
+    for (int a = 0; a < 3; ++a) {
+        se3di_encounter_change speed;
+        memset(&speed, 0, sizeof speed);
+        speed.v[1][a] = 1.0;
+        eval_rate(e, g, &speed, slid[a]);
+        put_column(D, 6 + a, 1.0, slid[a]);
+        put_column(D, a, -1.0, slid[a]);
+        if (is_felt) { /* about the point: without what that turns of the arm */
+            memset(&speed, 0, sizeof speed);
+            speed.w[1][a] = 1.0;
+            se3di_cross(e->arm[1], speed.w[1], speed.v[1]);
+            eval_rate(e, g, &speed, spun[a]);
+        }
+    }
+    for (int k = 0; k < 2; ++k) {
+        const double *A = e->model->frames[e->body[k]].A;
+        for (int a = 0; a < 3; ++a) {
+            const double w[3] = {A[a], A[3 + a], A[6 + a]};
+            double v[3], out[12];
+            se3di_cross(w, e->arm[k], v);
+            for (int r = 0; r < 12; ++r) {
+                out[r] = v[0] * slid[0][r] + v[1] * slid[1][r] + v[2] * slid[2][r] +
+                         w[0] * spun[0][r] + w[1] * spun[1][r] + w[2] * spun[2][r];
+            }
+            put_column(D, 6 * k + 3 + a, k ? 1.0 : -1.0, out);
+        }
+    }
+}
+
 void se3di_encounter_derivative(const se3di_encounter *e, double K[144], double D[144])
 {
     geometry g;
     memset(K, 0, 144 * sizeof *K);
     memset(D, 0, 144 * sizeof *D);
-    if (!(e->normal > 0.0 || e->attraction > 0.0)) {
-        return;
-    }
-    eval_geometry(e, &g);
-    for (int column = 0; column < 12; ++column) {
-        int k = column / 6;
-        int a = column % 6;
-        const double *A = e->model->frames[e->body[k]].A;
-        double unit[3] = {0.0, 0.0, 0.0}, out[12];
-        se3di_encounter_change pose, speed;
-        memset(&pose, 0, sizeof pose);
-        memset(&speed, 0, sizeof speed);
-        unit[a % 3] = 1.0;
-        if (a < 3) {
-            se3di_copy(unit, pose.r[k]);
-            se3di_copy(unit, speed.v[k]);
-        } else {
-            se3di_mul(A, unit, pose.turn[k]);
-            se3di_mul(A, unit, speed.w[k]);
-        }
-        eval_rate(e, &g, &pose, out);
-        for (int r = 0; r < 12; ++r) {
-            K[12 * r + column] = out[r];
-        }
-        eval_rate(e, &g, &speed, out);
-        for (int r = 0; r < 12; ++r) {
-            D[12 * r + column] = out[r];
-        }
+    if (e->normal > 0.0 || e->attraction > 0.0) {
+        eval_geometry(e, &g);
+        eval_stiffness(e, &g, K);
+        eval_damping(e, &g, D);
     }
 }
