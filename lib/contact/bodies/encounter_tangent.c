@@ -396,8 +396,8 @@ static void put_column(double *matrix, int column, double sign, const double out
     }
 }
 
-/* A translation of one body is the opposite one of the other: 3 columns stand for 6. Those of a body
- * that is fixed nobody reads. */
+/* A translation of one body is the opposite one of the other: 3 columns stand for 6. Those of a
+ * body that is fixed nobody reads. */
 static void eval_stiffness(const se3di_encounter *e, const geometry *g, double K[144])
 {
     double out[12];
