@@ -14,8 +14,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STANDING 1e-2  /* of the tolerance: slower is standing still */
-#define ROUNDING 4e-15 /* of a coordinate, over the step, in the mean rate */
+#define STANDING        1e-2  /* of the tolerance: slower is standing still */
+#define ROUNDING        4e-15 /* of a coordinate, over the step, in the mean rate */
+#define SPRING_ROUNDING 2e-15 /* of the place of a contact, in the stretch of its springs */
 #define LANDING                                                                                    \
     0.5 /* of the tolerance: how far beyond the turn, or before the stop, a step is aimed */
 
@@ -254,26 +255,48 @@ int se3di_memory_meets_stop(const se3di_model *model)
 /* What the springs of contacts do, as they would be remembered, times a sign. */
 typedef struct springs {
     double sign, h;
+    double noise; /* what rounding makes of velocities in the step, relative to the scales */
+    const se3di_state_scale *scale;
     double *wrench; /* [bodies * 6] */
     const se3di_assembly *assembly;
     const double *begin; /* the state that the step begins with */
 } springs;
 
-/* What a spring is off by makes vibrations of its own frequency: it acts for their time at most. */
+/* What a spring is off by makes vibrations of its own frequency: it acts for their time at most. By
+ * how many times the step is longer. */
+static double outlast(const springs *s, const se3di_encounter *e)
+{
+    return fmax(1.0, s->h * sqrt(e->pair.kt * e->s * e->inverse_mass));
+}
+
 static void add_wrench(const springs *s, const se3di_encounter *e, double scale,
                        const double wrench[12])
 {
-    scale /= fmax(1.0, s->h * sqrt(e->pair.kt * e->s * e->inverse_mass));
+    scale /= outlast(s, e);
     for (size_t k = 0; k < 12; ++k) {
         s->wrench[6 * (size_t)e->body[k / 6] + k % 6] += scale * wrench[k];
     }
 }
 
+/* Marks are known to the rounding of where they are. */
+static void add_noise(springs *s, const se3di_encounter *e)
+{
+    const double arm = fmax(se3di_norm(e->arm[0]), se3di_norm(e->arm[1]));
+    const double size = se3di_norm(e->at->point) + arm;
+    const double force = SPRING_ROUNDING * size * e->pair.kt * e->s / outlast(s, e);
+    const double least = fmin(s->scale->speed, arm * s->scale->spin);
+    if (least > 0.0) {
+        s->noise = fmax(s->noise, s->h * force * e->alone / least);
+    }
+}
+
 static se3d_status add_spring(void *ctx, const se3di_encounter *e)
 {
+    springs *s = ctx;
     double wrench[12];
     se3di_encounter_spring(e, wrench);
-    add_wrench(ctx, e, ((const springs *)ctx)->sign, wrench);
+    add_wrench(s, e, s->sign, wrench);
+    add_noise(s, e);
     return SE3D_OK;
 }
 
@@ -362,13 +385,19 @@ se3d_status se3di_memory_review_contacts(se3di_equations *equations, const se3di
         return se3di_error_set(equations->error, status, "%s", ignored.message);
     }
     memset(wrench, 0, count * sizeof *wrench);
-    springs s = {-1.0, step->h, wrench, assembly, step->begin};
+    springs s = {.sign = -1.0,
+                 .h = step->h,
+                 .scale = step->scale,
+                 .wrench = wrench,
+                 .assembly = assembly,
+                 .begin = step->begin};
     (void)se3di_contacts_visit(model, step->t, add_spring, &s);
     se3di_contacts_hide(model);
     s.sign = 1.0;
     (void)se3di_contacts_visit(model, step->t, add_spring, &s);
     (void)se3di_contacts_visit(model, step->t, add_overshoot, &s);
-    *error = effect_of(model, wrench, step->h, step->scale) / step->tolerance;
+    const double effect = effect_of(model, wrench, step->h, step->scale);
+    *error = fmax(0.0, effect - s.noise) / step->tolerance;
     return SE3D_OK;
 }
 
