@@ -101,21 +101,30 @@ static double parts_of(const pace *p)
     return p->kind == SE3DI_PACE_ADAPTIVE ? LAND_PARTS : PARTS;
 }
 
+/* Of body j relative to i at their contact, along its normal. */
+static double normal_acceleration(const se3di_model *model, const uint32_t body[2],
+                                  const se3di_body_contact *c)
+{
+    double a[2][3];
+    for (int k = 0; k < 2; ++k) {
+        acceleration_at(model, body[k], c->point, a[k]);
+    }
+    se3di_sub(a[1], a[0], a[1]);
+    return se3di_dot(a[1], c->normal);
+}
+
 /* A contact at the last accepted state. */
 static void touching(pace *p, const se3di_body_contact *c)
 {
     const se3di_model *model = p->model;
     const uint32_t body[2] = {model->shapes[c->shape_i].body, model->shapes[c->shape_j].body};
     const se3di_pair *pair = pair_of(model, c->shape_i, c->shape_j);
-    double v[2][3], a[2][3];
+    double v[2][3];
     for (int k = 0; k < 2; ++k) {
         velocity_at(&model->frames[body[k]], c->point, v[k]);
-        acceleration_at(model, body[k], c->point, a[k]);
     }
     se3di_sub(v[1], v[0], v[1]);
-    se3di_sub(a[1], a[0], a[1]);
     double vn = se3di_dot(v[1], c->normal);
-    double an = se3di_dot(a[1], c->normal);
     double potential = 0.5 * pair->kn * c->overlap * c->overlap;
     if (model->contact.law == SE3DI_LAW_HERTZ_MINDLIN) {
         double R =
@@ -126,7 +135,9 @@ static void touching(pace *p, const se3di_body_contact *c)
     double time = contact_time(model, c->shape_i, c->shape_j, c->inverse_mass, energetic);
     double rate = se3di_over(3.14159265358979324, time);
     /* Of what slides and turns, an is not that of the gap: control of the error sees the force. */
-    const double bent = p->kind == SE3DI_PACE_ADAPTIVE ? 0.0 : se3di_over(an, rate * rate);
+    const double bent = p->kind == SE3DI_PACE_ADAPTIVE
+                            ? 0.0
+                            : se3di_over(normal_acceleration(model, body, c), rate * rate);
     int rests = se3di_hypot(se3di_over(vn, rate), bent) < AT_REST * c->overlap;
     if (p->kind == SE3DI_PACE_EXPLICIT || (!p->checks && !rests)) {
         limit(p, time / (p->checks ? STABLE_PARTS : parts_of(p)), c->shape_i, c->shape_j);
