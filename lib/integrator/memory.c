@@ -290,16 +290,6 @@ static void add_noise(springs *s, const se3di_encounter *e)
     }
 }
 
-static se3d_status add_spring(void *ctx, const se3di_encounter *e)
-{
-    springs *s = ctx;
-    double wrench[12];
-    se3di_encounter_spring(e, wrench);
-    add_wrench(s, e, s->sign, wrench);
-    add_noise(s, e);
-    return SE3D_OK;
-}
-
 /* The velocity of a body at the place of a contact where the step began. */
 static void velocity_before(const springs *s, const se3di_encounter *e, int k, double v[3])
 {
@@ -329,12 +319,11 @@ static int dissipated(const springs *s, const se3di_encounter *e)
 /* A contact at its cap whose friction has begun to drive has turned within the step, and its spring
  * should have begun to unload there: after v/2 (time since then) of the way, at most v h/2. One
  * that drove already is at a cap that falls faster than the spring unloads. */
-static se3d_status add_overshoot(void *ctx, const se3di_encounter *e)
+static void add_overshoot(const springs *s, const se3di_encounter *e)
 {
-    const springs *s = ctx;
     const double pull = se3di_norm(e->pull);
     if (!e->memory || !(e->give < 1.0) || !(se3di_dot(e->pull, e->vt) > 0.0) || !dissipated(s, e)) {
-        return SE3D_OK;
+        return;
     }
     const double way = 0.5 * s->h * se3di_norm(e->vt);
     const double lost = fmin(e->pair.kt * e->s * way, e->give * pull);
@@ -344,6 +333,19 @@ static se3d_status add_overshoot(void *ctx, const se3di_encounter *e)
     memset(part.moment, 0, sizeof part.moment);
     se3di_encounter_wrench(&part, wrench);
     add_wrench(s, e, 1.0, wrench);
+}
+
+/* As it would be remembered; of the step as a whole (sign 1) also what it overshoots by. */
+static se3d_status add_spring(void *ctx, const se3di_encounter *e)
+{
+    springs *s = ctx;
+    double wrench[12];
+    se3di_encounter_spring(e, wrench);
+    add_wrench(s, e, s->sign, wrench);
+    add_noise(s, e);
+    if (s->sign > 0.0) {
+        add_overshoot(s, e);
+    }
     return SE3D_OK;
 }
 
@@ -395,7 +397,6 @@ se3d_status se3di_memory_review_contacts(se3di_equations *equations, const se3di
     se3di_contacts_hide(model);
     s.sign = 1.0;
     (void)se3di_contacts_visit(model, step->t, add_spring, &s);
-    (void)se3di_contacts_visit(model, step->t, add_overshoot, &s);
     const double effect = effect_of(model, wrench, step->h, step->scale);
     *error = fmax(0.0, effect - s.noise) / step->tolerance;
     return SE3D_OK;
