@@ -20,7 +20,8 @@ typedef struct table {
 
 /* Examples that need another reference: stiff ones, and contacts that slip and stick, whose springs
  * are of the ends of steps: these must be short (`step`: the longest one, 0: any). At the defaults
- * such steps are followed, but what a contact forgets within one is not estimated. */
+ * a spring may be off by the tolerance times the length of the model when it begins to stick: what
+ * the box on the incline dissipates was found off by 1e-5 to 4e-4 of it, by where its steps end. */
 static const struct special {
     const char *name;
     int32_t method;
@@ -29,7 +30,7 @@ static const struct special {
 } specials[] = {
     {"", SE3D_METHOD_DOP853, 0, 1e-11, 0.0, 1e-5},
     {"suspension_kerb.yaml", SE3D_METHOD_RADAU, 0, 1e-9, 0.0, 1e-5},
-    {"incline.yaml", SE3D_METHOD_DOP853, 0, 1e-8, 3e-5, 5e-5},
+    {"incline.yaml", SE3D_METHOD_DOP853, 0, 1e-8, 3e-5, 1e-3},
 };
 
 static const struct special defaults = {"", SE3D_METHOD_AUTO, 0, 0.0, 0.0, 0.0};
