@@ -34,6 +34,8 @@
 #define LOOSE    1e-4 /* a tolerance of so few steps that their errors hardly add up */
 #define WORK     0.1  /* weight of the error of works, which disturbs nothing but the audit */
 
+#define NOISE    0.25 /* taken for an error that is only rounding: steps may grow a little */
+
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
 #define ITERATIONS_STEP       25
@@ -418,6 +420,10 @@ static se3d_status measure_error(se3di_bdf *m, int order, int is_tangent, double
 {
     se3di_bdf_get_error(m, order);
     *error = measure(m);
+    if (*error * m->tolerance <= se3di_relax_noise(&m->fast, &m->past->scale, m->h)) {
+        *error = fmin(*error, NOISE);
+        return SE3D_OK;
+    }
     return is_tangent ? measure_tangent(m, error) : SE3D_OK;
 }
 

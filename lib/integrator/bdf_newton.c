@@ -175,7 +175,8 @@ static se3d_status iterate_to_convergence(se3di_bdf *m)
         SE3DI_TRY(iterate(m, refactor, &size));
         const int is_traced = se3di_newton_note(&m->integration->newton, size * m->tolerance);
         if (size <= 1e-3 || (k > 0 && size <= 1.0 && size * size / before <= 1e-3) ||
-            (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE)) {
+            (k > 1 && size > 0.8 * before && size * m->tolerance <= SE3DI_STATE_NOISE) ||
+            (k > 0 && size * m->tolerance <= se3di_relax_noise(&m->fast, &m->past->scale, m->h))) {
             return SE3D_OK;
         }
         if (k > 1 && size > 2.0 * before) {

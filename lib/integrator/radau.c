@@ -35,6 +35,8 @@
 
 #define WORK_WEIGHT 0.1 /* of the error of works: it disturbs nothing but the audit of energy */
 
+#define WAY_ROUNDING 4e-15 /* of a position, in the ways of all stages */
+
 /* Of the tolerance: the estimate at the kink of a force, where the result is no better than it. */
 #define AT_KINK 0.3
 
@@ -228,6 +230,23 @@ static se3d_status add_work(se3di_radau *m)
     return SE3D_OK;
 }
 
+/* The rounding of positions times the force that the works of the step make with the way of its
+ * bodies: where they are at rest under load that is all. */
+static double work_noise(const se3di_radau *m)
+{
+    double way = 0.0, work[SE3DI_STATE_WORK];
+    const double *end = m->Y + (STAGES - 1) * m->count;
+    const size_t place = m->count - SE3DI_STATE_WORK;
+    for (size_t k = 0; k + SE3DI_STATE_SIZE <= place; k += SE3DI_STATE_SIZE) {
+        way = fmax(way, se3di_norm(end + k + 7) + se3di_norm(end + k + 10) * m->scale.length);
+    }
+    for (size_t k = 0; k < SE3DI_STATE_WORK; ++k) {
+        work[k] = end[place + k] - m->y0[place + k];
+    }
+    way *= m->h;
+    return way > 0.0 ? se3di_norm(work) * WAY_ROUNDING * m->scale.length / way : 0.0;
+}
+
 /* The error of the works in a solved step, by the same formula as that of the motion: where drivers
  * prescribe all of that it is the only one. */
 static double measure_work(const se3di_radau *m)
@@ -240,7 +259,8 @@ static double measure_work(const se3di_radau *m)
             d[k] -= start_rates[i] * (m->Y[i * m->count + place + k] - m->y0[place + k]);
         }
     }
-    return WORK_WEIGHT * se3di_radau_gamma * se3di_norm(d) / m->scale.energy;
+    const double error = se3di_norm(d);
+    return error <= work_noise(m) ? 0.0 : WORK_WEIGHT * se3di_radau_gamma * error / m->scale.energy;
 }
 
 /* The step is not taken: what force elements remembered before. */
@@ -397,7 +417,8 @@ static se3d_status attempt(se3di_radau *m, const history *past, double inner, do
     SE3DI_TRY(se3di_radau_solve(m));
     set_defect(m, m->d);
     SE3DI_TRY(se3di_radau_filter(m, m->d, error));
-    *error = se3di_over(*error, inner);
+    const double noise = inner > 0.0 ? se3di_relax_noise(&m->fast, &m->scale, h) : 0.0;
+    *error = *error <= noise ? 0.0 : se3di_over(*error, inner);
     if (m->is_stiff && !m->projects) {
         SE3DI_TRY(se3di_radau_close(m));
     }

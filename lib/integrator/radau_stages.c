@@ -479,6 +479,10 @@ static int has_converged(const se3di_radau *m, double rate)
 {
     const int is_stiff = se3di_is_fast(&m->fast);
     const double least = is_stiff ? RATE_STIFF : RATE_MIN, most = is_stiff ? MOST_STIFF : 1.0;
+    if (m->inner > 0.0 && m->iterations > 1 &&
+        m->size * m->tolerance <= se3di_relax_noise(&m->fast, &m->scale, m->h)) {
+        return 1;
+    }
     if (rate > 0.8) {
         const int stays = m->iterations > 3 && m->size > STAYS * m->past[2];
         return m->size <= 0.1 || (stays && m->size * m->tolerance <= SE3DI_STATE_NOISE);

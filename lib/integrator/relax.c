@@ -3,6 +3,7 @@
 
 #include "math/quaternion.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -35,6 +36,12 @@ se3di_fastness se3di_relax_trust(const se3di_equations *equations, se3di_fastnes
 {
     fast.spring2 = se3di_kkt_has_loop(equations->kkt) ? 0.0 : fast.spring2;
     return fast;
+}
+
+double se3di_relax_noise(const se3di_fastness *fast, const se3di_state_scale *scale, double h)
+{
+    const double rate = 16.0 * DBL_EPSILON / h * fast->spring2 / (1.0 + fast->spring2);
+    return rate * scale->length / scale->speed + rate / scale->spin;
 }
 
 /* Positions by c^2 x, and velocities by `velocity` times x. */

@@ -29,6 +29,10 @@ int se3di_is_fast(const se3di_fastness *fast);
  * constraints, whose multipliers have a pole there, would count as such. */
 se3di_fastness se3di_relax_trust(const se3di_equations *equations, se3di_fastness fast);
 
+/* What the rounding of positions makes of velocities by springs in a step of h, relative to the
+ * scales: no correction and no error below it says anything. */
+double se3di_relax_noise(const se3di_fastness *fast, const se3di_state_scale *scale, double h);
+
 typedef struct se3di_relaxation {
     double t, c;
     se3di_fastness fast;

@@ -207,6 +207,57 @@ static void balanced_forces_hold_no_steps_down(void)
     }
 }
 
+/* A body on a stiff bushing under its weight, and a box that friction holds on a slope. */
+#define ON_BUSHING                                                                                 \
+    "se3d: 1\nbodies:\n"                                                                           \
+    "  - {name: b, mass: 2, inertia: [.01, .01, .02], position: [0, 0, -1.001], "                  \
+    "angular_velocity: [.3, .1, 0]}\n"                                                             \
+    "forces:\n"                                                                                    \
+    "  - {type: bushing, body_i: ground, body_j: b, at: [.1, 0, -1], K: [1e6, 1e6, 1e6, 100, "     \
+    "100, 100], C: [2000, 2000, 2000, 1, 1, 1]}\n"
+
+#define ON_SLOPE                                                                                   \
+    "se3d: 1\nmaterials:\n"                                                                        \
+    "  - {name: wood, density: 250, friction: .5, restitution: .3, stiffness: 1e5}\n"              \
+    "contact: {law: hooke}\nbodies:\n"                                                             \
+    "  - {name: ground, shapes: [{type: plane, material: wood, normal: [sin(20*deg), 0, "          \
+    "cos(20*deg)]}]}\n"                                                                            \
+    "  - {name: b, mass: 2, inertia: [.0133, .0133, .0133], position: [.1*sin(20*deg), 0, "        \
+    ".1*cos(20*deg)], orientation: {axis: [0, 1, 0], angle: 20*deg}, "                             \
+    "shapes: [{type: box, size: [.2, .2, .2], material: wood}]}\n"
+
+/* The scales of the errors fall with the motion, and what is asked for below the rounding of
+ * positions: no step gets shorter by that. */
+static void rounding_at_rest_does_not_shorten_steps(void)
+{
+    static const struct {
+        const char *text;
+        int32_t method, most; /* steps */
+        double tolerance, end;
+    } cases[] = {
+        {ON_BUSHING, SE3D_METHOD_RADAU, 800, 1e-8, 5.0},   /* 381; 859 with the rounding */
+        {ON_BUSHING, SE3D_METHOD_RADAU, 5000, 1e-12, 5.0}, /* 2,512; 527,869 */
+        {ON_BUSHING, SE3D_METHOD_BDF, 1500, 1e-6, 5.0},    /* 638; 10,328 */
+        {ON_BUSHING, SE3D_METHOD_BDF, 8000, 1e-8, 5.0},    /* 4,261; beyond a million */
+        {ON_SLOPE, SE3D_METHOD_RADAU, 2500, 1e-10, 2.0},   /* 1,238; 430,608 */
+        {ON_SLOPE, SE3D_METHOD_BDF, 4000, 1e-8, 2.0},      /* 2,085; 26,590 */
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        char text[2000];
+        se3d_solver_stats stats;
+        snprintf(text, sizeof text, "%sanalysis: {type: dynamics, duration: %g, tolerance: %g}\n",
+                 cases[k].text, cases[k].end, cases[k].tolerance);
+        text_model m = text_model_open(text, cases[k].method, -1, 0.0);
+        text_model_run(&m, cases[k].end);
+        CHECK(!se3d_solver_get_stats(m.solver, &stats));
+        if (!(stats.steps + stats.rejected < (uint64_t)cases[k].most)) {
+            fprintf(stderr, "case %zu: %lu steps\n", k, (unsigned long)stats.steps);
+        }
+        CHECK(stats.steps + stats.rejected < (uint64_t)cases[k].most);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(balanced_forces_hold_no_steps_down);
@@ -214,5 +265,6 @@ int main(void)
     RUN(an_elbow_that_sticks_stays_bent);
     RUN(radau_goes_on_where_bearings_rub);
     RUN(stiff_loops_at_rest_are_left_to_radau);
+    RUN(rounding_at_rest_does_not_shorten_steps);
     return check_finish();
 }
