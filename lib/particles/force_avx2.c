@@ -38,6 +38,32 @@ typedef __m256d M;
 #define M_BITS(m)         ((unsigned)_mm256_movemask_pd(m))
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount((unsigned)_mm256_movemask_pd(m)))
 
+/* A row of four numbers of a record. */
+typedef __m256d ROW;
+
+#define ROW_LOAD(p)     _mm256_load_pd(p)
+#define ROW_STORE(p, a) _mm256_store_pd(p, a)
+#define ROW_ALL(p)      _mm256_broadcast_sd(p)
+#define ROW_ADD(a, b)   _mm256_add_pd(a, b)
+#define ROW_MUL(a, b)   _mm256_mul_pd(a, b)
+
+V_INLINE ROW ROW_THREE(double s)
+{
+    return _mm256_blend_pd(_mm256_set1_pd(s), _mm256_setzero_pd(), 8);
+}
+
+/* What is behind three numbers may be none: it is read as 0, and stays. */
+V_INLINE ROW ROW_LOAD_THREE(const double *p)
+{
+    const __m256i three = _mm256_set_epi64x(0, -1, -1, -1);
+    return _mm256_and_pd(_mm256_load_pd(p), _mm256_castsi256_pd(three));
+}
+
+V_INLINE void ROW_STORE_THREE(double *p, ROW a)
+{
+    _mm256_store_pd(p, _mm256_blend_pd(a, _mm256_load_pd(p), 8));
+}
+
 V_INLINE double sum_lanes(const double *v)
 {
     V a = _mm256_add_pd(_mm256_load_pd(v), _mm256_load_pd(v + 4));
@@ -76,6 +102,14 @@ V_INLINE void transpose(const V in[4], V out[4])
     out[3] = _mm256_permute2f128_pd(b, d, 0x31);
 }
 
+#define turn_rows(rows, out) transpose(rows, out)
+
+V_INLINE void clear_load(se3di_load *load)
+{
+    _mm256_store_pd(load->force, _mm256_setzero_pd());
+    _mm256_store_pd(load->torque, _mm256_setzero_pd());
+}
+
 V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i, V out[8])
 {
     V low[4], high[4];
@@ -107,7 +141,7 @@ V_INLINE void load_four(const double *const at[4], V out[4])
     for (int k = 0; k < 4; ++k) {
         rows[k] = _mm256_loadu_pd(at[k]);
     }
-    transpose(rows, out);
+    turn_rows(rows, out);
 }
 
 V_INLINE void store_four(double *const at[4], const V in[4])
@@ -211,8 +245,9 @@ V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *
 #include "particles/clumps.inc"
 #include "particles/force.inc"
 #include "particles/sift.inc"
+#include "particles/spheres.inc"
 
-static const se3di_kernels core_table = {"avx2", pairs, walls, sift, clumps};
+static const se3di_kernels core_table = {"avx2", pairs, walls, sift, clumps, spheres};
 
 SE3DI_TARGET_END
 

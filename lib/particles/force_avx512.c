@@ -42,6 +42,31 @@ typedef __mmask8 M;
 #define M_BITS(m)         ((unsigned)(m))
 #define M_COUNT(m)        ((uint64_t)__builtin_popcount(m))
 
+/* A row of four numbers of a record. */
+typedef __m256d ROW;
+
+#define ROW_LOAD(p)     _mm256_load_pd(p)
+#define ROW_STORE(p, a) _mm256_store_pd(p, a)
+#define ROW_ALL(p)      _mm256_broadcast_sd(p)
+#define ROW_ADD(a, b)   _mm256_add_pd(a, b)
+#define ROW_MUL(a, b)   _mm256_mul_pd(a, b)
+
+V_INLINE ROW ROW_THREE(double s)
+{
+    return _mm256_maskz_mov_pd(7, _mm256_set1_pd(s));
+}
+
+/* What is behind three numbers may be none: it is read as 0, and stays. */
+V_INLINE ROW ROW_LOAD_THREE(const double *p)
+{
+    return _mm256_maskz_load_pd(7, p);
+}
+
+V_INLINE void ROW_STORE_THREE(double *p, ROW a)
+{
+    _mm256_mask_store_pd(p, 7, a);
+}
+
 V_INLINE double sum_lanes(const double *v)
 {
     __m256d h = _mm256_add_pd(_mm256_load_pd(v), _mm256_load_pd(v + 4));
@@ -86,6 +111,11 @@ V_INLINE void transpose(const V in[8], V out[8])
         out[2 + k] = _mm512_shuffle_f64x2(c, d, 0x88);
         out[6 + k] = _mm512_shuffle_f64x2(c, d, 0xdd);
     }
+}
+
+V_INLINE void clear_load(se3di_load *load)
+{
+    _mm512_store_pd(load, _mm512_setzero_pd());
 }
 
 V_INLINE void load_particles(const se3di_particle *particles, const uint32_t *i, V out[8])
@@ -140,14 +170,22 @@ V_INLINE void transpose_halves(const V in[4], V out[4])
     out[3] = _mm512_permutex2var_pd(b, third, d);
 }
 
+V_INLINE void turn_rows(const ROW rows[8], V out[4])
+{
+    V wide[4];
+    for (int k = 0; k < 4; ++k) {
+        wide[k] = _mm512_insertf64x4(_mm512_castpd256_pd512(rows[k]), rows[4 + k], 1);
+    }
+    transpose_halves(wide, out);
+}
+
 V_INLINE void load_four(const double *const at[8], V out[4])
 {
-    V rows[4];
-    for (int k = 0; k < 4; ++k) {
-        V low = _mm512_castpd256_pd512(_mm256_loadu_pd(at[k]));
-        rows[k] = _mm512_insertf64x4(low, _mm256_loadu_pd(at[4 + k]), 1);
+    ROW rows[8];
+    for (int k = 0; k < 8; ++k) {
+        rows[k] = _mm256_loadu_pd(at[k]);
     }
-    transpose_halves(rows, out);
+    turn_rows(rows, out);
 }
 
 V_INLINE void store_four(double *const at[8], const V in[4])
@@ -240,8 +278,9 @@ V_INLINE void add_in_turn(se3di_load *loads, const uint32_t *i, const uint32_t *
 #include "particles/clumps.inc"
 #include "particles/force.inc"
 #include "particles/sift.inc"
+#include "particles/spheres.inc"
 
-static const se3di_kernels core_table = {"avx512", pairs, walls, sift, clumps};
+static const se3di_kernels core_table = {"avx512", pairs, walls, sift, clumps, spheres};
 
 SE3DI_TARGET_END
 

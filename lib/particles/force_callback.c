@@ -276,6 +276,6 @@ static void walls(se3di_force_task *task)
 const se3di_kernels *se3di_particle_kernels_callback(void)
 {
     /* never sifts, see mesh.c, nor moves: the set's own kernels do */
-    static const se3di_kernels table = {"callback", pairs, walls, NULL, NULL};
+    static const se3di_kernels table = {"callback", pairs, walls, NULL, NULL, NULL};
     return &table;
 }

@@ -16,7 +16,7 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_FMA)
 #define FMA(a, b, c) fma(a, b, c)
 #include "particles/force_plain.inc"
 
-static const se3di_kernels core_table = {"fma", pairs, walls, sift, clumps};
+static const se3di_kernels core_table = {"fma", pairs, walls, sift, clumps, spheres};
 
 SE3DI_TARGET_END
 

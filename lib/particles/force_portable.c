@@ -12,7 +12,7 @@
 
 const se3di_kernels *se3di_particle_kernels_portable(void)
 {
-    static const se3di_kernels table = {"portable", pairs, walls, sift, clumps};
+    static const se3di_kernels table = {"portable", pairs, walls, sift, clumps, spheres};
     const se3di_kernels *fused = se3di_particle_kernels_fma();
     return fused ? fused : &table;
 }

@@ -44,7 +44,7 @@ typedef struct se3di_spin {
 } se3di_spin;
 
 typedef struct se3di_load {
-    double force[4], torque[4]; /* [3]: unused */
+    double force[4], torque[4]; /* [3]: 0 */
 } se3di_load;
 
 /* Pairs i, j (force on i along x_i - x_j); unused lanes are i = j = capacity, a particle that
@@ -603,6 +603,9 @@ struct se3di_kernels {
      * sphere, and the same over its squared small reach; larger ones stay. */
     void (*clumps)(se3di_particles *set, size_t begin, size_t end,
                    const se3di_particle_motion *motion, double *fastest, double *hasty);
+    /* The same for spheres [begin, end), which are no clump's. */
+    void (*spheres)(se3di_particles *set, size_t begin, size_t end,
+                    const se3di_particle_motion *motion, double *fastest, double *hasty);
 };
 
 /* For a user-defined law. */

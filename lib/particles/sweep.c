@@ -41,74 +41,31 @@ static haste hastier(haste a, haste b)
     return (haste){se3di_larger(a.fastest, b.fastest), se3di_larger(a.hasty, b.hasty)};
 }
 
-/* Which particles a pass leaves alone. */
-enum { SKIP_NONE = 0, SKIP_CLUMPS = 1, SKIP_GHOSTS = 2, SKIP_BOTH = SKIP_CLUMPS | SKIP_GHOSTS };
-
-/* Of particles [begin, end). `kicks` is a constant at every call: the loop over it is unrolled;
- * `skips`, too. */
-static inline haste move_kicked(se3di_particles *set, size_t begin, size_t end, int kicks,
-                                int skips, const se3di_particle_motion *motion)
+/* Clumps are moved as a whole, ghosts by others. */
+static int is_moved_here(const se3di_particles *set, size_t k)
 {
-    const double half = 0.5 * motion->h, drift = motion->drift;
-    const int drifts = drift != 0.0;
-    const double *wear = se3di_particles_wear(set);
-    haste most = {0.0, 0.0};
-    for (size_t k = begin; k < end; ++k) {
-        if (((skips & SKIP_CLUMPS) && se3di_clump_find(set, k)) ||
-            ((skips & SKIP_GHOSTS) && se3di_share_is_ghost(set, k))) {
-            continue;
-        }
-        se3di_particle *particle = &set->particles[k];
-        se3di_spin *spin = &set->spins[k];
-        se3di_load *load = &set->loads[k];
-        const double mobility = particle->inverse_mass;
-        const double turn = 2.5 * mobility / (particle->radius * particle->radius);
-        double v2 = 0.0;
-        for (int a = 0; a < 3; ++a) {
-            const double dv = half * (load->force[a] * mobility + set->gravity[a]);
-            const double dw = half * (load->torque[a] * turn);
-            double v = particle->v[a], w = spin->w[a];
-            for (int n = 0; n < kicks; ++n) {
-                v += dv;
-                w += dw;
-            }
-            particle->v[a] = v;
-            spin->w[a] = w;
-            v2 += v * v;
-            particle->x[a] += drift * v;
-        }
-        const double worn = v2 * wear[k];
-        most.fastest = se3di_larger(most.fastest, v2);
-        most.hasty = se3di_larger(most.hasty, worn);
-        if (drifts) {
-            *load = (se3di_load){{0.0}, {0.0}};
-        }
-    }
-    return most;
+    return !se3di_clump_find(set, k) && !se3di_share_is_ghost(set, k);
 }
 
 static haste move_range(se3di_particles *set, size_t begin, size_t end,
                         const se3di_particle_motion *motion)
 {
+    const int all = set->clump_count == 0 && !se3di_share_is_spread(set);
+    haste most = {0.0, 0.0};
     if (set->flow_count > 0 && motion->drift != 0.0) {
         se3di_flows_mark(set, begin, end);
     }
-    const int spread = se3di_share_is_spread(set);
-    if (set->clump_count > 0) {
-        return spread ? move_kicked(set, begin, end, motion->kicks, SKIP_BOTH, motion)
-                      : move_kicked(set, begin, end, motion->kicks, SKIP_CLUMPS, motion);
+    for (size_t k = begin, next = begin; k < end; k = next) {
+        const int here = all || is_moved_here(set, k);
+        next = all ? end : k + 1;
+        while (next < end && is_moved_here(set, next) == here) {
+            ++next;
+        }
+        if (here) {
+            set->kernels->spheres(set, k, next, motion, &most.fastest, &most.hasty);
+        }
     }
-    if (spread) {
-        return move_kicked(set, begin, end, motion->kicks, SKIP_GHOSTS, motion);
-    }
-    switch (motion->kicks) {
-    case 0:
-        return move_kicked(set, begin, end, 0, SKIP_NONE, motion);
-    case 1:
-        return move_kicked(set, begin, end, 1, SKIP_NONE, motion);
-    default:
-        return move_kicked(set, begin, end, 2, SKIP_NONE, motion);
-    }
+    return most;
 }
 
 /* What the lists and forces must know of a drift. */
