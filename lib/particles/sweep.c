@@ -6,8 +6,8 @@
  * be moved when its own forces and those of the slab before it have been evaluated. Each thread has
  * a range of slabs of about the same work, the same from step to step, and takes them in the order
  * 0 2 1 4 3 ..., so that what it moves is still near it. Then it takes what nobody has begun from
- * the ends of the others' ranges: a few slabs do not divide evenly, and a thread may have lost its
- * processor. Who evaluates or moves a slab does not change the bits.   docs/theory/particles.md */
+ * the ends of the others' ranges, as a thread may have lost its processor. Who evaluates or moves a
+ * slab does not change the bits.                                       docs/theory/particles.md */
 
 #include "particles/sweep.h"
 #include "base/floats.h"
@@ -241,6 +241,24 @@ static void finish_forces(se3di_slab *slab)
     slab->done = 1;
 }
 
+/* Along the slabs: pairs go across from the last to the first. */
+static int has_no_end(const se3di_particles *set)
+{
+    return set->boundary[0] == SE3DI_BOUNDARY_PERIODIC &&
+           set->boundary[1] == SE3DI_BOUNDARY_PERIODIC &&
+           set->boundary[2] == SE3DI_BOUNDARY_PERIODIC; /* else slabs are along an open axis */
+}
+
+static uint32_t slab_before(const se3di_particles *set, uint32_t s)
+{
+    return s > 0 ? s - 1 : has_no_end(set) ? set->slab_count - 1 : s;
+}
+
+static uint32_t slab_after(const se3di_particles *set, uint32_t s)
+{
+    return s + 1 < set->slab_count ? s + 1 : has_no_end(set) ? 0 : s - 1;
+}
+
 static void evaluate_forces(const sweep *w, uint32_t s)
 {
     se3di_particles *set = w->set;
@@ -305,7 +323,7 @@ static void forces(const sweep *w, uint32_t s)
         return;
     }
     if (claim(&set->slabs[s].begun)) {
-        uint32_t next = s + 1 < set->slab_count ? s + 1 : 0; /* across a period, or done long ago */
+        const uint32_t next = slab_after(set, s);
         even_forces(w, s - 1);
         even_forces(w, next);
         await(set, s - 1);
@@ -319,7 +337,7 @@ static void move(const sweep *w, uint32_t s)
 {
     se3di_particles *set = w->set;
     se3di_slab *slab = &set->slabs[s];
-    uint32_t before = s > 0 ? s - 1 : set->slab_count - 1;
+    const uint32_t before = slab_before(set, s);
     if (w->motion->kicks == 0 || !claim(&slab->moving)) {
         return;
     }
@@ -332,20 +350,29 @@ static void move(const sweep *w, uint32_t s)
     slab->hasty = most.hasty;
 }
 
-/* What others wait for comes first, what waits for others last. */
+/* What others wait for comes first, what waits for others last: an even slab beside another range
+ * is awaited there, an odd one needs what that range does first. */
 static void sweep_range(const sweep *w, uint32_t begin, uint32_t end)
 {
-    if (begin % 2 == 0) {
+    const int late = begin % 2 == 1 && begin + 2 < end;
+    if (begin % 2 == 0 && begin > 0) {
         forces(w, begin);
     }
-    if (end % 2 == 1 && end - 1 > begin) {
+    if (end % 2 == 1 && end - 1 > begin && end < w->set->slab_count) {
         forces(w, end - 1);
     }
     for (uint32_t s = begin | 1U; s < end; s += 2) {
         if (s + 2 < end) {
             forces(w, s + 1);
         }
+        if (late && s == begin) {
+            continue;
+        }
         forces(w, s);
+        if (late && s == begin + 2) {
+            forces(w, begin);
+            move(w, begin + 1);
+        }
         if (s > begin) {
             move(w, s);
         }
@@ -353,6 +380,7 @@ static void sweep_range(const sweep *w, uint32_t begin, uint32_t end)
             move(w, s + 1);
         }
     }
+    forces(w, begin); /* if nothing is moved */
     move(w, begin);
 }
 
@@ -383,15 +411,39 @@ static uint32_t first_slab(const se3di_particles *set, int rank, int team)
     return rank < team ? s : set->slab_count;
 }
 
-/* What others have not begun, from the ends of their ranges. */
-static void help(const sweep *w, uint32_t begin, uint32_t end)
+static int has_begun(const int32_t *begun)
 {
-    const uint32_t slabs = w->set->slab_count, others = slabs - (end - begin);
-    for (uint32_t k = 1; k <= others; ++k) {
-        forces(w, (begin + slabs - k) % slabs);
+    int32_t now;
+#ifdef _OPENMP
+#pragma omp atomic read seq_cst
+#endif
+    now = *begun;
+    return now;
+}
+
+/* What others have not begun, from the ends of their ranges. But for the two slabs that they are
+ * about to take: what is in their caches costs more to get than to wait for. */
+static void help_range(const sweep *w, uint32_t begin, uint32_t end, int moves)
+{
+    const se3di_slab *slabs = w->set->slabs;
+    for (uint32_t s = end; s-- > begin;) {
+        const se3di_slab *before = &slabs[s >= begin + 2 ? s - 2 : begin];
+        if (moves && !has_begun(&before->moving)) {
+            move(w, s);
+        } else if (!moves && !has_begun(&before->begun)) {
+            forces(w, s);
+        }
     }
-    for (uint32_t k = 1; k <= others; ++k) {
-        move(w, (begin + slabs - k) % slabs);
+}
+
+static void help(const sweep *w, int rank, int team)
+{
+    for (int moves = 0; moves < 2; ++moves) {
+        for (int k = 1; k < team; ++k) {
+            const int other = (rank + team - k) % team;
+            help_range(w, first_slab(w->set, other, team), first_slab(w->set, other + 1, team),
+                       moves);
+        }
     }
 }
 
@@ -401,7 +453,7 @@ static void sweep_share(const sweep *w, int rank, int team)
     if (begin < end) {
         sweep_range(w, begin, end);
     }
-    help(w, begin, end);
+    help(w, rank, team);
 }
 
 static void sweep_together(const sweep *w)
