@@ -435,6 +435,54 @@ static void gears_as_meshes_turn_each_other_at_their_ratio(void)
     close_example(&e);
 }
 
+/* Of two rows of `file` one after the other the time between them at which a column is 0, by the
+ * chord; NAN: it does not change its sign there. */
+static double zero_between(const example *e, const char *file, size_t row, size_t column)
+{
+    const double from = file_number(e, file, row, column);
+    const double to = file_number(e, file, row + 1, column);
+    const double begin = file_number(e, file, row, 0), end = file_number(e, file, row + 1, 0);
+    return from * to < 0.0 ? begin + (end - begin) * from / (from - to) : (double)NAN;
+}
+
+/* The half period of a pendulum of inertia J about the ball, 2 pi sqrt(J/(m g l)) by the series of
+ * its amplitude, hardly known to Coulomb friction. That takes 2 M/(m g l) off the amplitude a half
+ * period: the ball is on a rim seen at the angle b from the axis, N = m g/cos(b) all round, and M =
+ * mu R N times the mean of sqrt(1 - (sin(b) cos(s))^2) over s, without what the swing adds. */
+static void socket_holds_its_ball(void)
+{
+    const double pi = acos(-1.0), l = 0.2, m = 2.0, g = 9.81, mu = 0.02, radius = 0.025;
+    const double inertia = 0.002 + m * l * l, swing = 15.0 * pi / 180.0;
+    const double half = pi * sqrt(inertia / (m * g * l)) * (1.0 + swing * swing / 16.0);
+    const double sine = 0.0258 * cos(50.0 * pi / 180.0) / radius; /* of the angle b */
+    double mean = 0.0, first = 0.0, last = 0.0, amplitude[2] = {0.0, 0.0};
+    int swings = -1;
+    for (int k = 0; k < 360; ++k) {
+        const double part = sine * cos(k * pi / 180.0);
+        mean += sqrt(1.0 - part * part) / 360.0;
+    }
+    const double loss = 2.0 * mu * radius * mean / sqrt(1.0 - sine * sine) / l;
+    example e = run_example("ball_socket", NULL, NULL, NULL);
+    for (size_t row = 0; row < 150; ++row) {
+        const double time = zero_between(&e, "ball_socket.csv", row, 5);
+        for (size_t column = 1; column < 4; ++column) {
+            CHECK(fabs(file_number(&e, "ball_socket.csv", row, column)) < 4e-4); /* its play */
+        }
+        if (!isnan(time)) {
+            first = ++swings == 0 ? time : first;
+            last = time;
+        }
+        const double angle = asin(fabs(file_number(&e, "ball_socket.csv", row, 5)) / l);
+        if (swings == 0 || swings == 4) {
+            amplitude[swings / 4] = fmax(amplitude[swings / 4], angle);
+        }
+    }
+    CHECK(swings == 6);
+    CHECK_NEAR((last - first) / swings, half, 3e-3 * half);
+    CHECK_NEAR((amplitude[0] - amplitude[1]) / 4.0, loss, 0.15 * loss);
+    close_example(&e);
+}
+
 int main(void)
 {
     RUN(block_above_the_friction_angle_slides_as_coulomb_says);
@@ -454,5 +502,6 @@ int main(void)
     RUN(many_swings_end_where_they_began);
     RUN(overconstrained_loop_has_the_same_reactions_by_every_method);
     RUN(gears_as_meshes_turn_each_other_at_their_ratio);
+    RUN(socket_holds_its_ball);
     return check_finish();
 }
