@@ -30,10 +30,13 @@ void se3di_shape_release(const se3d_allocator *allocator, se3di_shape *shape)
     se3di_text_free(allocator, shape->name);
     se3di_free(allocator, shape->vertices, 3 * shape->vertex_count, sizeof(double));
     se3di_free(allocator, shape->triangles, 3 * shape->triangle_count, sizeof(uint32_t));
+    se3di_free(allocator, shape->planes, shape->planes ? 4 * shape->triangle_count : 0,
+               sizeof(double));
     se3di_free(allocator, shape->tree, shape->tree_bytes, 1);
     shape->name = NULL;
     shape->vertices = NULL;
     shape->triangles = NULL;
+    shape->planes = NULL;
     shape->tree = NULL;
     shape->vertex_count = shape->triangle_count = shape->tree_bytes = 0;
 }
@@ -62,7 +65,7 @@ static se3d_status own_pieces(const se3d_allocator *allocator, const se3di_shape
 se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
 {
     const se3di_shape from = *shape;
-    void *vertices, *triangles, *tree;
+    void *vertices, *triangles, *planes, *tree;
     shape->name = from.name ? se3di_text_copy(allocator, from.name) : NULL;
     se3d_status status = from.name && !shape->name ? SE3D_ERR_NO_MEMORY : SE3D_OK;
     /* every pointer is written, so that a release is safe */
@@ -74,11 +77,16 @@ se3d_status se3di_shape_own(const se3d_allocator *allocator, se3di_shape *shape)
                   &triangles) < 0) {
         status = SE3D_ERR_NO_MEMORY;
     }
+    if (own_block(allocator, from.planes, from.planes ? 4 * from.triangle_count : 0, sizeof(double),
+                  &planes) < 0) {
+        status = SE3D_ERR_NO_MEMORY;
+    }
     if (own_block(allocator, from.tree, from.tree_bytes, 1, &tree) < 0) {
         status = SE3D_ERR_NO_MEMORY;
     }
     shape->vertices = vertices;
     shape->triangles = triangles;
+    shape->planes = planes;
     shape->tree = tree;
     if (own_pieces(allocator, &from, shape) < 0) {
         status = SE3D_ERR_NO_MEMORY;

@@ -108,6 +108,7 @@ typedef struct se3di_shape {
     double bound;               /* radius about the origin that holds it; infinite: plane */
     double *vertices;           /* mesh, hull, heightfield, funnel: [3 * vertex_count], own frame */
     uint32_t *triangles;        /* [3 * triangle_count]; hull: its faces, seen from outside */
+    double *planes; /* hull: [4 * triangle_count], unit normals and offsets of its faces */
     size_t vertex_count, triangle_count;
     void *tree; /* mesh: bounding volumes, see contact/shape/mesh.h */
     size_t tree_bytes;

@@ -533,7 +533,8 @@ int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const do
     difference D = {i, j, size_of(i) + size_of(j), 0};
     vertex v;
     support(&D, n, &v);
-    return -se3di_dot(v.p, n) > fmax(distance, APART * D.size);
+    const double least = APART * D.size;
+    return -se3di_dot(v.p, n) > (distance > least ? distance : least); /* fmax() is a call */
 }
 
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],

@@ -11,6 +11,7 @@
  * out of a piece does not count, and no contact is deeper than that way. What they do not show of a
  * way out is added.                                            docs/theory/body-contact.md */
 #include "contact/narrow/mesh.h"
+#include "contact/shape/pieces.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -79,13 +80,21 @@ static int is_on(const ways *all, const way *w, const double local[3])
 static int is_open(const ways *all, int k, const double x[3])
 {
     const way *own = &all->list[k];
+    const se3di_shape *pieces = all->mesh->shape->pieces;
+    se3di_piece_view view[SE3DI_PIECES_MOST];
+    unsigned char is_known[SE3DI_PIECES_MOST] = {0};
     double local[3], by[3], both[3], other_by[3];
     se3di_solid_to_local(all->mesh, x, local);
     se3di_scale(-own->depth, own->n, by);
     for (int c = 0; c < all->count; ++c) {
         const way *other = &all->list[c];
-        const double slack = fmax(own->depth, other->depth);
-        if (c == k || !se3di_piece_holds(other->piece, local, slack) ||
+        const double slack = own->depth > other->depth ? own->depth : other->depth;
+        const size_t piece = (size_t)(other->piece - pieces);
+        if (!is_known[piece]) { /* many ways are off the same piece */
+            se3di_piece_look(other->piece, local, &view[piece]);
+            is_known[piece] = 1;
+        }
+        if (c == k || !se3di_piece_is_at(other->piece, &view[piece], slack) ||
             is_off(other, by, x, own->depth)) {
             continue;
         }

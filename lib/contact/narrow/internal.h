@@ -44,6 +44,10 @@ void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double ac
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
                              double on_i[3], double on_j[3]);
 
+/* Whether a side of a solid shows that it is apart from a line by more than a distance; if not, it
+ * may be. */
+int se3di_side_parts(const se3di_solid *solid, const double from[3], const double to[3],
+                     double distance);
 /* Whether the cores of two are apart by more than a distance. */
 int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance);
 /* Whether the planes across a unit direction, from i to j, part them so; if not, others may. */

@@ -24,6 +24,7 @@
 
 #define NEAR    3e-2  /* rad; the polytope's direction is that good */
 #define TIE     1e-15 /* of the size: of equal directions the first */
+#define CORNER  1e-3  /* of the size: a slope on either side of a corner of the overlap */
 #define LOOSE   1e-11 /* of the size: by how much the polytope's own may be less */
 #define EDGES   12
 #define SLIGHT  1e-4 /* sine; lines that are more nearly parallel cross nowhere in particular */
@@ -258,37 +259,104 @@ static void try_product(search *s, const double e[3], const double f[3])
     }
 }
 
-/* A direction perpendicular to an edge, `turn` the sine of its angle from u; the slope there. */
-static double look_along(const search *s, const double u[3], const double w[3], double turn,
-                         double n[3])
+/* The directions perpendicular to an edge, n = c u + t w by the sine t of the angle from u, in a
+ * bracket; v_low, v_high: the differences of the farthest points at its ends. */
+typedef struct circle {
+    double u[3], w[3], n[3]; /* n: of the last look */
+    double overlap;          /* along that */
+    double v_low[3], v_high[3];
+    se3di_bracket bracket;
+} circle;
+
+/* Returns the slope. */
+static double look_along(const search *s, circle *c, double turn, double v[3])
 {
     const double cosine = sqrt(1.0 - turn * turn);
-    double along[3], v[3];
-    se3di_scale(cosine, u, n);
-    se3di_add_scaled(turn, w, n);
-    se3di_scale(cosine, w, along);
-    se3di_add_scaled(-turn, u, along);
-    (void)overlap_along(s, n, v);
+    double along[3];
+    se3di_scale(cosine, c->u, c->n);
+    se3di_add_scaled(turn, c->w, c->n);
+    se3di_scale(cosine, c->w, along);
+    se3di_add_scaled(-turn, c->u, along);
+    c->overlap = overlap_along(s, c->n, v);
     return se3di_dot(v, along);
 }
 
-/* The place where the slope changes its sign on the directions perpendicular to an edge. */
+/* Look at the next direction; returns 0 if there is none after it. */
+static int step_along(const search *s, circle *c)
+{
+    double v[3];
+    const double slope = look_along(s, c, c->bracket.next, v);
+    if (!se3di_bracket_take(&c->bracket, slope)) {
+        return 0;
+    }
+    se3di_copy(v, slope < 0.0 ? c->v_low : c->v_high);
+    return 1;
+}
+
+/* No overlap is less than along what was found farthest, h(n) >= v.n: the direction in which both
+ * ends bound it alike, and the bound there. Between two corners it is the least. 0: there is none
+ * between the ends. */
+static int find_bound(circle *c, double *bound)
+{
+    double d[3], n[3];
+    se3di_sub(c->v_low, c->v_high, d);
+    const double across = se3di_dot(d, c->w), along = -se3di_dot(d, c->u);
+    const double size = sqrt(across * across + along * along);
+    if (!(size > 0.0)) {
+        return 0;
+    }
+    const double turn = (across < 0.0 ? -along : along) / size;
+    se3di_scale(sqrt(1.0 - turn * turn), c->u, n);
+    se3di_add_scaled(turn, c->w, n);
+    *bound = fmin(se3di_dot(c->v_low, n), se3di_dot(c->v_high, n));
+    c->bracket.next = turn;
+    return c->bracket.low < turn && turn < c->bracket.high;
+}
+
+/* Whether the overlap along the last look is the bound, and the slope jumps there, so that no other
+ * direction within 1e-12 is the place. */
+static int is_corner(const search *s, const circle *c, double bound)
+{
+    double e[3], along[3];
+    se3di_cross(c->u, c->w, e); /* w = e x u: e again, and w of n */
+    se3di_cross(e, c->n, along);
+    return !(c->overlap - bound > TIE * s->size) &&
+           -se3di_dot(c->v_low, along) > CORNER * s->size &&
+           se3di_dot(c->v_high, along) > CORNER * s->size;
+}
+
+/* The place where the slope changes its sign on the directions perpendicular to an edge. Left as
+ * soon as it cannot be less than what is known: a solid that stands on a face has many edges near
+ * its normal, none of which is a way off. */
 static void try_circle(search *s, const double e[3], int of_j)
 {
-    se3di_bracket b = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR};
-    double u[3], w[3], n[3];
-    se3di_copy(s->about, u);
-    se3di_add_scaled(-se3di_dot(u, e), e, u);
-    se3di_scale(1.0 / se3di_norm(u), u, u);
-    se3di_cross(e, u, w);
-    b.slope_low = look_along(s, u, w, b.low, n);
-    b.slope_high = look_along(s, u, w, b.high, n);
-    if (!(b.slope_low < 0.0 && b.slope_high > 0.0)) {
+    circle c = {.bracket = {.low = -NEAR, .high = NEAR, .width = 2.0 * NEAR}};
+    se3di_bracket *b = &c.bracket;
+    se3di_copy(s->about, c.u);
+    se3di_add_scaled(-se3di_dot(c.u, e), e, c.u);
+    se3di_scale(1.0 / se3di_norm(c.u), c.u, c.u);
+    se3di_cross(e, c.u, c.w);
+    b->slope_low = look_along(s, &c, b->low, c.v_low);
+    b->slope_high = look_along(s, &c, b->high, c.v_high);
+    if (!(b->slope_low < 0.0 && b->slope_high > 0.0)) {
         return;
     }
-    while (se3di_bracket_look(&b) && se3di_bracket_take(&b, look_along(s, u, w, b.next, n))) {
+    for (;;) {
+        double bound;
+        if (find_bound(&c, &bound)) {
+            /* The bound falls up to that direction only where it is not negative. */
+            if (bound > 0.0 && !(bound < s->least - TIE * s->size)) {
+                return;
+            }
+            if (!step_along(s, &c) || is_corner(s, &c, bound)) {
+                break;
+            }
+        }
+        if (!se3di_bracket_look(b) || !step_along(s, &c)) {
+            break;
+        }
     }
-    if (try_direction(s, n)) {
+    if (try_direction(s, c.n)) {
         touch_lowest(s, of_j);
     }
 }

@@ -389,17 +389,27 @@ static void touch_edge(meeting *m, edge *e, uint32_t feature)
     se3di_shape line;
     se3di_shape_pose at;
     const se3di_solid segment = {&line, &at};
+    double from[3], to[3];
     if (is_far(m, e)) {
         return;
     }
-    const double length = place_edge(e, &line, &at);
-    const double beside = m->has_pieces ? 0.0 : BESIDE * m->size;
-    if (se3di_convex_are_apart(m->solid, &segment, se3di_core_radius(m->solid->shape) + beside)) {
+    const double radius = se3di_core_radius(m->solid->shape);
+    const double apart = radius + (m->has_pieces ? 0.0 : BESIDE * m->size);
+    se3di_solid_to_ground(m->mesh, e->a, from);
+    se3di_solid_to_ground(m->mesh, e->b, to);
+    if (se3di_side_parts(m->solid, from, to, fmax(apart, SAME * m->size))) {
         return;
     }
-    se3di_mesh_visit(m->mesh->shape, e->middle, SAME * length, meet_neighbour, e);
-    if (e->is_flat) {
+    const double length = place_edge(e, &line, &at);
+    const int is_tried = m->has_pieces && m->solid->shape->triangles; /* it costs as little */
+    if (!is_tried && se3di_convex_are_apart(m->solid, &segment, apart)) {
         return;
+    }
+    if (!m->has_pieces) { /* else no more than what is known of the edge is asked */
+        se3di_mesh_visit(m->mesh->shape, e->middle, SAME * length, meet_neighbour, e);
+        if (e->is_flat) {
+            return;
+        }
     }
     se3di_manifold lines = {.count = 0};
     se3di_narrow_convex(m->solid, &segment, &lines);
@@ -423,7 +433,8 @@ static void meet_edges(void *ctx, uint32_t triangle)
     }
     const se3di_shape *s = m->mesh->shape;
     for (uint32_t k = 0; k < 3; ++k) {
-        if (s->closed != 0 && !se3di_mesh_edge_bulges(s, triangle, k)) {
+        if (s->closed != 0 &&
+            (!se3di_mesh_edge_bulges(s, triangle, k) || se3di_mesh_edge_is_told(s, triangle, k))) {
             continue;
         }
         edge e = {.m = m,
@@ -525,7 +536,7 @@ static void meet_rest(void *ctx, uint32_t triangle)
     const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
     const se3di_solid other = {&flat, m->mesh->at};
     face f;
-    if (!se3di_mesh_face_of(m, triangle, &f)) {
+    if (!se3di_mesh_face_of(m, triangle, &f) || !se3di_mesh_overlaps(m, triangle)) {
         return;
     }
     const double overlap = se3di_convex_least(m->solid, &other, n, on_i, on_j);
@@ -546,7 +557,7 @@ static void meet_through(void *ctx, uint32_t triangle)
     const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
     const se3di_solid other = {&flat, m->mesh->at};
     face f;
-    if (!se3di_mesh_face_of(m, triangle, &f)) {
+    if (!se3di_mesh_face_of(m, triangle, &f) || !se3di_mesh_overlaps(m, triangle)) {
         return;
     }
     const double radius = se3di_mesh_lowest(m, f.n, lowest);

@@ -88,6 +88,12 @@ void se3di_mesh_add_ways(se3di_mesh_meeting *m);
 
 /* Whether x (the mesh's frame) is within a piece or, by the slack, on its surface. */
 int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack);
+/* The same of one place and several slacks. */
+typedef struct se3di_piece_view {
+    double square, height; /* of its distance from the origin; over the face that it is most over */
+} se3di_piece_view;
+void se3di_piece_look(const se3di_shape *piece, const double x[3], se3di_piece_view *view);
+int se3di_piece_is_at(const se3di_shape *piece, const se3di_piece_view *view, double slack);
 /* The places where corners, round ends and edges touch. */
 void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, const se3di_mesh_filter *filter,
                      se3di_manifold *manifold);

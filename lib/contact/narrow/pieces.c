@@ -20,6 +20,25 @@ static void place(const se3di_solid *mesh, const se3di_shape *piece, se3di_shape
     se3di_solid_to_ground(mesh, piece->x, at->x);
 }
 
+void se3di_piece_look(const se3di_shape *piece, const double x[3], se3di_piece_view *view)
+{
+    double d[3];
+    se3di_sub(x, piece->x, d);
+    view->square = se3di_dot(d, d);
+    view->height = -HUGE_VAL;
+    for (size_t k = 0; k < piece->triangle_count; ++k) {
+        double n[3];
+        const double offset = se3di_face_plane(piece, k, n), over = se3di_dot(d, n) - offset;
+        view->height = over > view->height ? over : view->height;
+    }
+}
+
+int se3di_piece_is_at(const se3di_shape *piece, const se3di_piece_view *view, double slack)
+{
+    const double far = piece->bound + SHARP * slack;
+    return !(view->square > far * far) && (view->height < 0.0 || view->height < slack);
+}
+
 int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
 {
     double d[3];
@@ -29,13 +48,9 @@ int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
         return 0;
     }
     for (size_t k = 0; k < piece->triangle_count; ++k) {
-        const double *corner[3];
-        double u[3], n[3];
-        se3di_triangle_corners(piece, k, corner);
-        se3di_triangle_span(corner, n);
-        se3di_sub(d, corner[0], u);
-        const double over = se3di_dot(u, n);
-        if (!(over < 0.0) && !(over < slack * se3di_norm(n))) {
+        double n[3];
+        const double offset = se3di_face_plane(piece, k, n), over = se3di_dot(d, n) - offset;
+        if (!(over < 0.0) && !(over < slack)) {
             return 0;
         }
     }

@@ -153,6 +153,16 @@ static se3d_status start(hull *h)
     return SE3D_OK;
 }
 
+void se3di_hull_set_planes(se3di_shape *shape)
+{
+    for (size_t k = 0; k < shape->triangle_count; ++k) {
+        const double *corner[3];
+        se3di_triangle_corners(shape, k, corner);
+        se3di_triangle_normal(corner, shape->planes + 4 * k);
+        shape->planes[4 * k + 3] = se3di_dot(shape->planes + 4 * k, corner[0]);
+    }
+}
+
 /* The corners that are used, in the order of the points. */
 static se3d_status write_shape(const hull *h, se3di_shape *shape)
 {
@@ -173,8 +183,14 @@ static se3d_status write_shape(const hull *h, se3di_shape *shape)
     if (shape->vertices) {
         shape->vertex_count = used;
     }
-    if (shape->triangles) {
+    shape->planes = se3di_alloc(a, 4 * h->face_count, sizeof(double));
+    if (shape->triangles && shape->planes) {
         shape->triangle_count = h->face_count;
+    } else {
+        se3di_free(a, shape->triangles, 3 * h->face_count, sizeof(uint32_t));
+        se3di_free(a, shape->planes, 4 * h->face_count, sizeof(double));
+        shape->triangles = NULL;
+        shape->planes = NULL;
     }
     uint32_t next = 0;
     for (uint32_t k = 0; k < h->count && shape->vertices; ++k) {
@@ -187,7 +203,11 @@ static se3d_status write_shape(const hull *h, se3di_shape *shape)
         shape->triangles[k] = number[h->faces[k / 3].corner[k % 3]];
     }
     se3di_free(a, number, h->count, sizeof *number);
-    return shape->vertices && shape->triangles ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    if (!shape->vertices || !shape->triangles) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    se3di_hull_set_planes(shape);
+    return SE3D_OK;
 }
 
 se3d_status se3di_hull_build(const se3d_allocator *allocator, const double *points, size_t count,
@@ -196,6 +216,7 @@ se3d_status se3di_hull_build(const se3d_allocator *allocator, const double *poin
     hull h = {.allocator = allocator, .points = points, .count = count};
     shape->vertices = NULL;
     shape->triangles = NULL;
+    shape->planes = NULL;
     shape->vertex_count = shape->triangle_count = 0;
     se3d_status status = start(&h);
     for (uint32_t k = 0; k < count && status == SE3D_OK; ++k) {
@@ -258,12 +279,8 @@ static void nearest_hull(const se3di_shape *s, const double local[3], double poi
     double depth = -HUGE_VAL; /* above the plane of the face that is seen best */
     double outward[3] = {0.0, 0.0, 1.0};
     for (size_t k = 0; k < s->triangle_count; ++k) {
-        const double *corner[3];
-        double n[3], d[3];
-        se3di_triangle_corners(s, k, corner);
-        se3di_triangle_normal(corner, n);
-        se3di_sub(local, corner[0], d);
-        double height = se3di_dot(d, n);
+        double n[3];
+        const double offset = se3di_face_plane(s, k, n), height = se3di_dot(local, n) - offset;
         if (height > depth) {
             depth = height;
             se3di_copy(n, outward);
@@ -390,10 +407,8 @@ static void face_hull(const se3di_solid *solid, const double d[3], se3di_face *f
     double n[3] = {0.0, 0.0, 1.0}, best = -HUGE_VAL;
     size_t triangle = 0;
     for (size_t k = 0; k < s->triangle_count; ++k) {
-        const double *corner[3];
         double here[3];
-        se3di_triangle_corners(s, k, corner);
-        se3di_triangle_normal(corner, here);
+        (void)se3di_face_plane(s, k, here);
         if (se3di_dot(here, d) > best + 1e-9) { /* of equal ones the first */
             best = se3di_dot(here, d);
             triangle = k;

@@ -20,6 +20,9 @@
 #define LEAF_SIZE       SE3DI_MESH_LEAF
 #define STACK_SIZE      64    /* median splits: the depth is at most 32 */
 #define CANDIDATES      128   /* triangles within reach of one sphere that are told apart */
+#define AT_EDGE         1e-6  /* of its length: a triangle is at the middle of an edge */
+#define COPLANAR        0.999 /* cosine of the angle of triangles that are one */
+#define TOLD            4     /* bit of an edge */
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
 #define FLAT            1e-9  /* of the size: a vertex is in the plane of a face */
 #define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
@@ -170,6 +173,11 @@ int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t
 {
     const int outside = shape->closed > 0 ? 1 : shape->closed < 0 ? 2 : 3;
     return shape->rows > 0 || (se3di_mesh_facets(shape)[triangle].edges[side] & outside) != 0;
+}
+
+int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side)
+{
+    return shape->rows == 0 && (se3di_mesh_facets(shape)[triangle].edges[side] & TOLD) != 0;
 }
 
 /* Which way the triangle beyond an edge leads. */
@@ -699,6 +707,59 @@ static void judge_edges(se3di_shape *s, uint32_t *piece)
     s->closed = !closed ? 0 : volume > 0.0 ? 1 : volume < 0.0 ? -1 : 0;
 }
 
+typedef struct told_search {
+    const se3di_shape *shape;
+    uint32_t triangle;
+    int told;
+} told_search;
+
+static void middle_of(const se3di_shape *s, uint32_t triangle, double middle[3])
+{
+    const double *corner[3];
+    se3di_triangle_corners(s, triangle, corner);
+    se3di_add(corner[0], corner[1], middle);
+    se3di_add(middle, corner[2], middle);
+    se3di_scale(1.0 / 3.0, middle, middle);
+}
+
+/* Whether the middle of a triangle is below another one, seen from outside. */
+static int is_below(const se3di_shape *s, uint32_t triangle, uint32_t other)
+{
+    const facet *f = se3di_mesh_facets(s) + other;
+    double d[3];
+    middle_of(s, triangle, d);
+    se3di_sub(d, f->a, d);
+    return s->closed * se3di_dot(d, f->normal) < 0.0;
+}
+
+static void meet_told(void *ctx, uint32_t other)
+{
+    told_search *t = ctx;
+    const facet *own = se3di_mesh_facets(t->shape) + t->triangle;
+    const facet *next = se3di_mesh_facets(t->shape) + other;
+    if (other != t->triangle) {
+        t->told =
+            t->told || other < t->triangle || se3di_dot(own->normal, next->normal) > COPLANAR ||
+            (!is_below(t->shape, other, t->triangle) && !is_below(t->shape, t->triangle, other));
+    }
+}
+
+static void note_told(se3di_shape *s)
+{
+    for (uint32_t k = 0; k < 3 * s->triangle_count && s->closed != 0; ++k) {
+        const uint32_t *t = s->triangles + k / 3 * 3;
+        const double *from = s->vertices + 3 * (size_t)t[k % 3];
+        const double *to = s->vertices + 3 * (size_t)t[(k + 1) % 3];
+        told_search search = {.shape = s, .triangle = k / 3};
+        double middle[3], d[3];
+        se3di_add(from, to, middle);
+        se3di_scale(0.5, middle, middle);
+        se3di_sub(to, from, d);
+        se3di_mesh_visit(s, middle, AT_EDGE * se3di_norm(d), meet_told, &search);
+        se3di_mesh_facets(s)[k / 3].edges[k % 3] |= (uint8_t)(search.told ? TOLD : 0);
+    }
+}
+
 static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s)
 {
     uint32_t *piece = se3di_alloc(allocator, s->triangle_count, sizeof *piece);
@@ -710,6 +771,7 @@ static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s)
     }
     s->closed = s->oriented = 0;
     judge_edges(s, piece);
+    note_told(s);
     se3di_free(allocator, piece, s->triangle_count, sizeof *piece);
     return SE3D_OK;
 }
@@ -748,6 +810,10 @@ static int32_t make_convex(se3di_shape *s)
         const uint32_t second = s->triangles[3 * k + 1];
         s->triangles[3 * k + 1] = s->triangles[3 * k + 2];
         s->triangles[3 * k + 2] = second;
+        uint8_t *edges = se3di_mesh_facets(s)[k].edges; /* of its sides in their order */
+        const uint8_t first = edges[0];
+        edges[0] = edges[2];
+        edges[2] = first;
     }
     s->closed = 1;
     return 1;

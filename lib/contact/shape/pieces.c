@@ -21,7 +21,6 @@
 #include <string.h>
 
 #define TRIANGLES_MOST 400
-#define PIECES_MOST    32
 #define FACES_MOST     4000 /* that are there at once, cut ones too */
 #define CORNERS        12   /* of a face that was cut again and again */
 #define SLACK          1e-9 /* of the size: a point is in a plane */
@@ -42,7 +41,7 @@ typedef struct cutter {
     size_t path_count, path_capacity, cut_capacity;
     se3di_cell cell[2];
     double volume;
-    se3di_shape pieces[PIECES_MOST];
+    se3di_shape pieces[SE3DI_PIECES_MOST];
     size_t count, faces;
 } cutter;
 
@@ -297,6 +296,7 @@ static void center(se3di_shape *piece)
         piece->x[a] = middle[a];
         piece->A[4 * a] = 1.0;
     }
+    se3di_hull_set_planes(piece);
     piece->bound = se3di_shape_bound(piece);
 }
 
@@ -354,7 +354,7 @@ static se3d_status add_piece(cutter *c)
     if (volume < VOLUME * c->size * c->size * c->size) {
         return SE3D_OK;
     }
-    if (c->count == PIECES_MOST) {
+    if (c->count == SE3DI_PIECES_MOST) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     grow(c);

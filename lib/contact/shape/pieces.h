@@ -5,6 +5,8 @@
 
 #include "model/model.h"
 
+#define SE3DI_PIECES_MOST 32 /* of one mesh */
+
 /* Fill pieces and piece_count of a mesh that is closed and not convex: hulls, whose origins x are
  * in its frame. None if it has too many triangles or would need too many pieces, or if their volume
  * is not the mesh's. @return OK, NO_MEMORY (there are none then) */

@@ -30,6 +30,19 @@ static inline void se3di_triangle_span(const double *const corner[3], double nor
 /* The unit normal, counter-clockwise; zero of a triangle without area. */
 void se3di_triangle_normal(const double *const corner[3], double normal[3]);
 
+/* The plane of a face of a hull, n.x = offset: its outward unit normal; returns the offset. */
+static inline double se3di_face_plane(const se3di_shape *shape, size_t triangle, double n[3])
+{
+    const double *corner[3];
+    if (shape->planes) {
+        se3di_copy(shape->planes + 4 * triangle, n);
+        return shape->planes[4 * triangle + 3];
+    }
+    se3di_triangle_corners(shape, triangle, corner);
+    se3di_triangle_normal(corner, n);
+    return se3di_dot(n, corner[0]);
+}
+
 double se3di_vertices_bound(const se3di_shape *shape);
 double se3di_vertices_size(const se3di_shape *shape);
 void se3di_vertices_support(const se3di_shape *shape, const double d[3], double out[3]);
