@@ -13,7 +13,9 @@
 #include "assembly/user.h"
 #include "base/log.h"
 #include "base/pending.h"
+#include "contact/bodies/crowd.h"
 #include "contact/bodies/pace.h"
+#include "integrator/explicit_point.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
 #include "integrator/motion.h"
@@ -377,7 +379,13 @@ static se3d_status switch_method(se3di_run *run)
     if (se3di_run_is_crowded(run)) {
         return se3di_run_prepare(run);
     }
-    run->integration.settings.leaves_crowd = 0; /* for the rest of this run */
+    const int is_early = run->integration.settings.leaves_crowd == SE3DI_CROWD_ROUGH;
+    run->integration.settings.leaves_crowd = SE3DI_CROWD_NONE; /* for the rest of this run */
+    if (is_early && !must_switch(run)) { /* what comes after the first tiny steps is still asked */
+        run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
+        se3di_explicit_stays(run->model);
+        return SE3D_OK;
+    }
     if (!must_switch(run)) {
         return SE3D_OK;
     }

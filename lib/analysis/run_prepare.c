@@ -172,7 +172,10 @@ static int32_t may_crowd(const se3di_run *run)
         return SE3DI_CROWD_NEAR;
     }
     const double step = run->integration.settings.step;
-    return step > 0.0 && step < STEP_SLOW ? SE3DI_CROWD_NONE : SE3DI_CROWD_SLOW;
+    if (step > 0.0 && step < STEP_SLOW) {
+        return SE3DI_CROWD_NONE;
+    }
+    return se3di_crowd_has_mesh(model) ? SE3DI_CROWD_ROUGH : SE3DI_CROWD_SLOW;
 }
 
 /* Contacts have held steps short, and nothing else needs them so short. */

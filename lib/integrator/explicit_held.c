@@ -9,6 +9,8 @@
 
 #define COUNTED 256.0 /* steps */
 #define SHORT   5e-5  /* s, shorter than this on the average: convex makes one of 20 or more */
+#define TINY    2e-6  /* s, a step that no touch of its own needs: contacts come and go */
+#define TINIES  20.0  /* such steps in a row tell, and need not wait for the others */
 
 int se3di_explicit_is_held(const se3di_integration *integration)
 {
@@ -16,14 +18,17 @@ int se3di_explicit_is_held(const se3di_integration *integration)
     return held >= SE3DI_HELD_MIN || (integration->settings.leaves_crowd && held < 0.0);
 }
 
-/* The last COUNTED steps were short, and something touches at their end. */
-static int is_slow(const se3di_explicit *m)
+/* The last COUNTED steps were short, or on a mesh the last TINIES tiny, and something touches at
+ * their end. */
+static int is_slow(const se3di_explicit *m, int32_t crowd)
 {
     se3di_explicit_past *past = m->past;
     const double t = past->at.time;
     past->counted += 1.0;
+    past->tiny = t - past->at.begin < TINY ? past->tiny + 1.0 : 0.0;
     if (past->counted < COUNTED) {
-        return 0;
+        return crowd == SE3DI_CROWD_ROUGH && past->tiny >= TINIES &&
+               se3di_bodies_touch(m->assembly->model);
     }
     const int is_slow =
         t - past->counts < SHORT * COUNTED && se3di_bodies_touch(m->assembly->model);
@@ -37,7 +42,7 @@ void se3di_explicit_watch_crowd(se3di_explicit *m)
     const int32_t crowd = m->step.integration->settings.leaves_crowd;
     if (crowd != SE3DI_CROWD_NONE) {
         const int meets =
-            crowd == SE3DI_CROWD_SLOW ? is_slow(m) : se3di_bodies_crowd(m->assembly->model);
+            crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(m->assembly->model) : is_slow(m, crowd);
         m->past->held = meets ? -1.0 : fmax(m->past->held, 0.0);
     }
 }
@@ -45,6 +50,12 @@ void se3di_explicit_watch_crowd(se3di_explicit *m)
 int se3di_explicit_leaves_crowd(const se3di_model *model)
 {
     return se3di_explicit_past_of(model)->held < 0.0;
+}
+
+void se3di_explicit_stays(se3di_model *model)
+{
+    se3di_explicit_past *past = se3di_explicit_past_of(model);
+    past->held = fmax(past->held, 0.0);
 }
 
 void se3di_explicit_count_sign(se3di_explicit *m, int is_held)

@@ -38,7 +38,10 @@ typedef struct se3di_explicit_past {
         double contraction; /* gauss: of the iterations of the last step */
         double counts;      /* Runge-Kutta: since when */
     };
-    double lost;     /* gauss: 1: rows were dependent at its end that are not all along */
+    union {
+        double lost; /* gauss: 1: rows were dependent at its end that are not all along */
+        double tiny; /* Runge-Kutta: steps in a row that were much too short */
+    };
     double length;   /* Runge-Kutta: of the last step, as its stages were made */
     double unscaled; /* 1: steps without error control have not grown the scale */
     double gap;      /* what the interpolation violates constraints by, < 0: not measured */

@@ -12,7 +12,8 @@
 enum {
     SE3DI_CROWD_NONE = 0,
     SE3DI_CROWD_NEAR = 1, /* as soon as SE3DI_CROWD free bodies are at each other */
-    SE3DI_CROWD_SLOW = 2  /* when contacts, of SE3DI_CROWD_HELD or more, make it slow */
+    SE3DI_CROWD_SLOW = 2, /* when contacts, of SE3DI_CROWD_HELD or more, make it slow */
+    SE3DI_CROWD_ROUGH = 3 /* the same on a mesh: as soon as contacts that come and go do */
 };
 
 /* So many free bodies touch something, or are a small part of their size from doing so while bounds
