@@ -154,15 +154,19 @@ without_zlib() {
 }
 
 # The sources as a part of another project: only the libraries are built, and none of our options or settings leaks.
+# Objects that this build has made by the same words are taken from it (take_object.sh).
 add_subdirectory() {
     rm -rf "$work/embedded"
     mkdir -p "$work/embedded"
     cp "$here/consumer.c" "$work/embedded/consumer.c"
     cp "$here/embedded_CMakeLists.txt" "$work/embedded/CMakeLists.txt"
+    export SE3D_TAKEN="$work/embedded/taken"
     "$CMAKE" -S "$work/embedded" -B "$work/embedded/build" -DCMAKE_C_COMPILER="$CC" \
+        "-DCMAKE_C_COMPILER_LAUNCHER=sh;$here/take_object.sh" \
         -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O0 "-DSE3D_SOURCE_DIR=$SE3D_SOURCE_DIR" \
         >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
     "$CMAKE" --build "$work/embedded/build" --parallel 2 >"$work/embedded/log" 2>&1 || { cat "$work/embedded/log"; exit 1; }
+    echo "$(grep -c '^taken ' "$SE3D_TAKEN") objects were taken, $(grep -c '^compiled ' "$SE3D_TAKEN") compiled"
     "$CMAKE" -E chdir "$work/embedded/build" ctest --output-on-failure --no-tests=error
     "$CMAKE" --install "$work/embedded/build" --prefix "$work/embedded/installed" >"$work/embedded/log"
     if find "$work/embedded/installed" -name '*se3d*' 2>/dev/null | grep .; then
