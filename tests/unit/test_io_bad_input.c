@@ -46,6 +46,7 @@ static const bad_input table[] = {
     {"- 1\n", 1, 1, {"is a list", "must be a map"}},
     {"just text\n", 1, 1, {"must be a map"}},
 #include "bad_bars.inc"
+#include "bad_studies.inc"
 #include "bad_units.inc"
     /* head */
     {"title: x\n", 1, 1, {"se3d: is missing", "must be 1"}},
