@@ -34,7 +34,7 @@
 #define LOOSE    1e-4 /* a tolerance of so few steps that their errors hardly add up */
 #define WORK     0.1  /* weight of the error of works, which disturbs nothing but the audit */
 
-#define NOISE    0.25 /* taken for an error that is only rounding: steps may grow a little */
+#define NOISE 0.25 /* taken for an error that is only rounding: steps may grow a little */
 
 /* Newton iterations: a shorter step is worth more than many, if it can be had. */
 #define ITERATIONS_CONTROLLED 10
