@@ -74,6 +74,7 @@ typedef struct poses_solid {
     se3di_shape shape;
     double vertices[3 * POSES_CORNERS];
     uint32_t triangles[3 * 2 * POSES_CORNERS];
+    double planes[4 * 2 * POSES_CORNERS];
 } poses_solid;
 
 /* Corners on a sphere, so that all count. */
@@ -94,10 +95,12 @@ static inline void poses_hull(poses_solid *s, uint64_t *seed)
     } while (se3di_hull_build(&allocator, points, (size_t)count, &hull) < 0);
     memcpy(s->vertices, hull.vertices, 3 * hull.vertex_count * sizeof(double));
     memcpy(s->triangles, hull.triangles, 3 * hull.triangle_count * sizeof(uint32_t));
+    memcpy(s->planes, hull.planes, 4 * hull.triangle_count * sizeof(double));
     s->shape.vertex_count = hull.vertex_count;
     s->shape.triangle_count = hull.triangle_count;
     se3di_free(&allocator, hull.vertices, 3 * hull.vertex_count, sizeof(double));
     se3di_free(&allocator, hull.triangles, 3 * hull.triangle_count, sizeof(uint32_t));
+    se3di_free(&allocator, hull.planes, 4 * hull.triangle_count, sizeof(double));
 }
 
 static inline void poses_random_solid(int kind, uint64_t *seed, poses_solid *s)
@@ -113,6 +116,7 @@ static inline void poses_random_solid(int kind, uint64_t *seed, poses_solid *s)
         poses_hull(s, seed);
         s->shape.vertices = s->vertices;
         s->shape.triangles = s->triangles;
+        s->shape.planes = s->planes;
     }
     s->shape.bound = se3di_shape_bound(&s->shape);
 }
