@@ -381,12 +381,11 @@ static se3d_status switch_method(se3di_run *run)
     }
     const int is_early = run->integration.settings.leaves_crowd == SE3DI_CROWD_ROUGH;
     run->integration.settings.leaves_crowd = SE3DI_CROWD_NONE; /* for the rest of this run */
-    if (is_early && !must_switch(run)) { /* what comes after the first tiny steps is still asked */
-        run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
-        se3di_explicit_stays(run->model);
-        return SE3D_OK;
-    }
     if (!must_switch(run)) {
+        if (is_early) { /* what comes after the first tiny steps is still asked */
+            run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
+            se3di_explicit_stays(run->model);
+        }
         return SE3D_OK;
     }
     run->left = run->integration.method;
