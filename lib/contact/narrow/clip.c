@@ -3,6 +3,7 @@
  * behind the face are the points of contact, each with its own overlap along that normal. */
 #include "contact/narrow/internal.h"
 
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -41,7 +42,7 @@ static void cut_side(const cut *from, const double n[3], double level, double sl
         double x[3];
         if (high_a <= slack) {
             se3di_copy(a, x);
-            se3di_add_scaled(high_a > 0.0 ? -high_a : 0.0, n, x); /* fmax() is a call */
+            se3di_add_scaled(-se3di_raised(0.0, high_a), n, x);
             cut_add(to, x, from->id[k]);
         }
         int crosses = high_a > slack ? high_b <= 0.0 : high_a <= 0.0 && high_b > slack;

@@ -10,6 +10,7 @@
  * exactly, for round bodies when a step gains less than 1e-12 of their size. */
 #include "contact/narrow/internal.h"
 
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <float.h>
@@ -533,8 +534,7 @@ int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const do
     difference D = {i, j, size_of(i) + size_of(j), 0};
     vertex v;
     support(&D, n, &v);
-    const double least = APART * D.size;
-    return -se3di_dot(v.p, n) > (distance > least ? distance : least); /* fmax() is a call */
+    return -se3di_dot(v.p, n) > se3di_raised(APART * D.size, distance);
 }
 
 double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],

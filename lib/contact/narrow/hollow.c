@@ -12,6 +12,7 @@
  * way out is added.                                            docs/theory/body-contact.md */
 #include "contact/narrow/mesh.h"
 #include "contact/shape/pieces.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -88,7 +89,7 @@ static int is_open(const ways *all, int k, const double x[3])
     se3di_scale(-own->depth, own->n, by);
     for (int c = 0; c < all->count; ++c) {
         const way *other = &all->list[c];
-        const double slack = own->depth > other->depth ? own->depth : other->depth;
+        const double slack = se3di_raised(other->depth, own->depth);
         const size_t piece = (size_t)(other->piece - pieces);
         if (!is_known[piece]) { /* many ways are off the same piece */
             se3di_piece_look(other->piece, local, &view[piece]);

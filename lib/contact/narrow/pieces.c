@@ -6,6 +6,7 @@
 #include "contact/narrow/mesh.h"
 #include "contact/shape/mesh.h"
 #include "contact/shape/triangles.h"
+#include "math/larger.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -20,6 +21,19 @@ static void place(const se3di_solid *mesh, const se3di_shape *piece, se3di_shape
     se3di_solid_to_ground(mesh, piece->x, at->x);
 }
 
+/* From the square of a distance from its origin, */
+static int is_far(const se3di_shape *piece, double square, double slack)
+{
+    const double far = piece->bound + SHARP * slack;
+    return square > far * far;
+}
+
+/* and from the height over one of its faces. */
+static int is_over(double height, double slack)
+{
+    return !(height < 0.0) && !(height < slack);
+}
+
 void se3di_piece_look(const se3di_shape *piece, const double x[3], se3di_piece_view *view)
 {
     double d[3];
@@ -29,28 +43,26 @@ void se3di_piece_look(const se3di_shape *piece, const double x[3], se3di_piece_v
     for (size_t k = 0; k < piece->triangle_count; ++k) {
         double n[3];
         const double offset = se3di_face_plane(piece, k, n), over = se3di_dot(d, n) - offset;
-        view->height = over > view->height ? over : view->height;
+        view->height = se3di_raised(view->height, over);
     }
 }
 
 int se3di_piece_is_at(const se3di_shape *piece, const se3di_piece_view *view, double slack)
 {
-    const double far = piece->bound + SHARP * slack;
-    return !(view->square > far * far) && (view->height < 0.0 || view->height < slack);
+    return !is_far(piece, view->square, slack) && !is_over(view->height, slack);
 }
 
 int se3di_piece_holds(const se3di_shape *piece, const double x[3], double slack)
 {
     double d[3];
     se3di_sub(x, piece->x, d);
-    const double far = piece->bound + SHARP * slack;
-    if (se3di_dot(d, d) > far * far) {
+    if (is_far(piece, se3di_dot(d, d), slack)) {
         return 0;
     }
     for (size_t k = 0; k < piece->triangle_count; ++k) {
         double n[3];
         const double offset = se3di_face_plane(piece, k, n), over = se3di_dot(d, n) - offset;
-        if (!(over < 0.0) && !(over < slack)) {
+        if (is_over(over, slack)) {
             return 0;
         }
     }
