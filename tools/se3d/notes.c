@@ -40,36 +40,34 @@ static void note_particles(notes *n, const se3d_run *run)
     }
 }
 
-/* Dynamics of bodies that stand still, and that no force could move, without particles beside
- * them. */
-static int is_locked(const se3d_system *system, const se3d_run *run, const se3d_check *check)
+/* Dynamics that ends at rest, without particles beside the bodies. */
+static int may_be_locked(const se3d_system *system, const se3d_run *run)
 {
-    se3d_check_summary summary = {.struct_size = sizeof summary};
     se3d_energy energy = {0.0, 0.0, 0.0, 0.0};
-    return se3d_run_count_particles(run) == 0 && is_analysed(run, "dynamics") &&
-           !SE3D_FAILED(se3d_check_get_summary(check, &summary)) && summary.bodies > 0 &&
-           summary.freedoms == 0 && !SE3D_FAILED(se3d_system_get_energy(system, &energy)) &&
-           !(energy.kinetic > 1e-20);
+    return se3d_system_count_constraints(system) <= CONSTRAINTS_MAX &&
+           se3d_run_count_particles(run) == 0 && is_analysed(run, "dynamics") &&
+           !SE3D_FAILED(se3d_system_get_energy(system, &energy)) && !(energy.kinetic > 1e-20);
 }
 
-static void note_constraints(notes *n, const se3d_system *system, const se3d_run *run,
-                             const se3d_check *check)
+/* There are bodies, and no force could move them. */
+static int is_locked(se3d_system *system)
 {
-    if (is_locked(system, run, check)) {
-        add(n, "nothing can move: the constraints leave no degree of freedom; `se3d check` says "
-               "which of them duplicate others, and axes or dimensions may need more digits");
-    }
+    se3d_check_summary summary = {.struct_size = sizeof summary};
+    se3d_check *check = NULL;
+    const int locked = !SE3D_FAILED(se3d_check_create(system, &check)) &&
+                       !SE3D_FAILED(se3d_check_get_summary(check, &summary)) &&
+                       summary.bodies > 0 && summary.freedoms == 0;
+    se3d_check_destroy(check);
+    return locked;
 }
 
 void notes_collect(notes *n, se3d_model *model, const se3d_run *run)
 {
     se3d_system *system = se3d_model_get_system(model);
-    se3d_check *check = NULL;
     n->count = 0;
     note_particles(n, run);
-    if (se3d_system_count_constraints(system) <= CONSTRAINTS_MAX &&
-        !SE3D_FAILED(se3d_check_create(system, &check))) {
-        note_constraints(n, system, run, check);
+    if (may_be_locked(system, run) && is_locked(system)) {
+        add(n, "nothing can move: the constraints leave no degree of freedom; `se3d check` says "
+               "which of them duplicate others, and axes or dimensions may need more digits");
     }
-    se3d_check_destroy(check);
 }

@@ -69,7 +69,7 @@ static void *refuse(se3di_iopool *pool)
     return NULL;
 }
 
-void *se3di_iopool_alloc(se3di_iopool *pool, size_t size)
+void *se3di_iopool_take(se3di_iopool *pool, size_t size)
 {
     struct se3di_iopool_block *block = pool->blocks;
     const size_t head = round_up(sizeof *block);
@@ -90,7 +90,13 @@ void *se3di_iopool_alloc(se3di_iopool *pool, size_t size)
     }
     void *memory = (char *)block + block->used;
     block->used += size;
-    return memset(memory, 0, size);
+    return memory;
+}
+
+void *se3di_iopool_alloc(se3di_iopool *pool, size_t size)
+{
+    void *memory = se3di_iopool_take(pool, size);
+    return memory ? memset(memory, 0, size) : NULL;
 }
 
 void *se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size)
@@ -100,9 +106,12 @@ void *se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size)
 
 char *se3di_iopool_copy(se3di_iopool *pool, const char *text, size_t length)
 {
-    char *copy = se3di_iopool_alloc(pool, length + 1);
+    char *copy = se3di_iopool_take(pool, length + 1);
     if (copy && length > 0) {
         memcpy(copy, text, length);
+    }
+    if (copy) {
+        copy[length] = '\0';
     }
     return copy;
 }
@@ -131,7 +140,7 @@ bool se3di_iobytes_put(se3di_iobytes *bytes, se3di_iopool *pool, const void *dat
     }
     if (size > bytes->capacity - bytes->count) {
         const size_t capacity = 2 * (bytes->count + size) + 64;
-        unsigned char *grown = se3di_iopool_alloc(pool, capacity);
+        unsigned char *grown = se3di_iopool_take(pool, capacity);
         if (!grown) {
             return false;
         }

@@ -25,7 +25,10 @@ void se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *allocator);
 void se3di_iopool_destroy(se3di_iopool *pool);
 /* The allocator for what libse3d makes: NULL, its own, where both would call malloc. */
 const se3d_allocator *se3di_iopool_lend(const se3di_iopool *pool);
-/* Zeroed memory, aligned as malloc's; NULL when there is none. */
+/* Memory that is not zeroed, aligned as malloc's; NULL when there is none. Of a large block only
+ * what is written costs anything. */
+void *se3di_iopool_take(se3di_iopool *pool, size_t size);
+/* Zeroed memory; NULL when there is none. */
 void *se3di_iopool_alloc(se3di_iopool *pool, size_t size);
 /* Zeroed array; NULL when there is none or count * size overflows. */
 void *se3di_iopool_array(se3di_iopool *pool, size_t count, size_t size);

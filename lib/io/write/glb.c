@@ -122,18 +122,14 @@ static float to_float(double value)
     return value > most ? FLT_MAX : value < -most ? -FLT_MAX : (float)value;
 }
 
-static void put_range(se3di_glb *glb, const double *values, size_t count, size_t width)
+/* The least and the largest of each component. */
+static void put_range(se3di_glb *glb, float range[2][3], size_t width)
 {
     for (int largest = 0; largest < 2; ++largest) {
         se3di_glb_put(glb, &glb->accessors, largest ? "],\"max\":[" : ",\"min\":[");
         for (size_t i = 0; i < width; ++i) {
-            float best = to_float(values[i]);
-            for (size_t k = 1; k < count; ++k) {
-                const float value = to_float(values[k * width + i]);
-                best = (largest ? value > best : value < best) ? value : best;
-            }
             se3di_glb_put(glb, &glb->accessors, i > 0 ? "," : "");
-            se3di_glb_put_number(glb, &glb->accessors, (double)best);
+            se3di_glb_put_number(glb, &glb->accessors, (double)range[largest][i]);
         }
     }
     se3di_glb_put(glb, &glb->accessors, "]");
@@ -153,15 +149,23 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
     const size_t width = (size_t)type;
     const long view = begin(glb, count * width * 4, target);
     batch numbers = {.glb = glb};
-    for (size_t k = 0; k < count * width; ++k) {
-        const float value = to_float(values[k]);
-        uint32_t bits = 0;
-        memcpy(&bits, &value, sizeof bits);
-        put_little(&numbers, bits, 4);
+    float range[2][3] = {{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}};
+    for (size_t i = 0; i < width; ++i) {
+        range[0][i] = range[1][i] = to_float(values[i]);
+    }
+    for (size_t k = 0; k < count; ++k, values += width) {
+        for (size_t i = 0; i < width; ++i) {
+            const float value = to_float(values[i]);
+            uint32_t bits = 0;
+            memcpy(&bits, &value, sizeof bits);
+            put_little(&numbers, bits, 4);
+            range[0][i] = value < range[0][i] ? value : range[0][i];
+            range[1][i] = value > range[1][i] ? value : range[1][i];
+        }
     }
     flush(&numbers);
     describe(glb, view, NUMBER_FLOAT, count, type == SE3DI_GLB_SCALAR ? "SCALAR" : "VEC3");
-    put_range(glb, values, count, width);
+    put_range(glb, range, width);
     se3di_glb_put(glb, &glb->accessors, "}");
     return view;
 }

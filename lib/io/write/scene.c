@@ -21,6 +21,8 @@
 
 enum { SAMPLES_MAX = 1250 }; /* a page of 20 bodies stays below 1.5 MB */
 
+#define POSES_SIZE (SAMPLES_MAX * SE3DI_POSE * sizeof(double)) /* of one body */
+
 struct se3d_scene {
     se3di_iopool pool;
     se3d_model *model;
@@ -29,6 +31,11 @@ struct se3d_scene {
     size_t stride; /* every so many records are kept */
     size_t skipped;
 };
+
+/* Positions, turns and scales of a node at all samples. */
+typedef struct track {
+    double *r, *q, *scale;
+} track;
 
 typedef struct drawing {
     se3d_scene *scene;
@@ -40,6 +47,7 @@ typedef struct drawing {
     size_t node_count;
     size_t sampler_count;
     se3di_sizes sizes;
+    track track; /* of one node after the other */
 } drawing;
 
 se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out)
@@ -53,11 +61,10 @@ se3d_status se3d_scene_create(se3d_model *model, se3d_scene **out)
     }
     se3di_iopool_init(&pool, &model->pool.allocator);
     se3d_scene *scene = se3di_iopool_alloc(&pool, sizeof *scene);
-    if (scene) {
+    if (scene && model->body_count <= SIZE_MAX / 2 / POSES_SIZE) {
         scene->poses.bodies = model->body_count;
-        scene->times = se3di_iopool_array(&pool, SAMPLES_MAX, sizeof *scene->times);
-        scene->poses.values = se3di_iopool_array(&pool, SAMPLES_MAX * model->body_count,
-                                                 SE3DI_POSE * sizeof *scene->poses.values);
+        scene->times = se3di_iopool_take(&pool, SAMPLES_MAX * sizeof *scene->times);
+        scene->poses.values = se3di_iopool_take(&pool, model->body_count * POSES_SIZE);
     }
     if (!scene || !scene->times || !scene->poses.values) {
         se3di_iopool_destroy(&pool);
@@ -189,23 +196,17 @@ static void add_channel(drawing *d, size_t node, const char *path, long output)
                   d->sampler_count++, node, path);
 }
 
-/* Positions, turns and scales of a node at all samples. */
-typedef struct track {
-    double *r, *q, *scale;
-} track;
-
-static bool make_track(drawing *d, track *t)
+static void make_track(drawing *d)
 {
-    const size_t count = d->scene->poses.count;
-    t->r = se3di_iopool_array(d->glb.pool, count, 3 * sizeof *t->r);
-    t->q = se3di_iopool_array(d->glb.pool, count, 4 * sizeof *t->q);
-    t->scale = se3di_iopool_array(d->glb.pool, count, 3 * sizeof *t->scale);
-    d->glb.failed = d->glb.failed || !t->r || !t->q || !t->scale;
-    return !d->glb.failed;
+    const size_t size = d->scene->poses.count * sizeof *d->track.r;
+    d->track.r = se3di_iopool_take(d->glb.pool, 3 * size);
+    d->track.q = se3di_iopool_take(d->glb.pool, 4 * size);
+    d->track.scale = se3di_iopool_take(d->glb.pool, 3 * size);
+    d->glb.failed = d->glb.failed || !d->track.r || !d->track.q || !d->track.scale;
 }
 
 /* Quaternions (x, y, z, w) of neighbours are on one side, so that they can be interpolated. */
-static void put_sample(track *t, size_t sample, const double r[3], const double p[4])
+static void put_sample(const track *t, size_t sample, const double r[3], const double p[4])
 {
     double dot = 0.0;
     double *now = t->q + 4 * sample;
@@ -219,35 +220,28 @@ static void put_sample(track *t, size_t sample, const double r[3], const double 
     }
 }
 
-static void add_track(drawing *d, const track *t, size_t node)
+static void add_track(drawing *d, size_t node)
 {
     const size_t n = d->scene->poses.count;
-    add_channel(d, node, "translation", se3di_glb_add_floats(&d->glb, t->r, n, SE3DI_GLB_VEC3, 0));
-    add_channel(d, node, "rotation", se3di_glb_add_rotations(&d->glb, t->q, n));
+    add_channel(d, node, "translation",
+                se3di_glb_add_floats(&d->glb, d->track.r, n, SE3DI_GLB_VEC3, 0));
+    add_channel(d, node, "rotation", se3di_glb_add_rotations(&d->glb, d->track.q, n));
 }
 
 static void animate_body(drawing *d, size_t k, size_t node)
 {
-    track t;
-    if (!make_track(d, &t)) {
-        return;
-    }
     for (size_t s = 0; s < d->scene->poses.count; ++s) {
         const double *pose = pose_of(d->scene, s, k);
-        put_sample(&t, s, pose, pose + 3);
+        put_sample(&d->track, s, pose, pose + 3);
     }
-    add_track(d, &t, node);
+    add_track(d, node);
 }
 
 /* What moves on its body. */
 static void animate_part(drawing *d, const se3di_part *part, size_t node)
 {
     const size_t count = d->scene->poses.count;
-    double *r = se3di_iopool_array(d->glb.pool, count, 3 * sizeof *r);
-    if (!r) {
-        d->glb.failed = true;
-        return;
-    }
+    double *r = d->track.r;
     for (size_t k = 0; k < 3 * count; ++k) {
         r[k] = part->position[k % 3] + part->lift[k / 3] * part->along[k % 3];
     }
@@ -316,23 +310,23 @@ static void add_body(drawing *d, size_t k, se3di_iobytes *roots)
 static void add_between(drawing *d, size_t element, size_t which, se3di_iobytes *roots)
 {
     const se3d_scene *scene = d->scene;
-    track t;
     const se3di_part first =
         se3di_drawing_get_between(scene->model, element, which, &d->sizes, pose_of(scene, 0, 0));
     const size_t node = add_part(d, &first);
     add_child(d, roots, node);
-    if (scene->poses.count < 2 || !make_track(d, &t)) {
+    if (scene->poses.count < 2) {
         return;
     }
     for (size_t s = 0; s < scene->poses.count; ++s) {
         const se3di_part now = se3di_drawing_get_between(scene->model, element, which, &d->sizes,
                                                          pose_of(scene, s, 0));
-        put_sample(&t, s, now.position, now.orientation);
-        memcpy(t.scale + 3 * s, now.scale, sizeof now.scale);
+        put_sample(&d->track, s, now.position, now.orientation);
+        memcpy(d->track.scale + 3 * s, now.scale, sizeof now.scale);
     }
-    add_track(d, &t, node);
-    add_channel(d, node, "scale",
-                se3di_glb_add_floats(&d->glb, t.scale, scene->poses.count, SE3DI_GLB_VEC3, 0));
+    add_track(d, node);
+    add_channel(
+        d, node, "scale",
+        se3di_glb_add_floats(&d->glb, d->track.scale, scene->poses.count, SE3DI_GLB_VEC3, 0));
 }
 
 static void add_grid(drawing *d, se3di_iobytes *roots)
@@ -444,6 +438,10 @@ static void draw(drawing *d)
     const se3d_scene *scene = d->scene;
     const se3d_model *model = scene->model;
     se3di_iobytes roots = {NULL, 0, 0};
+    make_track(d);
+    if (d->glb.failed) {
+        return;
+    }
     se3di_drawing_measure(model, &scene->poses, &d->sizes);
     if (scene->poses.count > 1) {
         se3di_glb_add_floats(&d->glb, scene->times, scene->poses.count, SE3DI_GLB_SCALAR, 0);
