@@ -19,7 +19,8 @@
 #define FORCED_MAX 3
 #define LEAST_STEP 3e-14 /* of the time */
 #define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
-#define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step */
+#define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step; */
+#define CLEAR_PART 0.01  /* of that, at the middle: there is seldom ten times as much beside it */
 #define WIDE_PART  0.1   /* of the error of a step that rows redundant by geometry make */
 #define WIDE_TRIES 16    /* in vain, until no more are made */
 
@@ -748,14 +749,16 @@ void se3di_explicit_interpolate(const se3di_integration *integration, double t, 
     m.motion->show(m.equations, is_within ? m.y : m.y1, y);
 }
 
-/* What the interpolation of the last step violates constraints by, at the quarters of the step: a
- * part of the history, so that what is shown does not depend on what was shown before. */
-static se3d_status measure_gap(se3di_explicit *m)
+/* What the interpolation of the last step violates constraints by, at its middle and, unless that
+ * is far below `limit`, at the other quarters: a part of the history, so that what is shown does
+ * not depend on what was shown before. */
+static se3d_status measure_gap(se3di_explicit *m, double limit)
 {
+    static const double places[] = {0.5, 0.25, 0.75};
     const double begin = m->past->at.begin, h = m->past->at.time - begin;
     double worst = 0.0;
-    for (int k = 1; k < 4; ++k) {
-        const double t = begin + 0.25 * k * h;
+    for (int k = 0; k < 3 && (k == 0 || !(worst <= CLEAR_PART * limit)); ++k) {
+        const double t = begin + places[k] * h;
         double gap;
         m->methods->interpolate(m, t, m->y);
         m->motion->set(m->equations, m->y);
@@ -777,7 +780,7 @@ static se3d_status needs_projection(se3di_explicit *m, int *needed)
     if (!(rough > 0.0)) {
         return SE3D_OK;
     }
-    SE3DI_TRY(m->past->gap < 0.0 ? measure_gap(m) : SE3D_OK);
+    SE3DI_TRY(m->past->gap < 0.0 ? measure_gap(m, GAP_PART * rough) : SE3D_OK);
     *needed = !(m->past->gap <= GAP_PART * rough);
     return SE3D_OK;
 }
