@@ -167,16 +167,17 @@ static se3d_status ask_energy(const se3d_system *system, double numbers[4])
 }
 
 static se3d_status answer(se3di_question question, const se3di_channel *c, se3di_sample *sample,
-                          double numbers[SE3DI_ANSWER_NUMBERS]);
+                          double room[SE3DI_ANSWER_NUMBERS], const double **numbers);
 
 /* Actuators, drivers, and what is left over of the energies. */
 static se3d_status ask_work(const se3di_channel *c, se3di_sample *sample, double numbers[3])
 {
-    double energy[SE3DI_ANSWER_NUMBERS];
+    double room[SE3DI_ANSWER_NUMBERS];
+    const double *energy;
     se3d_work work = {0.0, 0.0, 0.0};
     se3d_status status = se3d_system_get_work(sample->system, &work);
     if (status >= 0) {
-        status = answer(SE3DI_ASK_ENERGY, c, sample, energy);
+        status = answer(SE3DI_ASK_ENERGY, c, sample, room, &energy);
     }
     if (status >= 0) {
         numbers[0] = work.actuators;
@@ -325,45 +326,53 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     }
 }
 
-/* As `ask`, once in a state; failures are not kept. */
+/* As `ask`, once in a state; failures are not kept. *numbers: where they are, in `room` if nothing
+ * is kept. */
 static se3d_status answer(se3di_question question, const se3di_channel *c, se3di_sample *sample,
-                          double numbers[SE3DI_ANSWER_NUMBERS])
+                          double room[SE3DI_ANSWER_NUMBERS], const double **numbers)
 {
-    memset(numbers, 0, SE3DI_ANSWER_NUMBERS * sizeof *numbers);
+    *numbers = room;
     if (sample->state == 0) {
-        return ask(question, c, sample, numbers);
+        memset(room, 0, SE3DI_ANSWER_NUMBERS * sizeof *room);
+        return ask(question, c, sample, room);
     }
     se3di_answer *kept = se3di_sample_find(sample, question, element_of(question, c));
     if (!kept) {
         return SE3D_ERR_NO_MEMORY;
     }
+    *numbers = kept->numbers;
     if (kept->state != sample->state) {
-        const se3d_status status = ask(question, c, sample, numbers);
+        memset(kept->numbers, 0, sizeof kept->numbers);
+        const se3d_status status = ask(question, c, sample, kept->numbers);
         if (status < 0) {
             return status;
         }
-        memcpy(kept->numbers, numbers, sizeof kept->numbers);
         kept->state = sample->state;
     }
-    memcpy(numbers, kept->numbers, sizeof kept->numbers);
     return SE3D_OK;
 }
 
 static se3d_status eval_quantity(const se3di_channel *channel, se3di_sample *sample,
                                  double value[4])
 {
-    double numbers[SE3DI_ANSWER_NUMBERS];
+    double room[SE3DI_ANSWER_NUMBERS];
+    const double *numbers;
     size_t first = 0;
     const se3di_question question = se3di_channel_get_question(channel, &first);
-    memset(value, 0, 4 * sizeof *value);
+    for (size_t k = 0; k < 4; ++k) {
+        value[k] = 0.0;
+    }
     if (channel->reference.given) {
         return se3di_relative_eval(channel, sample->system, value);
     }
     if (question == SE3DI_ASK_ITSELF) {
         return eval_body(channel, sample->system, value);
     }
-    const se3d_status status = answer(question, channel, sample, numbers);
-    memcpy(value, numbers + first, se3di_channel_get_width(channel) * sizeof *value);
+    const se3d_status status = answer(question, channel, sample, room, &numbers);
+    const size_t width = status < 0 ? 0 : se3di_channel_get_width(channel);
+    for (size_t k = 0; k < width; ++k) {
+        value[k] = numbers[first + k];
+    }
     return status;
 }
 

@@ -338,8 +338,9 @@ se3d_status se3di_files_sample(se3di_runner *r, se3di_output_file *file, double 
             return se3di_files_fail(r, status, text);
         }
         const size_t width = se3di_channel_get_width(channel);
-        memcpy(row, value, width * sizeof *row);
-        row += width;
+        for (size_t i = 0; i < width; ++i) {
+            *row++ = value[i];
+        }
     }
     if (file->summary) {
         if (is_in_window(file, time)) {
