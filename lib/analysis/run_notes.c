@@ -60,19 +60,17 @@ void se3di_run_tell_step(se3di_run *run)
 void se3di_run_tell_crowd(se3di_run *run)
 {
     const se3di_integrator *method = run->integration.method;
-    const int is_crowd = se3di_crowd_has(run->model, SE3DI_CROWD) && se3di_crowd_suits(run->model);
-    const char *why = run->left ? "bodies that touch have long held the steps short"
-                                : "its state has been stepped so";
-    char many[64];
-    snprintf(many, sizeof many, "%d free bodies or more are at each other", SE3DI_CROWD);
     if (run->told_crowd == method) {
         return;
     }
+    const int is_crowd = se3di_crowd_has(run->model, SE3DI_CROWD) && se3di_crowd_suits(run->model);
     if (method == &se3di_integrator_convex && run->automatic) {
+        const char *why = run->left ? "bodies that touch have long held the steps short"
+                                    : "its state has been stepped so";
+        char many[64];
+        snprintf(many, sizeof many, "%d free bodies or more are at each other", SE3DI_CROWD);
         run->told_crowd = method;
-        if (is_crowd) {
-            why = many;
-        }
+        why = is_crowd ? many : why;
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                         "t = %g s: %s: %s takes them, of order 1; with a tolerance, each contact "
                         "is followed",
