@@ -288,7 +288,7 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     model->contacts.followed_count = 0;
     if (status >= 0) {
         se3di_convex_record(c, model);
-        se3di_convex_store(c, model, taken);
+        se3di_convex_store(c, &equations->assembly, taken);
     }
     model->contacts.frozen = NULL;
     SE3DI_TRY(status);

@@ -179,7 +179,7 @@ double se3di_convex_fed(const se3di_convex *c);
 void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
 /* those of the contacts that were found at the end of the step, after `taken` [J] was taken
  * from the bodies: no more than they held before and that. */
-void se3di_convex_store(const se3di_convex *c, se3di_model *model, double taken);
+void se3di_convex_store(const se3di_convex *c, const se3di_assembly *assembly, double taken);
 
 /* convex_gyration.c: w that a torque [N m] makes of w0 in h, all in the frame of the body; */
 void se3di_convex_turn_freely(const double J[9], const double w0[3], const double torque[3],

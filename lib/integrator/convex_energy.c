@@ -33,16 +33,22 @@ static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
            (lifts ? 0.5 * lifted * convex->h * se3di_dot(c->impulse, convex->gravity) : 0.0);
 }
 
-/* What the step itself takes from a body. */
+/* What a body that moves by v_1 sinks too far, */
+static double taken_by_leap(const se3di_convex *c, const se3di_assembly *assembly, uint32_t k)
+{
+    const double mass = assembly->model->bodies[assembly->free_body[k]].mass;
+    double dv[3];
+    if (c->drifts || !se3di_convex_leaps(c, k)) {
+        return 0.0;
+    }
+    se3di_sub(c->v + 6 * (size_t)k, c->start + 6 * (size_t)k, dv);
+    return 0.5 * c->h * mass * se3di_dot(c->gravity, dv);
+}
+
+/* and all that the step itself takes from it. */
 static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, uint32_t k)
 {
-    const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
-    const double mass = assembly->model->bodies[assembly->free_body[k]].mass;
-    double sum = 0.0, dv[3];
-    if (!c->drifts && se3di_convex_leaps(c, k)) {
-        se3di_sub(v, v0, dv);
-        sum += 0.5 * c->h * mass * se3di_dot(c->gravity, dv);
-    }
+    double sum = taken_by_leap(c, assembly, k);
     if (c->touched[k] || assembly->row_count > 0) {
         sum += se3di_convex_gyration_work(c, k);
     }
@@ -141,13 +147,42 @@ static double store_pairs(const se3di_convex *convex, se3di_model *model)
     return sum;
 }
 
-void se3di_convex_store(const se3di_convex *convex, se3di_model *model, double taken)
+/* What bodies have sunk too far they will be lifted by again: springs that have less than their law
+ * says hold it meanwhile. Returns how much they take of it. */
+static double keep_leaps(const se3di_convex *convex, const se3di_assembly *assembly, double most)
 {
+    se3di_model *model = assembly->model;
+    double lent = 0.0, room = 0.0;
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        lent += convex->asleep[k] ? 0.0 : taken_by_leap(convex, assembly, k);
+    }
+    lent = fmin(lent, most);
+    if (!(lent > 0.0)) {
+        return 0.0;
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+        const double share = pass && room > lent ? lent / room : 1.0;
+        for (size_t k = 0; k < model->contacts.next_count && (!pass || room > 0.0); ++k) {
+            se3di_body_contact *r = &model->contacts.next[k];
+            if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
+                const double gap = law_energy(model, r) - r->energy;
+                room += pass ? 0.0 : gap;
+                r->energy += pass ? share * gap : 0.0;
+            }
+        }
+    }
+    return fmin(lent, room);
+}
+
+void se3di_convex_store(const se3di_convex *convex, const se3di_assembly *assembly, double taken)
+{
+    se3di_model *model = assembly->model;
     double sum = store_pairs(convex, model), most = taken;
     for (size_t k = 0; k < convex->contact_count; ++k) {
         most += convex->contacts[k].held;
     }
     most = fmax(0.0, most);
+    sum += keep_leaps(convex, assembly, most - sum);
     for (size_t k = 0; k < model->contacts.next_count && sum > most; ++k) {
         se3di_body_contact *r = &model->contacts.next[k];
         if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
