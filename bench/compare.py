@@ -401,9 +401,11 @@ class Bench:
         print("\n## Boxes that touch, 3 s at steps of 2 ms (1000 boxes: .5 s), about the same overlap at rest",
               flush=True)
         for scene, n, duration in (("heap", 27, 3), ("heap", 100, 3), ("heap", 1000, .5),
-                                   ("stack", 30, 3), ("dominoes", 20, 3)):
+                                   ("stack", 30, 3), ("dominoes", 20, 3), ("pyramid", 55, 3),
+                                   ("wall", 37, 3), ("cards", 15, 3)):
+            stiffness = "1e6" if scene == "stack" else "3e5"  # softer ones of 3 m buckle
             for _ in range(2 if n < 1000 else 1):
-                self.show_program("bench_touch", scene, str(n), ".002", str(duration), "3e5")
+                self.show_program("bench_touch", scene, str(n), ".002", str(duration), stiffness)
                 if n < 1000:  # its data for 1000 do not fit into its memory
                     self.show_program("mujoco_touch", scene, str(n), ".002", str(duration), "2", "Newton")
 

@@ -15,11 +15,16 @@
 static size_t write_box(const bench_box *box, char *text, size_t room)
 {
     const double *s = box->size, *p = box->at, *e = box->turn;
-    return (size_t)snprintf(text, room,
-                            "<body pos='%.17g %.17g %.17g' quat='%.17g %.17g %.17g %.17g'>"
-                            "<freejoint/><geom type='box' size='%.17g %.17g %.17g'/></body>",
-                            p[0], p[1], p[2], e[0], e[1], e[2], e[3], 0.5 * s[0], 0.5 * s[1],
-                            0.5 * s[2]);
+    size_t at = (size_t)snprintf(text, room,
+                                 "<body pos='%.17g %.17g %.17g' quat='%.17g %.17g %.17g %.17g'>"
+                                 "<freejoint/>",
+                                 p[0], p[1], p[2], e[0], e[1], e[2], e[3]);
+    at += box->ball > 0.0 ? (size_t)snprintf(text + at, room - at,
+                                             "<geom type='sphere' size='%.17g'/></body>", box->ball)
+                          : (size_t)snprintf(text + at, room - at,
+                                             "<geom type='box' size='%.17g %.17g %.17g'/></body>",
+                                             0.5 * s[0], 0.5 * s[1], 0.5 * s[2]);
+    return at;
 }
 
 static mjModel *load(const bench_box *boxes, int n, char **argv)
