@@ -42,7 +42,7 @@ static mjModel *load(const bench_box *boxes, int n, char **argv)
         "<mujoco><size njmax='%d' nconmax='%d' nstack='%d'/><option gravity='0 0 %g' timestep='%g' "
         "solver='%s' cone='elliptic'/><default><geom density='%g' friction='%g .005 .0001' "
         "solref='%g 1' condim='3'/></default><worldbody><geom type='plane' size='0 0 1'/>",
-        60 * n + 100, 20 * n + 100, 4000000 + 40 * n * n, -BENCH_TOUCH_GRAVITY, step, argv[6],
+        30 * n + 300, 10 * n + 100, 4000000 + 80 * n * n, -BENCH_TOUCH_GRAVITY, step, argv[6],
         BENCH_TOUCH_DENSITY, BENCH_TOUCH_FRICTION, atof(argv[5]) * step);
     for (int k = 0; k < n; ++k) {
         at += write_box(&boxes[k], text + at, room - at);
