@@ -56,8 +56,7 @@ double se3di_mesh_height(const face *f, const double x[3])
     return se3di_dot(d, f->n);
 }
 
-/* Which way a normal looks: the same while it turns little. */
-static uint32_t way_of(const double n[3])
+uint32_t se3di_mesh_way_of(const double n[3])
 {
     uint32_t a = fabs(n[0]) > fabs(n[1]) ? 0 : 1;
     a = fabs(n[2]) > fabs(n[a]) ? 2 : a;
@@ -157,9 +156,23 @@ se3di_shape se3di_mesh_flat(const meeting *m, uint32_t triangle, double corners[
                          .triangle_count = 1};
 }
 
+/* Whether a side of the solid shows that it does not come near a triangle. */
+static int is_parted(const meeting *m, uint32_t triangle)
+{
+    double corner[3][3];
+    for (uint32_t k = 0; k < 3; ++k) {
+        se3di_solid_to_ground(m->mesh, se3di_mesh_corner(m->mesh->shape, triangle, k), corner[k]);
+    }
+    return se3di_side_parts_triangle(m->solid, (const double(*)[3])corner,
+                                     se3di_core_radius(m->solid->shape) + SAME * m->size);
+}
+
 int se3di_mesh_overlaps(const meeting *m, uint32_t triangle)
 {
     double corners[9];
+    if (is_parted(m, triangle)) {
+        return 0;
+    }
     const se3di_shape flat = se3di_mesh_flat(m, triangle, corners);
     const se3di_solid other = {&flat, m->mesh->at};
     return !se3di_convex_are_apart(m->solid, &other, se3di_core_radius(m->solid->shape));
@@ -246,7 +259,8 @@ static void touch_corner(const meeting *m, const double x[3], const double *only
         }
         se3di_copy(c.x, at);
         se3di_add_scaled(c.depth[k], c.list[k].n, at);
-        se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0, 8 * feature + way_of(c.list[k].n));
+        se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0,
+                       8 * feature + se3di_mesh_way_of(c.list[k].n));
     }
 }
 
@@ -263,7 +277,7 @@ static void touch_ball(const meeting *m, const double x[3], double radius, uint3
         const se3di_touch *t = &touches[k];
         if (depth[k] > 0.0) {
             se3di_mesh_add(m, t->point, t->normal, depth[k], radius,
-                           8 * feature + way_of(t->normal));
+                           8 * feature + se3di_mesh_way_of(t->normal));
         }
     }
 }
@@ -635,6 +649,38 @@ static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
     find_side(m);
 }
 
+typedef struct any_met {
+    const meeting *m;
+    int met;
+} any_met;
+
+static void meet_any(void *ctx, uint32_t triangle)
+{
+    any_met *a = ctx;
+    a->met = a->met || !is_parted(a->m, triangle);
+}
+
+/* Whether the solid is off every triangle about it. */
+static int is_clear(const meeting *m)
+{
+    any_met all = {m, 0};
+    double low[3], high[3];
+    if (m->mesh->shape->rows > 0) {
+        return 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        double n[3] = {0.0, 0.0, 0.0}, at[3];
+        n[k] = 1.0;
+        low[k] = -se3di_mesh_lowest(m, n, at) - SAME * m->size;
+        low[k] += at[k];
+        n[k] = -1.0;
+        high[k] = se3di_mesh_lowest(m, n, at) + SAME * m->size;
+        high[k] += at[k];
+    }
+    se3di_mesh_visit_box(m->mesh->shape, low, high, meet_any, &all);
+    return !all.met;
+}
+
 static void find_parts(meeting *m)
 {
     const se3di_shape *s = m->solid->shape, *mesh = m->mesh->shape;
@@ -690,7 +736,13 @@ static void find_rest(meeting *m)
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     meeting m;
+    if (se3di_narrow_flush(i, mesh, manifold)) {
+        return;
+    }
     begin(&m, i, mesh, manifold);
+    if (is_clear(&m)) {
+        return;
+    }
     if (!m.has_pieces) {
         find_parts(&m);
     } else if (!se3di_narrow_judge(i, mesh, manifold, find_whole)) {

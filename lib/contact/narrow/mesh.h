@@ -65,6 +65,8 @@ const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);
 double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
+/* Which way a normal looks: the same while it turns little. */
+uint32_t se3di_mesh_way_of(const double n[3]);
 /* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
 /* A triangle as a solid of its own, with room for its corners; whether the solid overlaps it. */
@@ -104,6 +106,12 @@ typedef void (*se3di_part_finder)(const se3di_solid *i, size_t part, const se3di
  * are ways out of the pieces, and add what is missing. Returns 0 if none overlap. */
 int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
                        se3di_part_finder find);
+/* A cylinder of which a cap lies on a flat part of a closed mesh that nothing about it rises above.
+ * Returns 0 if it does not. */
+int se3di_narrow_flush(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
+/* Two closed meshes that touch only where flat parts of them lie on each other, or do not touch
+ * there. Returns 0 if they may touch elsewhere. */
+int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);
 /* Whether one of some contacts is this one. */
 int se3di_contact_points_have(const se3di_contact_point *points, uint32_t count,
                               const se3di_contact_point *p, double slack);

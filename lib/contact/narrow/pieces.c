@@ -153,6 +153,9 @@ void se3di_narrow_meshes(const se3di_solid *i, const se3di_solid *j, se3di_manif
 {
     const int turned = is_second(i, j);
     const se3di_solid *cut = turned ? j : i, *whole = turned ? i : j;
+    if (se3di_narrow_outlines(i, j, manifold)) {
+        return;
+    }
     if (cut->shape->piece_count == 0 ||
         (whole->shape->piece_count == 0 && whole->shape->closed != 0)) {
         se3di_narrow_surfaces(i, j, manifold);

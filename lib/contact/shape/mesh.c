@@ -22,7 +22,9 @@
 #define CANDIDATES      128   /* triangles within reach of one sphere that are told apart */
 #define AT_EDGE         1e-6  /* of its length: a triangle is at the middle of an edge */
 #define COPLANAR        0.999 /* cosine of the angle of triangles that are one */
-#define TOLD            4     /* bit of an edge */
+#define TOLD            4     /* bits of an edge */
+#define LEVEL           8
+#define FLUSH           1e-6  /* of the size: the next triangle is in the plane of a face */
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
 #define FLAT            1e-9  /* of the size: a vertex is in the plane of a face */
 #define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
@@ -180,6 +182,11 @@ int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_
     return shape->rows == 0 && (se3di_mesh_facets(shape)[triangle].edges[side] & TOLD) != 0;
 }
 
+int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side)
+{
+    return (se3di_mesh_facets(shape)[triangle].edges[side] & LEVEL) != 0;
+}
+
 /* Which way the triangle beyond an edge leads. */
 static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t beyond)
 {
@@ -192,7 +199,8 @@ static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t
         most = fmax(most, se3di_dot(d, f->normal));
         size = fmax(size, se3di_norm(d));
     }
-    f->edges[side] = (uint8_t)((least < -FLAT * size ? 1 : 0) | (most > FLAT * size ? 2 : 0));
+    f->edges[side] = (uint8_t)((least < -FLAT * size ? 1 : 0) | (most > FLAT * size ? 2 : 0) |
+                               (fmax(most, -least) < FLUSH * size ? LEVEL : 0));
 }
 
 static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s);
@@ -605,6 +613,15 @@ int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const dou
     return se3di_mesh_find_cuts(shape, from, to, 1, &cut) > 0;
 }
 
+static int is_in_box(const mesh_node *node, const double low[3], const double high[3])
+{
+    int meets = 1;
+    for (int a = 0; a < 3; ++a) {
+        meets = meets && node->low[a] <= high[a] && node->high[a] >= low[a];
+    }
+    return meets;
+}
+
 int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3])
 {
     const mesh_node *nodes = shape->tree;
@@ -613,10 +630,7 @@ int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const do
     while (depth > 0) {
         const uint32_t at = stack[--depth];
         const mesh_node *node = &nodes[at];
-        int meets = 1;
-        for (int a = 0; a < 3; ++a) {
-            meets = meets && node->low[a] <= high[a] && node->high[a] >= low[a];
-        }
+        const int meets = is_in_box(node, low, high);
         if (meets && node->count > 0) {
             return 1;
         }
@@ -626,6 +640,28 @@ int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const do
         }
     }
     return 0;
+}
+
+void se3di_mesh_visit_box(const se3di_shape *shape, const double low[3], const double high[3],
+                          void (*visitor)(void *ctx, uint32_t triangle), void *ctx)
+{
+    const mesh_node *nodes = shape->tree;
+    uint32_t stack[STACK_SIZE] = {0};
+    int depth = 1;
+    while (depth > 0) {
+        const uint32_t at = stack[--depth];
+        const mesh_node *node = &nodes[at];
+        if (!is_in_box(node, low, high)) {
+            continue;
+        }
+        if (node->count == 0) {
+            stack[depth++] = node->right;
+            stack[depth++] = at + 1;
+        }
+        for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
+            visitor(ctx, k);
+        }
+    }
 }
 
 typedef struct edge_search {

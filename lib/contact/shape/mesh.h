@@ -47,6 +47,11 @@ int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double 
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
 
+/* Visit all triangles of a mesh (not of a heightfield) that reach into a box along the axes, and
+ * some beside it. */
+void se3di_mesh_visit_box(const se3di_shape *shape, const double low[3], const double high[3],
+                          void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
+
 /* Whether the segment between two points meets the surface. */
 int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const double to[3]);
 
@@ -65,6 +70,8 @@ int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t
 /* Whether an edge of a closed mesh need not be looked at from this triangle: it is about flat, or
  * the triangle beyond it, which comes first, tells of it. */
 int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side);
+/* Whether the triangle beyond an edge of a closed mesh is in the same plane, but for rounding. */
+int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side);
 
 /* Whether triangles may be within a box along the axes. */
 int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3]);

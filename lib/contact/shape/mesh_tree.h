@@ -20,7 +20,8 @@ typedef struct se3di_mesh_facet {
     double to_b[3], to_c[3]; /* dot products with x - a: parts of b - a and c - a in its foot */
     double heights[3];       /* of b, c and a over the sides opposite; 0: not told, of slivers */
     uint8_t edges[8];        /* bits: at this edge the next triangle leads 1 below, 2 above it, 4
-                                leads on in about its plane, or is the one that tells of the edge */
+                                leads on in about its plane, or is the one that tells of the edge,
+                                8 is in its plane */
 } se3di_mesh_facet;
 
 static inline se3di_mesh_facet *se3di_mesh_facets(const se3di_shape *shape)

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Flat on flat: a cap of a cylinder, and a second mesh, on a frame with a hole. What they touch in
+ * is known: no point looks to a side, however shallow the overlap and however short the way into
+ * the hole, and the same points are there after the least move. */
+#include "contact/narrow/narrow.h"
+#include "contact/shape/mesh.h"
+#include "support/poses.h"
+#include "support/prisms.h"
+
+#define SCALE 0.01
+#define HALF  0.01 /* m: half of its thickness; the face is at y = HALF */
+
+static size_t piece_count; /* that it has */
+
+static void make_frame(int in_pieces, se3di_shape *s)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    const prism_mesh t = prism_make(&prisms[FRAME], SCALE, HALF, (const double[2]){0.02, 0.02}, 0);
+    *s = (se3di_shape){.kind = SE3DI_SHAPE_MESH};
+    CHECK(!se3di_mesh_build(&standard, t.points, t.point_count, t.faces, t.face_count, s));
+    s->bound = se3di_shape_bound(s);
+    CHECK(s->piece_count > 0);
+    piece_count = s->piece_count;
+    s->piece_count = in_pieces ? piece_count : 0;
+}
+
+static void release(se3di_shape *s)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    s->piece_count = piece_count;
+    se3di_shape_release(&standard, s);
+}
+
+/* Its axis along y but for an angle about x; its lower cap around (x, HALF - depth, z). */
+static void stand(const se3di_shape *s, double angle, const double place[2], double depth,
+                  se3di_shape_pose *at)
+{
+    const double turn = 0.5 * (1.5707963267948966 + angle);
+    const double p[4] = {cos(turn), -sin(turn), 0.0, 0.0};
+    double axis[3];
+    memset(at, 0, sizeof *at);
+    se3di_quat_to_matrix(p, at->R);
+    for (int k = 0; k < 3; ++k) {
+        axis[k] = at->R[3 * k + 2];
+    }
+    at->x[0] = place[0];
+    at->x[1] = HALF - depth;
+    at->x[2] = place[1];
+    se3di_add_scaled(s->half_length, axis, at->x);
+}
+
+static void check_upright(const se3di_manifold *m, double most, double angle)
+{
+    for (uint32_t k = 0; k < m->count; ++k) {
+        CHECK_NEAR(fabs(m->points[k].normal[1]), 1.0, angle * angle + 1e-12);
+        CHECK(m->points[k].overlap > 0.0 && m->points[k].overlap < most * (1.0 + 1e-9) + 1e-15);
+        for (uint32_t other = 0; other < k; ++other) {
+            CHECK(m->points[k].feature != m->points[other].feature);
+        }
+    }
+}
+
+static int have_the_same(const se3di_manifold *a, const se3di_manifold *b)
+{
+    int same = a->count == b->count;
+    for (uint32_t k = 0; k < a->count && same; ++k) {
+        same = a->points[k].feature == b->points[k].feature;
+    }
+    return same;
+}
+
+/* The rim is over the frame, the corners of the hole are below the cap. */
+static void a_cap_over_a_hole_touches_its_rim_and_the_corners_of_the_hole(void)
+{
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    se3di_shape frame, cap = {.kind = SE3DI_SHAPE_CYLINDER, .radius = 0.016, .half_length = 0.01};
+    cap.bound = se3di_shape_bound(&cap);
+    for (int k = 0; k < 2 * 6 * 4; ++k) {
+        const double depth = pow(10.0, -9.0 + k / 2 % 6), angle = k / 12 * 0.3 * depth / cap.radius;
+        const double place[2] = {1e-4 * (k / 12), -2e-4 * (k / 12)};
+        se3di_shape_pose at, moved;
+        se3di_manifold m, again;
+        make_frame(k % 2, &frame);
+        stand(&cap, angle, place, depth, &at);
+        se3di_narrow_find(&cap, &at, &frame, &of, &m);
+        CHECK(m.count == 8);
+        check_upright(&m, depth + angle * cap.radius, angle);
+        moved = at;
+        moved.x[0] += 1e-9;
+        se3di_narrow_find(&cap, &moved, &frame, &of, &again);
+        CHECK(have_the_same(&m, &again));
+        at.x[1] += 1.1 * (depth + angle * cap.radius);
+        se3di_narrow_find(&cap, &at, &frame, &of, &m);
+        CHECK(m.count == 0);
+        release(&frame);
+    }
+}
+
+/* Of a cap that is over the border by less than it is deep the way to the side counts. */
+static void a_cap_at_a_border_comes_off_to_the_side(void)
+{
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    se3di_shape frame, cap = {.kind = SE3DI_SHAPE_CYLINDER, .radius = 0.004, .half_length = 0.01};
+    const double over = 1e-6, place[2] = {0.02 + cap.radius - over, 0.0};
+    cap.bound = se3di_shape_bound(&cap);
+    for (int in_pieces = 0; in_pieces < 2; ++in_pieces) {
+        se3di_shape_pose at;
+        se3di_manifold m;
+        make_frame(in_pieces, &frame);
+        stand(&cap, 0.0, place, 2e-4, &at);
+        se3di_narrow_find(&cap, &at, &frame, &of, &m);
+        CHECK(m.count > 0);
+        for (uint32_t k = 0; k < m.count; ++k) {
+            CHECK(m.points[k].overlap < over * (1.0 + 1e-6));
+        }
+        release(&frame);
+    }
+}
+
+/* On top of the other, moved along it and turned about the way up. */
+static void lay(double x, double z, double angle, double depth, se3di_shape_pose *at)
+{
+    const double p[4] = {cos(0.5 * angle), 0.0, sin(0.5 * angle), 0.0};
+    memset(at, 0, sizeof *at);
+    se3di_quat_to_matrix(p, at->R);
+    at->x[0] = x;
+    at->x[1] = 2.0 * HALF - depth;
+    at->x[2] = z;
+}
+
+typedef struct lying {
+    double x, z, angle;
+    uint32_t count;
+} lying;
+
+/* Equal frames on each other have eight corners; one that is moved along or turned has its corners
+ * that are over the other, those of the other below it, and crossings of their sides. */
+static void frames_on_each_other_touch_in_corners_and_crossings(void)
+{
+    static const lying rows[] = {{0.0, 0.0, 0.0, 8},      {1e-8, -1e-8, 0.0, 8},
+                                 {0.005, 0.003, 0.0, 12}, {0.01, 0.0, 0.0, 12},
+                                 {0.0, 0.0, 0.3, 16},     {0.028, 0.028, 0.0, 8}};
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    se3di_shape frame;
+    for (size_t k = 0; k < 2 * 2 * sizeof rows / sizeof *rows; ++k) {
+        const lying *row = &rows[k / 4];
+        const double depth = k / 2 % 2 ? 1e-4 : 1e-9;
+        se3di_shape_pose at;
+        se3di_manifold m, again;
+        make_frame(k % 2, &frame);
+        lay(row->x, row->z, row->angle, depth, &at);
+        se3di_narrow_find(&frame, &at, &frame, &of, &m);
+        CHECK(m.count == row->count);
+        check_upright(&m, depth, 0.0);
+        at.x[0] += 1e-10;
+        se3di_narrow_find(&frame, &at, &frame, &of, &again);
+        CHECK(have_the_same(&m, &again));
+        at.x[1] += 1.1 * depth;
+        se3di_narrow_find(&frame, &at, &frame, &of, &m);
+        CHECK(m.count == 0);
+        release(&frame);
+    }
+}
+
+int main(void)
+{
+    RUN(a_cap_over_a_hole_touches_its_rim_and_the_corners_of_the_hole);
+    RUN(a_cap_at_a_border_comes_off_to_the_side);
+    RUN(frames_on_each_other_touch_in_corners_and_crossings);
+    return check_finish();
+}
