@@ -483,6 +483,32 @@ static void socket_holds_its_ball(void)
     close_example(&e);
 }
 
+/* Every point of contact is a spring of 1e7 N/m: 12 of a head or nut (four of its rim, eight
+ * corners of its hole), 16 between the flanges, whose middle is not quite theirs. A head bears what
+ * its nut bears and the bolt's weight; all heads bear what pulls and what presses the flanges on
+ * each other. */
+static void bolts_bear_what_their_joint_diagram_says(void)
+{
+    const double k = 1e7, bolts = 12.0, head = 12.0 * k, thick = 0.015, stretch = 20e-6;
+    const double weight = 3.3732724343e-4 * 7800.0 * 9.81, bolt = 0.03 * 9.81;
+    example e = run_example("flange", NULL, NULL, NULL);
+    for (size_t row = 35; row < 101; ++row) {
+        const int is_open = row > 80;
+        const double pull = (is_open ? 20e3 : 10e3) - weight, between = is_open ? 0.0 : 16.0 * k;
+        const double gap =
+            ((2.0 * pull / bolts - bolt) / head - stretch) / (1.0 + 2.0 * between / (bolts * head));
+        if (row > 50 && !is_open) {
+            continue; /* it is pulled more and more */
+        }
+        CHECK_NEAR(file_number(&e, "flange.csv", row, 6), thick + gap, is_open ? 1e-12 : 1e-9);
+        CHECK_NEAR(file_number(&e, "flange.csv", row, 9), 0.0, 1e-11);
+        CHECK_NEAR(file_number(&e, "flange.csv", row, 12), -pull, 1e-9 * pull);
+        CHECK_NEAR(file_number(&e, "flange.csv", row, 18), bolt, 1e-6);
+        CHECK_NEAR(file_number(&e, "flange.csv", row, 19), is_open ? 288.0 : 304.0, 0.0);
+    }
+    close_example(&e);
+}
+
 int main(void)
 {
     RUN(block_above_the_friction_angle_slides_as_coulomb_says);
@@ -503,5 +529,6 @@ int main(void)
     RUN(overconstrained_loop_has_the_same_reactions_by_every_method);
     RUN(gears_as_meshes_turn_each_other_at_their_ratio);
     RUN(socket_holds_its_ball);
+    RUN(bolts_bear_what_their_joint_diagram_says);
     return check_finish();
 }
