@@ -19,23 +19,24 @@
 #define LEVEL 1e-6 /* of the size: what is in one plane */
 #define SLACK 1e-4 /* of the radius: places that are one; a rim is over the part in spite of it */
 #define WIDE  4.0  /* times the depth: so far from all sides there is a place at least */
-#define NEAR  192  /* triangles about a cap at most */
+#define NEAR  512  /* triangles about the cylinder at most */
 
 /* All in the frame of the mesh. */
 typedef struct cap {
-    se3di_mesh_meeting m;
+    const se3di_mesh_meeting *m;
+    double low[3], high[3];   /* the box of the cylinder */
     double middle[3], out[3]; /* of the cap; its outward normal */
     double n[3], height;      /* of the part; of the middle over it */
     double level, deepest;    /* of its rim, below the part */
     double rim[4][3];
     uint32_t first; /* of its points, of those of both rims */
-    int count, rises;
-    uint32_t near[NEAR];
+    int count, part_count;
+    uint32_t all[NEAR], near[NEAR]; /* about the cylinder; of the part */
 } cap;
 
 static void normal_of(const cap *c, uint32_t triangle, double n[3])
 {
-    const se3di_shape *s = c->m.mesh->shape;
+    const se3di_shape *s = c->m->mesh->shape;
     se3di_scale((double)s->closed, se3di_mesh_facets(s)[triangle].normal, n);
 }
 
@@ -50,10 +51,20 @@ static double height_of(const cap *c, const double x[3])
 static void note_near(void *ctx, uint32_t triangle)
 {
     cap *c = ctx;
-    if (c->count < NEAR) {
-        c->near[c->count] = triangle;
+    const double *corner[3];
+    int is_beside = 0;
+    se3di_triangle_corners(c->m->mesh->shape, triangle, corner);
+    for (int k = 0; k < 3; ++k) {
+        const double *a = corner[0], *b = corner[1], *d = corner[2];
+        is_beside = is_beside || (a[k] < c->low[k] && b[k] < c->low[k] && d[k] < c->low[k]) ||
+                    (a[k] > c->high[k] && b[k] > c->high[k] && d[k] > c->high[k]);
     }
-    ++c->count;
+    if (!is_beside) {
+        if (c->count < NEAR) {
+            c->all[c->count] = triangle;
+        }
+        ++c->count;
+    }
 }
 
 /* The highest plane below the cap that looks at it. */
@@ -62,11 +73,11 @@ static int find_part(cap *c)
     int found = 0;
     for (int k = 0; k < c->count; ++k) {
         double n[3], d[3], turn[3];
-        normal_of(c, c->near[k], n);
+        normal_of(c, c->all[k], n);
         se3di_add(n, c->out, turn);
-        se3di_sub(c->middle, se3di_mesh_corner(c->m.mesh->shape, c->near[k], 0), d);
+        se3di_sub(c->middle, se3di_mesh_corner(c->m->mesh->shape, c->all[k], 0), d);
         const double height = se3di_dot(d, n);
-        if (se3di_norm(turn) < LEAN && fabs(height) < DEEP * c->m.size &&
+        if (se3di_norm(turn) < LEAN && fabs(height) < DEEP * c->m->size &&
             (!found || height < c->height)) {
             found = 1;
             c->height = height;
@@ -76,23 +87,27 @@ static int find_part(cap *c)
     return found;
 }
 
-/* Nothing about the cylinder rises above the part, and nothing else is as high as its cap. */
-static void meet_rising(void *ctx, uint32_t triangle)
+/* Whether nothing about the cylinder rises above the part, and nothing else is as high as its cap. */
+static int is_highest(const cap *c)
 {
-    cap *c = ctx;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (uint32_t k = 0; k < 3; ++k) {
-        const double height = height_of(c, se3di_mesh_corner(c->m.mesh->shape, triangle, k));
-        low = fmin(low, height);
-        high = fmax(high, height);
+    for (int t = 0; t < c->count; ++t) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (uint32_t k = 0; k < 3; ++k) {
+            const double height = height_of(c, se3di_mesh_corner(c->m->mesh->shape, c->all[t], k));
+            low = fmin(low, height);
+            high = fmax(high, height);
+        }
+        if (high > c->level || (low < -c->level && low > -c->deepest - c->level)) {
+            return 0;
+        }
     }
-    c->rises = c->rises || high > c->level || (low < -c->level && low > -c->deepest - c->level);
+    return 1;
 }
 
 static int is_of_part(const cap *c, uint32_t triangle)
 {
     for (uint32_t k = 0; k < 3; ++k) {
-        if (!(fabs(height_of(c, se3di_mesh_corner(c->m.mesh->shape, triangle, k))) < c->level)) {
+        if (!(fabs(height_of(c, se3di_mesh_corner(c->m->mesh->shape, triangle, k))) < c->level)) {
             return 0;
         }
     }
@@ -104,38 +119,39 @@ static void add_place(cap *c, const double at[3], const double n[3], double over
                       uint32_t feature)
 {
     double d[3], x[3];
-    se3di_solid_to_ground(c->m.mesh, at, x);
-    for (uint32_t k = 0; k < c->m.manifold->count; ++k) {
-        se3di_sub(c->m.manifold->points[k].point, x, d);
-        if (se3di_norm(d) < SLACK * c->m.solid->shape->radius) {
+    se3di_solid_to_ground(c->m->mesh, at, x);
+    for (uint32_t k = 0; k < c->m->manifold->count; ++k) {
+        se3di_sub(c->m->manifold->points[k].point, x, d);
+        if (se3di_norm(d) < SLACK * c->m->solid->shape->radius) {
             return;
         }
     }
     if (overlap > 0.0) {
-        se3di_mesh_add(&c->m, at, n, overlap, 0.0, feature);
+        se3di_mesh_add(c->m, at, n, overlap, 0.0, feature);
     }
 }
 
-/* How far a place in the plane is from the part. */
-static double distance_of(const cap *c, const double x[3])
+/* Whether a place in the plane is over the part, or beyond its outline by less than the slack. */
+static int is_over(const cap *c, const double x[3], double slack)
 {
-    double least = HUGE_VAL, at[3];
-    for (int k = 0; k < c->count; ++k) {
+    int over = 0;
+    for (int k = 0; k < c->part_count && !over; ++k) {
         const double *corner[3];
-        se3di_triangle_corners(c->m.mesh->shape, c->near[k], corner);
-        least = fmin(least, se3di_triangle_nearest(corner, x, at, NULL));
+        double at[3];
+        se3di_triangle_corners(c->m->mesh->shape, c->near[k], corner);
+        over = se3di_triangle_nearest(corner, x, at, NULL) < slack * slack;
     }
-    return sqrt(least);
+    return over;
 }
 
 /* Whether a place of the part is farther from the part's outline. */
 static int is_within(const cap *c, const double x[3], double margin)
 {
-    const se3di_shape *s = c->m.mesh->shape;
-    if (distance_of(c, x) > 0.1 * margin) {
+    const se3di_shape *s = c->m->mesh->shape;
+    if (!is_over(c, x, c->level)) {
         return 0;
     }
-    for (int k = 0; k < c->count; ++k) {
+    for (int k = 0; k < c->part_count; ++k) {
         for (uint32_t n = 0; n < 3; ++n) {
             const double *ends[3];
             double at[3];
@@ -155,7 +171,7 @@ static int is_within(const cap *c, const double x[3], double margin)
  * of the rim. */
 static int are_wide(const cap *c)
 {
-    const double radius = c->m.solid->shape->radius;
+    const double radius = c->m->solid->shape->radius;
     const double margin = WIDE * c->deepest + SLACK * radius;
     for (int k = 0; k < 5; ++k) {
         double x[3];
@@ -179,9 +195,9 @@ static int has_lowest(const cap *c)
     se3di_add_scaled(se3di_dot(c->n, c->out), c->out, down);
     const double size = se3di_norm(down);
     se3di_copy(c->middle, x);
-    se3di_add_scaled(size > 0.0 ? c->m.solid->shape->radius / size : 0.0, down, x);
+    se3di_add_scaled(size > 0.0 ? c->m->solid->shape->radius / size : 0.0, down, x);
     se3di_add_scaled(-height_of(c, x), c->n, x);
-    return distance_of(c, x) < c->level;
+    return is_over(c, x, c->level);
 }
 
 /* The point of the rim that is next to its lowest place, and tells how deep that is; 4: none. */
@@ -197,14 +213,14 @@ static int find_lowest(const cap *c)
 /* The points of the cap's rim that are over the part. */
 static void touch_rim(cap *c)
 {
-    const double slack = SLACK * c->m.solid->shape->radius;
+    const double slack = SLACK * c->m->solid->shape->radius;
     const int lowest = find_lowest(c);
     for (int k = 0; k < 4; ++k) {
         double x[3];
         const double height = height_of(c, c->rim[k]);
         se3di_copy(c->rim[k], x);
         se3di_add_scaled(-height, c->n, x);
-        if (distance_of(c, x) < slack) {
+        if (is_over(c, x, slack)) {
             add_place(c, x, c->n, k == lowest ? c->deepest : -height,
                       8 * (c->first + (uint32_t)k) + se3di_mesh_way_of(c->n));
         }
@@ -214,9 +230,9 @@ static void touch_rim(cap *c)
 /* The ends of what of a side is below the cap. */
 static void touch_side(cap *c, uint32_t triangle, uint32_t side)
 {
-    const se3di_shape *s = c->m.mesh->shape;
+    const se3di_shape *s = c->m->mesh->shape;
     const double *a = se3di_mesh_corner(s, triangle, side);
-    const double radius = c->m.solid->shape->radius;
+    const double radius = c->m->solid->shape->radius;
     double way[3], d[3], up[3];
     se3di_sub(se3di_mesh_corner(s, triangle, side + 1), a, way);
     se3di_sub(a, c->middle, d);
@@ -247,9 +263,9 @@ static void touch_side(cap *c, uint32_t triangle, uint32_t side)
 static void touch_part(cap *c)
 {
     touch_rim(c);
-    for (int k = 0; k < c->count; ++k) {
+    for (int k = 0; k < c->part_count; ++k) {
         for (uint32_t side = 0; side < 3; ++side) {
-            if (!se3di_mesh_edge_is_level(c->m.mesh->shape, c->near[k], side)) {
+            if (!se3di_mesh_edge_is_level(c->m->mesh->shape, c->near[k], side)) {
                 touch_side(c, c->near[k], side);
             }
         }
@@ -258,68 +274,64 @@ static void touch_part(cap *c)
 
 static void keep_part(cap *c)
 {
-    int kept = 0;
+    c->part_count = 0;
     for (int k = 0; k < c->count; ++k) {
-        if (is_of_part(c, c->near[k])) {
-            c->near[kept++] = c->near[k];
+        if (is_of_part(c, c->all[k])) {
+            c->near[c->part_count++] = c->all[k];
         }
     }
-    c->count = kept;
 }
 
 static void place_rim(cap *c, int is_upper)
 {
     double rim[8][3], normal[3];
-    se3di_mul(c->m.mesh->at->R, c->n, normal);
-    const double tilt = se3di_cylinder_rims(c->m.solid, normal, rim);
+    se3di_mul(c->m->mesh->at->R, c->n, normal);
+    const double tilt = se3di_cylinder_rims(c->m->solid, normal, rim);
     c->first = is_upper ? 4 : 0;
-    c->deepest = tilt * c->m.solid->shape->radius - c->height;
+    c->deepest = tilt * c->m->solid->shape->radius - c->height;
     for (int k = 0; k < 4; ++k) {
-        se3di_solid_to_local(c->m.mesh, rim[c->first + (uint32_t)k], c->rim[k]);
+        se3di_solid_to_local(c->m->mesh, rim[c->first + (uint32_t)k], c->rim[k]);
     }
 }
 
 /* Whether the cap at one end lies on a part of the mesh, or over it. */
 static int lies_flush(cap *c, double end)
 {
-    const se3di_shape *s = c->m.solid->shape, *mesh = c->m.mesh->shape;
     double axis[3], x[3];
-    se3di_solid_axis(c->m.solid, 2, axis);
-    se3di_copy(c->m.solid->at->x, x);
-    se3di_add_scaled(end * s->half_length, axis, x);
-    se3di_solid_to_local(c->m.mesh, x, c->middle);
+    se3di_solid_axis(c->m->solid, 2, axis);
+    se3di_copy(c->m->solid->at->x, x);
+    se3di_add_scaled(end * c->m->solid->shape->half_length, axis, x);
+    se3di_solid_to_local(c->m->mesh, x, c->middle);
     se3di_scale(end, axis, axis);
-    se3di_mul_transposed(c->m.mesh->at->R, axis, c->out);
-    c->count = c->rises = 0;
-    se3di_mesh_visit(mesh, c->middle, s->radius + DEEP * c->m.size, note_near, c);
-    if (c->count > NEAR || !find_part(c)) {
+    se3di_mul_transposed(c->m->mesh->at->R, axis, c->out);
+    if (!find_part(c)) {
         return 0;
     }
     place_rim(c, end > 0.0);
-    se3di_solid_to_local(c->m.mesh, c->m.solid->at->x, x);
-    se3di_mesh_visit(mesh, x, s->bound, meet_rising, c);
-    keep_part(c);
-    return !c->rises && (!(c->deepest > 0.0) || are_wide(c));
-}
-
-int se3di_narrow_flush(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
-{
-    cap c;
-    if (!se3di_solid_has_rims(i) || mesh->shape->closed == 0) {
+    if (!is_highest(c)) {
         return 0;
     }
-    memset(&c.m, 0, sizeof c.m);
-    c.m.solid = i;
-    c.m.mesh = mesh;
-    c.m.manifold = manifold;
-    c.m.size = se3di_shape_contact_size(i->shape);
-    c.level = LEVEL * c.m.size;
-    for (int end = -1; end < 2; end += 2) {
+    keep_part(c);
+    return !(c->deepest > 0.0) || are_wide(c);
+}
+
+int se3di_narrow_flush(const se3di_mesh_meeting *m)
+{
+    cap c;
+    if (!se3di_solid_has_rims(m->solid) || m->mesh->shape->closed == 0) {
+        return 0;
+    }
+    c.m = m;
+    c.level = LEVEL * m->size;
+    c.count = 0;
+    se3di_mesh_box_of(m, c.low, c.high);
+    se3di_mesh_visit_box(m->mesh->shape, c.low, c.high, note_near, &c);
+    for (int end = -1; end < 2 && c.count <= NEAR; end += 2) {
         if (lies_flush(&c, (double)end)) {
             if (c.deepest > 0.0) {
                 touch_part(&c);
             }
-            se3di_manifold_separate(manifold, mesh->at->R);
+            se3di_manifold_separate(m->manifold, m->mesh->at->R);
             return 1;
         }
     }

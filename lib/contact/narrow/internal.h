@@ -48,8 +48,8 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
  * may be. */
 int se3di_side_parts(const se3di_solid *solid, const double from[3], const double to[3],
                      double distance);
-/* The same of a triangle, ground frame. */
-int se3di_side_parts_triangle(const se3di_solid *solid, const double corner[3][3], double distance);
+/* The same of a triangle, in the frame of the shape. */
+int se3di_side_parts_triangle(const se3di_shape *s, const double corner[3][3], double distance);
 /* Whether the cores of two are apart by more than a distance. */
 int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance);
 /* Whether the planes across a unit direction, from i to j, part them so; if not, others may. */

@@ -161,9 +161,10 @@ static int is_parted(const meeting *m, uint32_t triangle)
 {
     double corner[3][3];
     for (uint32_t k = 0; k < 3; ++k) {
-        se3di_solid_to_ground(m->mesh, se3di_mesh_corner(m->mesh->shape, triangle, k), corner[k]);
+        se3di_mul(m->R, se3di_mesh_corner(m->mesh->shape, triangle, k), corner[k]);
+        se3di_add(corner[k], m->x, corner[k]);
     }
-    return se3di_side_parts_triangle(m->solid, (const double(*)[3])corner,
+    return se3di_side_parts_triangle(m->solid->shape, (const double(*)[3])corner,
                                      se3di_core_radius(m->solid->shape) + SAME * m->size);
 }
 
@@ -635,6 +636,18 @@ static void find_center(meeting *m)
     se3di_solid_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
+static void find_turn(meeting *m)
+{
+    const double *solid = m->solid->at->R, *mesh = m->mesh->at->R;
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            m->R[3 * r + c] =
+                solid[r] * mesh[c] + solid[3 + r] * mesh[3 + c] + solid[6 + r] * mesh[6 + c];
+        }
+    }
+    se3di_solid_to_local(m->solid, m->mesh->at->x, m->x);
+}
+
 static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
                   se3di_manifold *manifold)
 {
@@ -646,6 +659,7 @@ static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
     m->size = se3di_shape_contact_size(s);
     m->has_pieces = mesh->shape->piece_count > 0 && !se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT);
     find_center(m);
+    find_turn(m);
     find_side(m);
 }
 
@@ -660,14 +674,8 @@ static void meet_any(void *ctx, uint32_t triangle)
     a->met = a->met || !is_parted(a->m, triangle);
 }
 
-/* Whether the solid is off every triangle about it. */
-static int is_clear(const meeting *m)
+void se3di_mesh_box_of(const meeting *m, double low[3], double high[3])
 {
-    any_met all = {m, 0};
-    double low[3], high[3];
-    if (m->mesh->shape->rows > 0) {
-        return 0;
-    }
     for (int k = 0; k < 3; ++k) {
         double n[3] = {0.0, 0.0, 0.0}, at[3];
         n[k] = 1.0;
@@ -677,6 +685,17 @@ static int is_clear(const meeting *m)
         high[k] = se3di_mesh_lowest(m, n, at) + SAME * m->size;
         high[k] += at[k];
     }
+}
+
+/* Whether the solid is off every triangle about it. */
+static int is_clear(const meeting *m)
+{
+    any_met all = {m, 0};
+    double low[3], high[3];
+    if (m->mesh->shape->rows > 0) {
+        return 0;
+    }
+    se3di_mesh_box_of(m, low, high);
     se3di_mesh_visit_box(m->mesh->shape, low, high, meet_any, &all);
     return !all.met;
 }
@@ -736,11 +755,8 @@ static void find_rest(meeting *m)
 void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold)
 {
     meeting m;
-    if (se3di_narrow_flush(i, mesh, manifold)) {
-        return;
-    }
     begin(&m, i, mesh, manifold);
-    if (is_clear(&m)) {
+    if (is_clear(&m) || se3di_narrow_flush(&m)) {
         return;
     }
     if (!m.has_pieces) {

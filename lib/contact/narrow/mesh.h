@@ -28,8 +28,9 @@ typedef struct se3di_mesh_way {
 
 typedef struct se3di_mesh_meeting {
     const se3di_solid *solid, *mesh;
-    double origin[3]; /* of the solid */
-    double center[3]; /* a point within it */
+    double origin[3];  /* of the solid */
+    double center[3];  /* a point within it */
+    double R[9], x[3]; /* from the frame of the mesh to the solid's */
     double size;
     int sense; /* of the triangles: 1 counter-clockwise seen from the solid, -1 clockwise, 0: each
                   for itself */
@@ -69,6 +70,8 @@ double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
 uint32_t se3di_mesh_way_of(const double n[3]);
 /* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
+/* The box along the mesh's axes that holds the solid, but for rounding. */
+void se3di_mesh_box_of(const se3di_mesh_meeting *m, double low[3], double high[3]);
 /* A triangle as a solid of its own, with room for its corners; whether the solid overlaps it. */
 se3di_shape se3di_mesh_flat(const se3di_mesh_meeting *m, uint32_t triangle, double corners[9]);
 int se3di_mesh_overlaps(const se3di_mesh_meeting *m, uint32_t triangle);
@@ -108,7 +111,7 @@ int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
                        se3di_part_finder find);
 /* A cylinder of which a cap lies on a flat part of a closed mesh that nothing about it rises above.
  * Returns 0 if it does not. */
-int se3di_narrow_flush(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold);
+int se3di_narrow_flush(const se3di_mesh_meeting *m);
 /* Two closed meshes that touch only where flat parts of them lie on each other, or do not touch
  * there. Returns 0 if they may touch elsewhere. */
 int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);

@@ -294,6 +294,11 @@ static void sub2(const double a[2], const double b[2], double out[2])
     out[1] = a[1] - b[1];
 }
 
+static double length2(const double a[2])
+{
+    return sqrt(a[0] * a[0] + a[1] * a[1]);
+}
+
 static int are_one(const double a[2], const double b[2], double slack)
 {
     double d[2];
@@ -417,7 +422,7 @@ static void meet_sides(pair *p, const side *e, const side *f)
     sub2(f->b, f->a, way_f);
     sub2(f->a, e->a, d);
     const double turn = cross2(way_e, way_f);
-    const double longer = fmax(hypot(way_e[0], way_e[1]), hypot(way_f[0], way_f[1]));
+    const double longer = fmax(length2(way_e), length2(way_f));
     if (!(fabs(turn) > p->slack * longer)) {
         return; /* along each other: their corners tell it */
     }
@@ -485,7 +490,7 @@ static int are_wide(const pair *p)
 
 static void set_edge(const pair *p, const double way[2], se3di_bend *bend)
 {
-    const double length = hypot(way[0], way[1]);
+    const double length = length2(way);
     double u[3], ground[3];
     se3di_scale(way[0] / length, p->u, u);
     se3di_add_scaled(way[1] / length, p->w, u);
@@ -523,7 +528,9 @@ static void choose(const pair *p, se3di_manifold *manifold)
         deepest = fmax(deepest, p->list[k].depth);
     }
     for (size_t k = 0; k < p->count; ++k) {
-        far[k] = p->slack + hypot(p->list[k].x[0] - middle[0], p->list[k].x[1] - middle[1]);
+        double d[2];
+        sub2(p->list[k].x, middle, d);
+        far[k] = p->slack + length2(d);
     }
     for (size_t n = 0; n < SE3DI_MANIFOLD_POINTS && n < p->count; ++n) {
         size_t best = 0;
@@ -540,8 +547,9 @@ static void choose(const pair *p, se3di_manifold *manifold)
         }
         add_point(p, &p->list[best], manifold);
         for (size_t k = 0; k < p->count; ++k) {
-            const double gap =
-                hypot(p->list[k].x[0] - p->list[best].x[0], p->list[k].x[1] - p->list[best].x[1]);
+            double d[2];
+            sub2(p->list[k].x, p->list[best].x, d);
+            const double gap = length2(d);
             far[k] = n == 0 ? gap : fmin(far[k], gap);
         }
     }

@@ -90,11 +90,7 @@ int se3di_side_parts(const se3di_solid *solid, const double from[3], const doubl
     return parts(solid->shape, (const double(*)[3])x, 2, distance);
 }
 
-int se3di_side_parts_triangle(const se3di_solid *solid, const double corner[3][3], double distance)
+int se3di_side_parts_triangle(const se3di_shape *s, const double corner[3][3], double distance)
 {
-    double x[3][3];
-    for (int k = 0; k < 3; ++k) {
-        se3di_solid_to_local(solid, corner[k], x[k]);
-    }
-    return parts(solid->shape, (const double(*)[3])x, 3, distance);
+    return parts(s, corner, 3, distance);
 }
