@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Flat on flat: a cap of a cylinder, and a second mesh, on a frame with a hole. What they touch in
- * is known: no point looks to a side, however shallow the overlap and however short the way into
+/* Flat on flat: a cylinder, a box and a second mesh on a frame with a hole. What they touch in is
+ * known: no point looks to a side, however shallow the overlap and however short the way into
  * the hole, and the same points are there after the least move. */
 #include "contact/narrow/narrow.h"
 #include "contact/shape/mesh.h"
@@ -69,28 +69,33 @@ static int have_the_same(const se3di_manifold *a, const se3di_manifold *b)
     return same;
 }
 
-/* The rim is over the frame, the corners of the hole are below the cap. */
-static void a_cap_over_a_hole_touches_its_rim_and_the_corners_of_the_hole(void)
+/* Points of the rim, or corners, are over the frame; corners of the hole are below the solid. */
+static void solids_over_a_hole_touch_in_their_corners_and_those_of_the_hole(void)
 {
     const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    se3di_shape frame, cap = {.kind = SE3DI_SHAPE_CYLINDER, .radius = 0.016, .half_length = 0.01};
-    cap.bound = se3di_shape_bound(&cap);
-    for (int k = 0; k < 2 * 6 * 4; ++k) {
-        const double depth = pow(10.0, -9.0 + k / 2 % 6), angle = k / 12 * 0.3 * depth / cap.radius;
-        const double place[2] = {1e-4 * (k / 12), -2e-4 * (k / 12)};
+    const double half = 0.016;
+    se3di_shape solids[2] = {
+        {.kind = SE3DI_SHAPE_CYLINDER, .radius = half, .half_length = 0.01},
+        {.kind = SE3DI_SHAPE_BOX, .half = {half, half, 0.01}, .half_length = 0.01}};
+    for (int k = 0; k < 2 * 2 * 6 * 4; ++k) {
+        const int step = k / 4 % 6, tilt = k / 24;
+        const double depth = pow(10.0, -9.0 + step), angle = tilt * 0.3 * depth / half;
+        const double place[2] = {1e-4 * tilt, -2e-4 * tilt};
+        se3di_shape frame, *solid = &solids[k / 2 % 2];
         se3di_shape_pose at, moved;
         se3di_manifold m, again;
+        solid->bound = se3di_shape_bound(solid);
         make_frame(k % 2, &frame);
-        stand(&cap, angle, place, depth, &at);
-        se3di_narrow_find(&cap, &at, &frame, &of, &m);
+        stand(solid, angle, place, depth, &at);
+        se3di_narrow_find(solid, &at, &frame, &of, &m);
         CHECK(m.count == 8);
-        check_upright(&m, depth + angle * cap.radius, angle);
+        check_upright(&m, depth + angle * half, angle);
         moved = at;
         moved.x[0] += 1e-9;
-        se3di_narrow_find(&cap, &moved, &frame, &of, &again);
+        se3di_narrow_find(solid, &moved, &frame, &of, &again);
         CHECK(have_the_same(&m, &again));
-        at.x[1] += 1.1 * (depth + angle * cap.radius);
-        se3di_narrow_find(&cap, &at, &frame, &of, &m);
+        at.x[1] += 1.1 * (depth + angle * half);
+        se3di_narrow_find(solid, &at, &frame, &of, &m);
         CHECK(m.count == 0);
         release(&frame);
     }
@@ -164,7 +169,7 @@ static void frames_on_each_other_touch_in_corners_and_crossings(void)
 
 int main(void)
 {
-    RUN(a_cap_over_a_hole_touches_its_rim_and_the_corners_of_the_hole);
+    RUN(solids_over_a_hole_touch_in_their_corners_and_those_of_the_hole);
     RUN(a_cap_at_a_border_comes_off_to_the_side);
     RUN(frames_on_each_other_touch_in_corners_and_crossings);
     return check_finish();

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A cap of a cylinder that lies on a flat part of a closed mesh, as the head of a bolt on a flange.
+/* A flat side of a solid, the cap of a cylinder or a face, that lies on a flat part of a closed
+ * mesh, as the head of a bolt on a flange.
  *
- * If all of the mesh about the cylinder is at or below the plane of that part, the cylinder cannot
- * touch it elsewhere, and comes off it along the plane's normal: no way to a side counts, however
- * short it is beside a hole. What touches is known then: points of the rim over the part, and the
- * ends of what of the part's outline is below the cap.           docs/theory/body-contact.md */
+ * If all of the mesh about the solid is at or below the plane of that part, the solid cannot touch
+ * it elsewhere, and comes off it along the plane's normal: no way to a side counts, however short
+ * it is beside a hole. What touches is known then: corners, or points of the rim, over the part,
+ * and the ends of what of the part's outline is below the side.  docs/theory/body-contact.md */
 #include "contact/narrow/internal.h"
 #include "contact/narrow/mesh.h"
 #include "contact/shape/mesh_tree.h"
@@ -17,21 +18,23 @@
 #define LEAN  1e-2 /* sine of the angle between cap and part at most */
 #define DEEP  0.1  /* of the size: the deepest at most */
 #define LEVEL 1e-6 /* of the size: what is in one plane */
-#define SLACK 1e-4 /* of the radius: places that are one; a rim is over the part in spite of it */
+#define SLACK 1e-4 /* of the extent: places that are one; a rim is over the part in spite of it */
 #define WIDE  4.0  /* times the depth: so far from all sides there is a place at least */
-#define NEAR  512  /* triangles about the cylinder at most */
+#define NEAR  512  /* triangles about the solid at most */
+#define TRIES 4    /* directions in which a face is looked for */
 
 /* All in the frame of the mesh. */
 typedef struct cap {
     const se3di_mesh_meeting *m;
-    double low[3], high[3];   /* the box of the cylinder */
-    double middle[3], out[3]; /* of the cap; its outward normal */
+    double low[3], high[3];   /* the box of the solid */
+    double middle[3], out[3]; /* of the side; its outward normal */
     double n[3], height;      /* of the part; of the middle over it */
-    double level, deepest;    /* of its rim, below the part */
-    double rim[4][3];
-    uint32_t first; /* of its points, of those of both rims */
-    int count, part_count;
-    uint32_t all[NEAR], near[NEAR]; /* about the cylinder; of the part */
+    double level, deepest;    /* of the side, below the part */
+    double radius, extent;    /* of a cap, 0: a face; from the middle to the corners at most */
+    double corner[SE3DI_FACE_CORNERS][3];
+    uint32_t id[SE3DI_FACE_CORNERS];
+    int corner_count, count, part_count;
+    uint32_t all[NEAR], near[NEAR]; /* about the solid; of the part */
 } cap;
 
 static void normal_of(const cap *c, uint32_t triangle, double n[3])
@@ -67,7 +70,7 @@ static void note_near(void *ctx, uint32_t triangle)
     }
 }
 
-/* The highest plane below the cap that looks at it. */
+/* The highest plane below the side that looks at it. */
 static int find_part(cap *c)
 {
     int found = 0;
@@ -87,7 +90,7 @@ static int find_part(cap *c)
     return found;
 }
 
-/* Whether nothing about the cylinder rises above the part, and nothing else is as high as its cap. */
+/* Whether nothing about the solid rises above the part, and nothing else is as high as its side. */
 static int is_highest(const cap *c)
 {
     for (int t = 0; t < c->count; ++t) {
@@ -122,7 +125,7 @@ static void add_place(cap *c, const double at[3], const double n[3], double over
     se3di_solid_to_ground(c->m->mesh, at, x);
     for (uint32_t k = 0; k < c->m->manifold->count; ++k) {
         se3di_sub(c->m->manifold->points[k].point, x, d);
-        if (se3di_norm(d) < SLACK * c->m->solid->shape->radius) {
+        if (se3di_norm(d) < SLACK * c->extent) {
             return;
         }
     }
@@ -166,21 +169,43 @@ static int is_within(const cap *c, const double x[3], double margin)
     return 1;
 }
 
-/* Whether the cap and the part have a place in common that is farther from rim and outline than
- * they are deep, so that they do not come apart to a side sooner: the middle, or one near a point
- * of the rim. */
+/* How far a place is within side k of a face. */
+static double depth_in(const cap *c, int k, const double x[3])
+{
+    double along[3], inward[3], d[3];
+    se3di_sub(c->corner[(k + 1) % c->corner_count], c->corner[k], along);
+    se3di_cross(c->out, along, inward);
+    se3di_sub(x, c->corner[k], d);
+    return se3di_dot(d, inward) / se3di_norm(inward);
+}
+
+/* Whether a place is below the side, and so far from all of its border. */
+static int is_below(const cap *c, const double x[3], double margin)
+{
+    double d[3];
+    int below = 1;
+    for (int k = 0; k < c->corner_count && below && !(c->radius > 0.0); ++k) {
+        below = depth_in(c, k, x) > margin;
+    }
+    se3di_sub(x, c->middle, d);
+    se3di_add_scaled(-se3di_dot(d, c->out), c->out, d);
+    return below && (!(c->radius > 0.0) || se3di_norm(d) < c->radius - margin);
+}
+
+/* Whether the side and the part have a place in common that is farther from border and outline than
+ * they are deep, so that they do not come apart to a side sooner: the middle, or one near a corner.
+ */
 static int are_wide(const cap *c)
 {
-    const double radius = c->m->solid->shape->radius;
-    const double margin = WIDE * c->deepest + SLACK * radius;
-    for (int k = 0; k < 5; ++k) {
+    const double margin = WIDE * c->deepest + SLACK * c->extent;
+    for (int k = 0; k <= c->corner_count; ++k) {
         double x[3];
         se3di_copy(c->middle, x);
-        for (int a = 0; a < 3 && k < 4; ++a) {
-            x[a] += (1.0 - margin / radius) * (c->rim[k][a] - c->middle[a]);
+        for (int a = 0; a < 3 && k < c->corner_count; ++a) {
+            x[a] += (1.0 - 2.5 * margin / c->extent) * (c->corner[k][a] - c->middle[a]);
         }
         se3di_add_scaled(-height_of(c, x), c->n, x);
-        if (is_within(c, x, margin)) {
+        if (is_below(c, x, margin) && is_within(c, x, margin)) {
             return 1;
         }
     }
@@ -195,74 +220,118 @@ static int has_lowest(const cap *c)
     se3di_add_scaled(se3di_dot(c->n, c->out), c->out, down);
     const double size = se3di_norm(down);
     se3di_copy(c->middle, x);
-    se3di_add_scaled(size > 0.0 ? c->m->solid->shape->radius / size : 0.0, down, x);
+    se3di_add_scaled(size > 0.0 ? c->radius / size : 0.0, down, x);
     se3di_add_scaled(-height_of(c, x), c->n, x);
     return is_over(c, x, c->level);
 }
 
-/* The point of the rim that is next to its lowest place, and tells how deep that is; 4: none. */
+/* The point of the rim that is next to its lowest place, and tells how deep that is; -1: none. */
 static int find_lowest(const cap *c)
 {
     int lowest = 0;
-    for (int k = 1; k < 4; ++k) {
-        lowest = height_of(c, c->rim[k]) < height_of(c, c->rim[lowest]) ? k : lowest;
+    for (int k = 1; k < c->corner_count; ++k) {
+        lowest = height_of(c, c->corner[k]) < height_of(c, c->corner[lowest]) ? k : lowest;
     }
-    return has_lowest(c) ? lowest : 4;
+    return c->radius > 0.0 && has_lowest(c) ? lowest : -1;
 }
 
-/* The points of the cap's rim that are over the part. */
-static void touch_rim(cap *c)
+/* Whether side and part have something in common at a place that is on the border of both. */
+static int have_region(const cap *c, const double at[3])
 {
-    const double slack = SLACK * c->m->solid->shape->radius;
-    const int lowest = find_lowest(c);
-    for (int k = 0; k < 4; ++k) {
+    static const double ways[8][2] = {{1.0, 0.1},   {0.7, 0.8},   {-0.1, 1.0}, {-0.8, 0.7},
+                                      {-1.0, -0.1}, {-0.7, -0.8}, {0.1, -1.0}, {0.8, -0.7}};
+    double u[3], w[3];
+    int found = 0;
+    se3di_perpendicular(c->n, u);
+    se3di_cross(c->n, u, w);
+    for (int k = 0; k < 8 && !found; ++k) {
         double x[3];
-        const double height = height_of(c, c->rim[k]);
-        se3di_copy(c->rim[k], x);
+        se3di_copy(at, x);
+        se3di_add_scaled(3.0 * SLACK * c->extent * ways[k][0], u, x);
+        se3di_add_scaled(3.0 * SLACK * c->extent * ways[k][1], w, x);
+        found = is_below(c, x, 0.0) && is_over(c, x, c->level);
+    }
+    return found;
+}
+
+/* Corners of the side, or points of its rim, that are over the part. */
+static void touch_corners(cap *c)
+{
+    const int lowest = find_lowest(c);
+    for (int k = 0; k < c->corner_count; ++k) {
+        double x[3];
+        const double height = height_of(c, c->corner[k]);
+        se3di_copy(c->corner[k], x);
         se3di_add_scaled(-height, c->n, x);
-        if (is_over(c, x, slack)) {
+        if (is_over(c, x, c->level) || (is_over(c, x, SLACK * c->extent) && have_region(c, x))) {
             add_place(c, x, c->n, k == lowest ? c->deepest : -height,
-                      8 * (c->first + (uint32_t)k) + se3di_mesh_way_of(c->n));
+                      8 * c->id[k] + se3di_mesh_way_of(c->n));
         }
     }
 }
 
-/* The ends of what of a side is below the cap. */
+/* Which part of a line from a is below a cap: between two shares of the way. */
+static void cut_by_rim(const cap *c, const double a[3], const double way[3], double share[2])
+{
+    double d[3], flat[3];
+    se3di_sub(a, c->middle, d);
+    se3di_add_scaled(-se3di_dot(d, c->out), c->out, d); /* in the plane of the cap */
+    se3di_copy(way, flat);
+    se3di_add_scaled(-se3di_dot(way, c->out), c->out, flat);
+    const double A = se3di_dot(flat, flat), B = se3di_dot(flat, d);
+    const double C = se3di_dot(d, d) - c->radius * c->radius, root = B * B - A * C;
+    share[1] = root > 0.0 ? fmin(1.0, (-B + sqrt(root)) / A) : 0.0;
+    share[0] = root > 0.0 ? fmax(0.0, (-B - sqrt(root)) / A) : 0.0;
+}
+
+/* The same of a face. */
+static void cut_by_sides(const cap *c, const double a[3], const double way[3], double share[2])
+{
+    double b[3];
+    se3di_add(a, way, b);
+    share[0] = 0.0;
+    share[1] = 1.0;
+    for (int k = 0; k < c->corner_count; ++k) {
+        const double from = depth_in(c, k, a), to = depth_in(c, k, b);
+        if (from < 0.0 && to < 0.0) {
+            share[1] = 0.0;
+        } else if (from < 0.0) {
+            share[0] = fmax(share[0], from / (from - to));
+        } else if (to < 0.0) {
+            share[1] = fmin(share[1], from / (from - to));
+        }
+    }
+}
+
+/* The ends of what of a side of the part is below that of the solid. */
 static void touch_side(cap *c, uint32_t triangle, uint32_t side)
 {
     const se3di_shape *s = c->m->mesh->shape;
     const double *a = se3di_mesh_corner(s, triangle, side);
-    const double radius = c->m->solid->shape->radius;
-    double way[3], d[3], up[3];
+    double way[3], d[3], up[3], share[2];
     se3di_sub(se3di_mesh_corner(s, triangle, side + 1), a, way);
+    if (c->radius > 0.0) {
+        cut_by_rim(c, a, way, share);
+    } else {
+        cut_by_sides(c, a, way, share);
+    }
+    if (!((share[1] - share[0]) * se3di_norm(way) > SLACK * c->extent)) {
+        return;
+    }
     se3di_sub(a, c->middle, d);
     se3di_scale(-1.0, c->out, up);
-    const double depth = se3di_dot(d, up), rise = se3di_dot(way, up);
-    se3di_add_scaled(-depth, up, d); /* in the plane of the cap */
-    double flat[3];
-    se3di_copy(way, flat);
-    se3di_add_scaled(-rise, up, flat);
-    const double A = se3di_dot(flat, flat), B = se3di_dot(flat, d);
-    const double C = se3di_dot(d, d) - radius * radius, root = B * B - A * C;
-    if (!(root > 0.0)) {
-        return;
-    }
-    const double from = fmax(0.0, (-B - sqrt(root)) / A), to = fmin(1.0, (-B + sqrt(root)) / A);
-    if (!((to - from) * sqrt(A) > SLACK * radius)) {
-        return;
-    }
     for (uint32_t end = 0; end < 2; ++end) {
         double x[3];
-        const double share = end ? to : from;
         se3di_copy(a, x);
-        se3di_add_scaled(share, way, x);
-        add_place(c, x, up, depth + share * rise, 0x80000000u + 16 * (3 * triangle + side) + end);
+        se3di_add_scaled(share[end], way, x);
+        add_place(c, x, up, se3di_dot(d, up) + share[end] * se3di_dot(way, up),
+                  0x80000000u + 16 * (3 * triangle + side) + end);
     }
 }
 
 static void touch_part(cap *c)
 {
-    touch_rim(c);
+    touch_corners(c);
     for (int k = 0; k < c->part_count; ++k) {
         for (uint32_t side = 0; side < 3; ++side) {
             if (!se3di_mesh_edge_is_level(c->m->mesh->shape, c->near[k], side)) {
@@ -270,6 +339,47 @@ static void touch_part(cap *c)
             }
         }
     }
+}
+
+/* Whether the part is about a side of it as a convex one is: nothing of it is beyond. */
+static int is_convex_at(const cap *c, uint32_t triangle, uint32_t side)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    const double *a = se3di_mesh_corner(s, triangle, side);
+    double way[3], outward[3], d[3];
+    se3di_sub(se3di_mesh_corner(s, triangle, side + 1), a, way);
+    se3di_cross(way, c->n, outward);
+    se3di_scale((double)s->closed, outward, outward);
+    for (int k = 0; k < c->part_count; ++k) {
+        for (uint32_t n = 0; n < 3; ++n) {
+            se3di_sub(se3di_mesh_corner(s, c->near[k], n), a, d);
+            if (se3di_dot(d, outward) > SLACK * c->extent * se3di_norm(way)) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Whether there is a hole in the part, or a bay, below the side. */
+static int has_hole(const cap *c)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    for (int k = 0; k < c->part_count; ++k) {
+        for (uint32_t side = 0; side < 3; ++side) {
+            double way[3], share[2];
+            const double *a = se3di_mesh_corner(s, c->near[k], side);
+            if (se3di_mesh_edge_is_level(s, c->near[k], side)) {
+                continue;
+            }
+            se3di_sub(se3di_mesh_corner(s, c->near[k], side + 1), a, way);
+            cut_by_sides(c, a, way, share);
+            if (share[1] > share[0] && !is_convex_at(c, c->near[k], side)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
 }
 
 static void keep_part(cap *c)
@@ -282,32 +392,27 @@ static void keep_part(cap *c)
     }
 }
 
+/* ---- the sides of a solid ---- */
+
 static void place_rim(cap *c, int is_upper)
 {
+    const uint32_t first = is_upper ? 4 : 0;
     double rim[8][3], normal[3];
     se3di_mul(c->m->mesh->at->R, c->n, normal);
-    const double tilt = se3di_cylinder_rims(c->m->solid, normal, rim);
-    c->first = is_upper ? 4 : 0;
-    c->deepest = tilt * c->m->solid->shape->radius - c->height;
-    for (int k = 0; k < 4; ++k) {
-        se3di_solid_to_local(c->m->mesh, rim[c->first + (uint32_t)k], c->rim[k]);
+    (void)se3di_cylinder_rims(c->m->solid, normal, rim);
+    c->corner_count = 4;
+    for (uint32_t k = 0; k < 4; ++k) {
+        c->id[k] = first + k;
+        se3di_solid_to_local(c->m->mesh, rim[first + k], c->corner[k]);
     }
 }
 
-/* Whether the cap at one end lies on a part of the mesh, or over it. */
-static int lies_flush(cap *c, double end)
+/* Whether the part is found, and nothing else can touch. */
+static int lies_flush(cap *c)
 {
-    double axis[3], x[3];
-    se3di_solid_axis(c->m->solid, 2, axis);
-    se3di_copy(c->m->solid->at->x, x);
-    se3di_add_scaled(end * c->m->solid->shape->half_length, axis, x);
-    se3di_solid_to_local(c->m->mesh, x, c->middle);
-    se3di_scale(end, axis, axis);
-    se3di_mul_transposed(c->m->mesh->at->R, axis, c->out);
-    if (!find_part(c)) {
-        return 0;
-    }
-    place_rim(c, end > 0.0);
+    double lowest[3];
+    (void)se3di_mesh_lowest(c->m, c->n, lowest);
+    c->deepest = -height_of(c, lowest);
     if (!is_highest(c)) {
         return 0;
     }
@@ -315,10 +420,102 @@ static int lies_flush(cap *c, double end)
     return !(c->deepest > 0.0) || are_wide(c);
 }
 
+/* Whether a cap lies on a part of the mesh, or over it. */
+static int lies_on_cap(cap *c, double end)
+{
+    const se3di_shape *s = c->m->solid->shape;
+    double axis[3], x[3];
+    se3di_solid_axis(c->m->solid, 2, axis);
+    se3di_copy(c->m->solid->at->x, x);
+    se3di_add_scaled(end * s->half_length, axis, x);
+    se3di_solid_to_local(c->m->mesh, x, c->middle);
+    se3di_scale(end, axis, axis);
+    se3di_mul_transposed(c->m->mesh->at->R, axis, c->out);
+    c->radius = c->extent = s->radius;
+    if (!find_part(c)) {
+        return 0;
+    }
+    place_rim(c, end > 0.0);
+    return lies_flush(c);
+}
+
+/* Which corner of the shape is at a place, ground frame. */
+static uint32_t find_corner(const se3di_solid *solid, const double x[3])
+{
+    const se3di_shape_class *kind = se3di_shape_class_of(solid->shape);
+    double local[3], corner[3], d[3], least = HUGE_VAL;
+    uint32_t nearest = 0;
+    se3di_solid_to_local(solid, x, local);
+    for (uint32_t k = 0; kind->corner(solid->shape, k, corner); ++k) {
+        se3di_sub(local, corner, d);
+        if (se3di_dot(d, d) < least) {
+            least = se3di_dot(d, d);
+            nearest = k;
+        }
+    }
+    return nearest;
+}
+
+/* The same of the face that looks against n best. On a part that is convex there what is exact for
+ * convex pieces finds it, too. */
+static int lies_on_face(cap *c, const double n[3])
+{
+    const se3di_solid *solid = c->m->solid;
+    double down[3];
+    se3di_face face;
+    se3di_mul(c->m->mesh->at->R, n, down);
+    se3di_scale(-1.0, down, down);
+    se3di_face_find(solid, down, &face);
+    if (face.count < 3 || face.count == SE3DI_FACE_CORNERS) {
+        return 0;
+    }
+    memset(c->middle, 0, sizeof c->middle);
+    c->corner_count = face.count;
+    for (int k = 0; k < face.count; ++k) {
+        c->id[k] = find_corner(solid, face.corner[k]);
+        se3di_solid_to_local(c->m->mesh, face.corner[k], c->corner[k]);
+        se3di_add_scaled(1.0 / face.count, c->corner[k], c->middle);
+    }
+    c->radius = c->extent = 0.0;
+    for (int k = 0; k < face.count; ++k) {
+        double d[3];
+        se3di_sub(c->corner[k], c->middle, d);
+        c->extent = fmax(c->extent, se3di_norm(d));
+    }
+    se3di_mul_transposed(c->m->mesh->at->R, face.normal, c->out);
+    return find_part(c) && lies_flush(c) && has_hole(c);
+}
+
+/* In the directions of the triangles about the solid that it is not deep in. */
+static int lies_on_some_face(cap *c)
+{
+    double tried[TRIES][3];
+    int tries = 0;
+    for (int t = 0; t < c->count && tries < TRIES; ++t) {
+        double n[3], lowest[3], d[3];
+        int is_new = 1;
+        normal_of(c, c->all[t], n);
+        for (int k = 0; k < tries; ++k) {
+            is_new = is_new && !(se3di_dot(tried[k], n) > 1.0 - LEAN * LEAN);
+        }
+        (void)se3di_mesh_lowest(c->m, n, lowest);
+        se3di_sub(lowest, se3di_mesh_corner(c->m->mesh->shape, c->all[t], 0), d);
+        if (is_new && fabs(se3di_dot(d, n)) < DEEP * c->m->size) {
+            if (lies_on_face(c, n)) {
+                return 1;
+            }
+            se3di_copy(n, tried[tries++]);
+        }
+    }
+    return 0;
+}
+
 int se3di_narrow_flush(const se3di_mesh_meeting *m)
 {
+    const int has_rims = se3di_solid_has_rims(m->solid);
+    const int has_corners = se3di_shape_class_of(m->solid->shape)->corner != NULL;
     cap c;
-    if (!se3di_solid_has_rims(m->solid) || m->mesh->shape->closed == 0) {
+    if (!(has_rims || has_corners) || m->mesh->shape->closed == 0) {
         return 0;
     }
     c.m = m;
@@ -326,14 +523,13 @@ int se3di_narrow_flush(const se3di_mesh_meeting *m)
     c.count = 0;
     se3di_mesh_box_of(m, c.low, c.high);
     se3di_mesh_visit_box(m->mesh->shape, c.low, c.high, note_near, &c);
-    for (int end = -1; end < 2 && c.count <= NEAR; end += 2) {
-        if (lies_flush(&c, (double)end)) {
-            if (c.deepest > 0.0) {
-                touch_part(&c);
-            }
-            se3di_manifold_separate(m->manifold, m->mesh->at->R);
-            return 1;
-        }
+    if (c.count > NEAR ||
+        !(has_rims ? lies_on_cap(&c, -1.0) || lies_on_cap(&c, 1.0) : lies_on_some_face(&c))) {
+        return 0;
     }
-    return 0;
+    if (c.deepest > 0.0) {
+        touch_part(&c);
+    }
+    se3di_manifold_separate(m->manifold, m->mesh->at->R);
+    return 1;
 }

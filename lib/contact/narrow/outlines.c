@@ -20,12 +20,13 @@
 #define SLACK    1e-4 /* of the extent: places that are one */
 #define FACING   0.9  /* cosine: a triangle of the part, not one on its edge */
 #define WIDE     4.0  /* times the depth: so far from all sides there is a place at least */
-#define SIDES    768  /* of an outline */
+#define SIDES    512  /* of an outline */
 #define CHUNK    8    /* of them with a box */
-#define PLACES   768
+#define PLACES   512
 #define VERTICES 16384
 #define STACK    128
 #define TRIES    4           /* pairs of planes that are looked at */
+#define VISITS   400         /* pairs of boxes in which they are looked for */
 #define SHALLOW  0.1         /* of the deepest: places that count the less */
 #define MORE     1.01        /* times farther: what takes the place of another, not by rounding */
 #define CORNER   0x40000000u /* features: corners, not crossings; */
@@ -156,8 +157,9 @@ static int are_near(const pair *p, const se3di_mesh_node *a, const se3di_mesh_no
 static int try_leaves(pair *p, const se3di_mesh_node *a, const se3di_mesh_node *b, int *tries)
 {
     for (uint32_t k = a->begin; k < a->begin + a->count; ++k) {
-        for (uint32_t n = b->begin; n < b->begin + b->count && *tries < TRIES; ++n) {
-            if (are_facing(p, k, n)) {
+        const int may_face = se3di_mesh_is_outermost(p->part[0].solid->shape, k);
+        for (uint32_t n = b->begin; n < b->begin + b->count && may_face && *tries < TRIES; ++n) {
+            if (se3di_mesh_is_outermost(p->part[1].solid->shape, n) && are_facing(p, k, n)) {
                 if (is_beyond(p, 0) && is_beyond(p, 1)) {
                     return 1;
                 }
@@ -172,8 +174,8 @@ static int find_planes(pair *p)
 {
     const se3di_mesh_node *a = p->part[0].solid->shape->tree, *b = p->part[1].solid->shape->tree;
     uint32_t stack[STACK][2] = {{0, 0}};
-    int depth = 1, tries = 0;
-    while (depth > 0 && depth + 4 < STACK && tries < TRIES) {
+    int depth = 1, tries = 0, visits = 0;
+    while (depth > 0 && depth + 4 < STACK && tries < TRIES && visits++ < VISITS) {
         const uint32_t i = stack[--depth][0], j = stack[depth][1];
         if (!are_near(p, &a[i], &b[j])) {
             continue;

@@ -808,6 +808,7 @@ static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s)
     s->closed = s->oriented = 0;
     judge_edges(s, piece);
     note_told(s);
+    se3di_mesh_note_outermost(s);
     se3di_free(allocator, piece, s->triangle_count, sizeof *piece);
     return SE3D_OK;
 }

@@ -72,6 +72,10 @@ int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t
 int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side);
 /* Whether the triangle beyond an edge of a closed mesh is in the same plane, but for rounding. */
 int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side);
+/* Whether nothing of a closed mesh is beyond the plane of a triangle, as far as is known. */
+int se3di_mesh_is_outermost(const se3di_shape *shape, uint32_t triangle);
+/* Find that out; its sense is known. */
+void se3di_mesh_note_outermost(se3di_shape *shape);
 
 /* Whether triangles may be within a box along the axes. */
 int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3]);

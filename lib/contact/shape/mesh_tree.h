@@ -21,7 +21,7 @@ typedef struct se3di_mesh_facet {
     double heights[3];       /* of b, c and a over the sides opposite; 0: not told, of slivers */
     uint8_t edges[8];        /* bits: at this edge the next triangle leads 1 below, 2 above it, 4
                                 leads on in about its plane, or is the one that tells of the edge,
-                                8 is in its plane */
+                                8 is in its plane; the fourth: it is outermost */
 } se3di_mesh_facet;
 
 static inline se3di_mesh_facet *se3di_mesh_facets(const se3di_shape *shape)
