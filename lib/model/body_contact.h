@@ -30,6 +30,7 @@ typedef struct se3di_body_contact {
     double inverse_mass;        /* 1/m* along the normal, of the points that share the load */
     double force[3], torque[3]; /* on j: at the point, of rolling and torsion; ground frame */
     double energy;              /* of its springs [J], if it is not lawful */
+    double spin[2];             /* of the surfaces about the normal [rad/s] */
 } se3di_body_contact;
 
 /* The stretch that resists rolling. */

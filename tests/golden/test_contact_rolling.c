@@ -220,6 +220,31 @@ static void a_cart_rolls_down_a_slope(void)
     }
 }
 
+/* By default a ball of billiards, 1 m/s for 3 s: a few hundred of its vibrations to each step. */
+static void a_ball_rolls_on_in_long_steps(void)
+{
+    const double R = 0.0286, m = 0.17, k = 1e7, v0 = 1.0, arm = R - m * G / k;
+    const double r[3] = {0.0, 0.0, arm}, v[3] = {v0, 0.0, 0.0};
+    for (int spins = 0; spins < 2; ++spins) {
+        const double w[3] = {0.0, v0 / arm, spins ? 5.0 : 0.0};
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.9, k);
+        se3d_solver_stats stats = {0};
+        double at[3];
+        scene_floor(&s, 0.0);
+        se3d_body ball = scene_ball(&s, R, m, r, v);
+        CHECK(se3d_body_set_angular_velocity(s.system, ball, w) == SE3D_OK);
+        scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+        scene_run(&s, 3.0);
+        CHECK(se3d_solver_get_stats(s.solver, &stats) == SE3D_OK);
+        CHECK(stats.steps < 10000);
+        CHECK(se3d_body_get_position(s.system, ball, at) == SE3D_OK);
+        CHECK_NEAR(at[0], 3.0 * v0, 1e-6);
+        CHECK_NEAR(at[1], 0.0, 1e-6);
+        CHECK_NEAR(at[2], arm, 1e-9);
+        scene_end(&s);
+    }
+}
+
 int main(void)
 {
     RUN(a_ball_on_a_turntable_goes_round_a_circle);
@@ -227,5 +252,6 @@ int main(void)
     RUN(a_ball_passes_a_loop_if_it_is_fast_enough);
     RUN(a_disk_rolls_on_its_rim_about_a_centre_at_rest);
     RUN(a_cart_rolls_down_a_slope);
+    RUN(a_ball_rolls_on_in_long_steps);
     return check_finish();
 }

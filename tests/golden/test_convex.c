@@ -419,9 +419,27 @@ static void auto_knows_the_limits_of_convex(void)
     }
 }
 
+/* Hills of 5 mm. */
+static void scene_hills(scene *s)
+{
+    enum { ROWS = 17, COLUMNS = 41 };
+    static double heights[ROWS * COLUMNS];
+    for (int k = 0; k < ROWS * COLUMNS; ++k) {
+        const int row = k / COLUMNS, column = k % COLUMNS;
+        heights[k] = 0.005 * cos(row - ROWS / 2) * sin(column - COLUMNS / 2);
+    }
+    se3d_shape_def def = scene_shape(s, scene_ground(s));
+    se3d_shape shape;
+    def.heights = heights;
+    def.row_count = ROWS;
+    def.column_count = COLUMNS;
+    def.spacing[0] = def.spacing[1] = 0.05;
+    CHECK(se3d_shape_create_heightfield(s->system, &def, &shape) == SE3D_OK);
+}
+
 /* Bodies on hinges about y, shapes about their centres. 0: cylinders as wheels of a frame, which
- * rolls; 1: five balls that hang beside each other, of which the first one is let go; 2: two balls
- * on arms that fall on the floor. */
+ * rolls over hills; 1: five balls that hang beside each other, of which the first one is let go;
+ * 2: two balls on arms that fall on the floor. */
 static scene build_machine(int kind, se3d_body *last)
 {
     enum { FRAMES, CRADLES };
@@ -429,20 +447,22 @@ static scene build_machine(int kind, se3d_body *last)
     const int count = kind == FRAMES ? 4 : kind == CRADLES ? 5 : 2;
     scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, kind == CRADLES ? 1.0 : 0.2,
                           kind == FRAMES ? 1e8 : 1e6);
-    const double top[3] = {0.0, 0.0, 0.1005};
+    const double top[3] = {0.0, 0.0, 0.106};
     se3d_body frame = scene_ground(&s);
     if (kind == FRAMES) {
         const double forth[3] = {0.5, 0.0, 0.0};
         frame = scene_body(&s, 10.0, J, top, forth);
     }
-    if (kind != CRADLES) {
+    if (kind == FRAMES) {
+        scene_hills(&s);
+    } else if (kind != CRADLES) {
         scene_floor(&s, 0.0);
     }
     for (int k = 0; k < count; ++k) {
         const double angle = kind == CRADLES && k == 0 ? 0.3 : 0.0, arm = kind ? 0.4 : 0.0;
         const double x = kind == CRADLES ? 0.1 * k - arm * sin(angle) : 0.3 * (k % 2) - 0.15;
         const double y = kind == FRAMES ? 0.2 * (k / 2) - 0.1 : 0.0;
-        const double z = kind == FRAMES ? 0.1005 : kind == CRADLES ? 1.0 - arm * cos(angle) : 0.2;
+        const double z = kind == FRAMES ? 0.106 : kind == CRADLES ? 1.0 - arm * cos(angle) : 0.2;
         const double r[3] = {x, y, z};
         se3d_joint_def def = se3d_joint_def_default();
         se3d_constraint hinge;
@@ -500,7 +520,7 @@ static void auto_leaves_machines_that_touch_for_convex(void)
         CHECK(kind || (strcmp(left, "dop853") == 0 && time > 0.01 && time < 0.3));
         get(&s, last, r, v);
         if (kind == 0) {
-            CHECK_NEAR(v[0], 10.0 * 0.5 / (14.0 + 4.0 * 0.004 / 0.01), 0.02); /* it rolls */
+            CHECK(v[0] > 0.1 && v[0] < 0.5); /* it rolls */
         } else if (kind == 1) {
             CHECK(r[0] > 0.43); /* it was sent off */
         }

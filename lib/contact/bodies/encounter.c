@@ -164,19 +164,6 @@ static void eval_turn(const se3di_encounter *e, double out[3])
     se3di_add_scaled(-e->elapsed, e->surface_w[0], out);
 }
 
-/* The marks stay behind where contact moves on. If one body spins on the other about the normal,
- * they then move apart without slip: what counts is the motion half way between the marks and the
- * point, turn x (point - marks)/2 more. */
-static void add_wander(const se3di_encounter *e, double marks[2][3], double xi[3])
-{
-    double way[3], across[3];
-    se3di_copy(e->at->point, way);
-    se3di_add_scaled(-0.5, marks[0], way);
-    se3di_add_scaled(-0.5, marks[1], way);
-    se3di_cross(e->at->normal, way, across);
-    se3di_add_scaled(0.5 * se3di_dot(e->turn, e->at->normal), across, xi);
-}
-
 /* The factor of the damping force, which grows as s^a with the time since contact began (a = 0, or
  * 1/4 with hertz_mindlin), at the end of the step of which the share `phi` is spent in contact. The
  * forces at the ends of all later steps, with equal weights, make of the integral of s^a
@@ -218,11 +205,14 @@ static void eval_memory(se3di_encounter *e)
     for (int k = 0; k < 2; ++k) {
         se3di_encounter_anchor(e, k, x[k]);
         se3di_add(e->model->frames[e->body[k]].r, x[k], x[k]);
+        se3di_encounter_unroll(e, k, x[k]);
     }
     se3di_sub(x[1], x[0], e->xi);
     project(n, e->xi);
     eval_turn(e, e->turn);
-    add_wander(e, x, e->xi);
+    se3di_scale(0.5, x[0], x[0]);
+    se3di_add_scaled(0.5, x[1], x[0]);
+    se3di_encounter_wander(e, x[0]);
     if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
         se3di_contact_get_roll(e->memory, e->rho);
         se3di_add_scaled(e->radius, e->turn, e->rho);
@@ -394,7 +384,7 @@ double se3di_encounter_power(const se3di_encounter *e)
 
 void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record)
 {
-    double xi[3], at[3];
+    double xi[3], at[3], half[3];
     memset(record, 0, sizeof *record);
     record->shape_i = e->shape_i;
     record->shape_j = e->shape_j;
@@ -403,7 +393,9 @@ void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record
     settled_roll(e, record->roll, &record->twist);
     for (int k = 0; k < 2; ++k) {
         se3di_copy(e->arm[k], at);
-        se3di_add_scaled(k ? 0.5 : -0.5, xi, at);
+        se3di_scale(k ? 0.5 : -0.5, xi, half);
+        se3di_add(at, half, at);
+        se3di_encounter_roll_up(e, k, half, at);
         se3di_mul_transposed(e->model->frames[e->body[k]].A, at,
                              k ? record->anchor_j : record->anchor_i);
     }
@@ -414,6 +406,7 @@ void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record
     se3di_copy(e->at->normal, record->normal);
     record->overlap = e->at->overlap;
     record->inverse_mass = settled_mass(e);
+    se3di_encounter_spins(e, record->spin);
     se3di_copy(e->force, record->force);
     se3di_copy(e->moment, record->torque);
 }

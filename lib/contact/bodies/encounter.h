@@ -91,6 +91,23 @@ void se3di_encounter_drift(se3di_encounter *e);
 void se3di_encounter_drift_rate(const se3di_encounter *e, const se3di_encounter_change *change,
                                 const double dp[3], const double dn[3], double drift[3],
                                 double spin[3]);
+/* encounter_unroll.c: move a mark of body k from where it is seen to where it were if the surface
+ * that bends were unrolled into the tangent plane; d mark along a change, with the rotation `turn`
+ * of the body and d of the normal, the point and the overlap; move a mark that is `way` off the
+ * point in that plane onto the surface. */
+void se3di_encounter_unroll(const se3di_encounter *e, int k, double mark[3]);
+void se3di_encounter_unroll_rate(const se3di_encounter *e, int k, const double turn[3],
+                                 const double dn[3], const double dp[3], double ddelta,
+                                 const double mark[3], double dmark[3]);
+void se3di_encounter_roll_up(const se3di_encounter *e, int k, const double way[3], double mark[3]);
+/* How the two surfaces spin about the normal [rad/s]. */
+void se3di_encounter_spins(const se3di_encounter *e, double spin[2]);
+/* Add to the stretch what the spin makes of marks with this middle; add to dxi the derivative, with
+ * d of the overlap, the normal, the point less the middle and the rotations, j less i. */
+void se3di_encounter_wander(se3di_encounter *e, const double middle[3]);
+void se3di_encounter_wander_rate(const se3di_encounter *e, const double middle[3], double ddelta,
+                                 const double dn[3], const double dway[3], const double dturn[3],
+                                 double dxi[3]);
 /* J^-1 a of a body, ground frame; zero if it has no inertia. */
 void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
                              double out[3]);

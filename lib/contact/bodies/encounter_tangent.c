@@ -208,24 +208,6 @@ static void move_new(const se3di_encounter *e, rates *d)
     se3di_add_scaled(rate, e->vt, d->xi);
 }
 
-/* d of what the spin adds to the stretch, see encounter.c; `marks`: where their middle is. */
-static void add_wander_rate(const se3di_encounter *e, const double turn[3], const double marks[3],
-                            const double dmarks[3], rates *d)
-{
-    const double *n = e->at->normal;
-    const double spun = se3di_dot(e->turn, n);
-    const double dspun = se3di_dot(turn, n) + se3di_dot(e->turn, d->n);
-    double way[3], dway[3], x[3];
-    se3di_sub(e->at->point, marks, way);
-    se3di_sub(d->p, dmarks, dway);
-    se3di_cross(n, way, x);
-    se3di_add_scaled(0.5 * dspun, x, d->xi);
-    se3di_cross(d->n, way, x);
-    se3di_add_scaled(0.5 * spun, x, d->xi);
-    se3di_cross(n, dway, x);
-    se3di_add_scaled(0.5 * spun, x, d->xi);
-}
-
 static void move_memory(const se3di_encounter *e, const se3di_encounter_change *c, rates *d)
 {
     const double *n = e->at->normal;
@@ -246,6 +228,8 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
         se3di_cross(c->turn[k], x, dx);
         se3di_add(dx, c->r[k], dx);
         se3di_add(x, frame->r, x);
+        se3di_encounter_unroll_rate(e, k, c->turn[k], d->n, d->p, d->delta, x, dx);
+        se3di_encounter_unroll(e, k, x);
         se3di_add_scaled(sign, x, raw);
         se3di_add_scaled(sign, dx, moved);
         se3di_add_scaled(0.5, x, marks);
@@ -254,7 +238,8 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
     project_rate(n, d->n, raw, moved, d->xi);
     se3di_sub(c->turn[1], c->turn[0], turn);
     se3di_add_scaled(e->elapsed, d->surface_spin, turn);
-    add_wander_rate(e, turn, marks, dmarks, d);
+    se3di_sub(d->p, dmarks, dmarks);
+    se3di_encounter_wander_rate(e, marks, d->delta, d->n, dmarks, turn, d->xi);
     d->twist = e->radius * (se3di_dot(turn, n) + se3di_dot(e->turn, d->n));
     se3di_scale(e->radius, turn, turn);
     se3di_contact_get_roll(e->memory, raw);
