@@ -21,7 +21,7 @@
 
 #define STATE_MOST (SIZE_MAX / 4)
 enum { TOLD = 300, PATH_SIZE = 4096, FOLDER_MOST = 1000 };
-enum { GOOD_MOST = 1 /* OK, Warning */, DISCARD = 2, FATAL = 4 };
+enum { GOOD_MOST = 1 /* OK, Warning */, DISCARD = 2, FAILED = 3, FATAL = 4 };
 
 #if defined(__linux__) && defined(__x86_64__)
 #define PLATFORM2 "linux64"
@@ -104,9 +104,9 @@ typedef struct guest {
     callbacks_2 callbacks;
     char told[TOLD];
     double start, time;
-    double points;  /* communication points so far */
-    bool keeps;     /* its state is asked for */
-    bool is_broken; /* it has said so: nothing of it may be called any more */
+    double points; /* communication points so far */
+    bool keeps;    /* its state is asked for */
+    int worst;     /* status that it has told. FAILED: it cannot go on; FATAL: no call is allowed */
 } guest;
 
 struct se3di_guests {
@@ -160,7 +160,7 @@ static se3d_status fail(const guest *g, se3d_status status, char *problem, const
 static bool good(guest *g, int status)
 {
     se3di_floats_resume();
-    g->is_broken = g->is_broken || status == FATAL;
+    g->worst = status > g->worst ? status : g->worst;
     return status >= 0 && status <= GOOD_MOST;
 }
 
@@ -529,8 +529,8 @@ void se3di_guests_close(se3di_guests *guests)
     const se3di_floats host = se3di_floats_set();
     for (size_t k = 0; k < guests->count; ++k) {
         guest *g = &guests->list[k];
-        if (g->instance && !g->is_broken) {
-            if (g->points > 0.0 && !guests->has_failed) {
+        if (g->instance && g->worst < FATAL) {
+            if (g->points > 0.0 && !guests->has_failed && g->worst < FAILED) {
                 g->f.terminate(g->instance);
             }
             g->f.release(g->instance);
@@ -645,6 +645,9 @@ static se3d_status act(const se3di_guests *guests, guest *g, char *problem)
 static se3d_status hear(guest *g, se3di_sample *sample, double time, char *problem)
 {
     const bool begins = !(g->points > 0.0);
+    if (g->worst >= FAILED) { /* when its state was asked for */
+        return fail(g, SE3D_ERR_CALLBACK, problem, "it cannot go on");
+    }
     se3d_status status = begins ? SE3D_OK : step(g, time, problem);
     status = status < 0 ? status : tell(g, sample, problem);
     if (status >= 0 && begins && !good(g, g->f.leave(g->instance))) {
@@ -691,7 +694,7 @@ static bool write_state(guest *g, se3di_iopool *pool, const unsigned char **byte
         made = se3di_iopool_alloc(pool, *size + 1);
         went = made && good(g, g->f.write_state(g->instance, state, made, *size));
     }
-    if (has_state && !g->is_broken) {
+    if (has_state && g->worst < FATAL) {
         went = good(g, g->f.free_state(g->instance, &state)) && went;
     }
     *bytes = made;
@@ -704,7 +707,7 @@ static bool read_state(guest *g, const unsigned char *bytes, size_t size)
     bool went = good(g, g->f.read_state(g->instance, bytes, size, &state));
     const bool has_state = went;
     went = went && good(g, g->f.set_state(g->instance, state));
-    if (has_state && !g->is_broken) {
+    if (has_state && g->worst < FATAL) {
         went = good(g, g->f.free_state(g->instance, &state)) && went;
     }
     return went;
@@ -746,7 +749,7 @@ se3d_status se3di_guests_write(se3di_guests *guests, se3di_iopool *pool,
     size_t *sizes = se3di_iopool_array(pool, guests->count + 1, sizeof *sizes);
     for (size_t k = 0; k < guests->count && states && sizes; ++k) {
         guest *g = &guests->list[k];
-        if (!write_state(g, pool, &states[k], &sizes[k])) {
+        if (g->worst >= FAILED || !write_state(g, pool, &states[k], &sizes[k])) {
             return fail(g, SE3D_ERR_INVALID_ARGUMENT, problem, "its state cannot be written");
         }
     }
