@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Whatever path of calls asks for memory while a model is read, listed, run, drawn, saved, studied
- * or imported: it is refused once on each, which is reported and leaks nothing. A model's own
- * memory is cut from large blocks; here each piece of it is refused by itself, as the functions of
- * the pool are replaced when the test is linked. Paths are told apart by the innermost calls. */
+ * or imported, is a mock-up unit or runs while someone looks at it: it is refused once on each,
+ * which is reported and leaks nothing. A model's own memory is cut from large blocks; here each
+ * piece of it is refused by itself, as the functions of the pool are replaced when the test is
+ * linked. Paths are told apart by the innermost calls. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
 #include <sys/stat.h>
@@ -12,7 +13,9 @@
 
 #include "check.h"
 #include "io/base/pool.h"
+#include "io/fmi/exchange.h"
 #include "io/fmi/package.h"
+#include "io/live/live.h"
 #include "io/write/sketch.h"
 #include "se3d/import.h"
 #include "se3d/io.h"
@@ -318,6 +321,200 @@ static se3d_status use_import(const char *path, se3d_model_error *error)
     return status;
 }
 
+/* ---- lives ---- */
+
+/* The pools of units and sessions take what the test gives them. */
+static int replaces;
+
+void __real_se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *given);
+void __wrap_se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *given);
+
+void __wrap_se3di_iopool_init(se3di_iopool *pool, const se3d_allocator *given)
+{
+    __real_se3di_iopool_init(pool, given || !replaces ? given : &allocator);
+}
+
+static void hear(void *ctx, se3d_log_level level, const char *message)
+{
+    se3d_model_error *error = ctx;
+    if (level >= SE3D_LOG_WARNING && !strstr(error->message, "memory")) {
+        snprintf(error->message, sizeof error->message, "%s", message);
+    }
+}
+
+static uint32_t find(const se3di_fmi_unit *u, const char *name)
+{
+    uint32_t k = 0;
+    while (k < u->variables.count && strcmp(u->variables.list[k].name, name) != 0) {
+        ++k;
+    }
+    CHECK(k < u->variables.count);
+    return k;
+}
+
+/* Save the state, go elsewhere and come back, to the same output. */
+static bool comes_back(se3di_fmi_unit *u, uint32_t output, bool (*go)(se3di_fmi_unit *u))
+{
+    size_t size = 0;
+    double before = 0.0, after = 1.0;
+    if (!se3di_fmi_unit_get(u, output, &before) || !se3di_fmi_unit_write(u, NULL, &size)) {
+        return false;
+    }
+    unsigned char *bytes = malloc(size);
+    const bool good = bytes && se3di_fmi_unit_write(u, bytes, &size) && go(u) &&
+                      se3di_fmi_unit_read(u, bytes, size) && se3di_fmi_unit_get(u, output, &after);
+    free(bytes);
+    CHECK(!good || memcmp(&before, &after, sizeof before) == 0);
+    return good;
+}
+
+static bool step_on(se3di_fmi_unit *u)
+{
+    return se3di_fmi_unit_step(u, se3di_fmi_unit_get_time(u), 0.01);
+}
+
+static bool live_stepping(se3di_fmi_unit *u)
+{
+    const uint32_t output = find(u, "arm.position.x"), length = find(u, "parameters.l");
+    const uint32_t inputs[2] = {find(u, "motor.input"), find(u, "load.input")};
+    const double values[2] = {0.5, 2.0}, longer = 1.5, seed = 1.0;
+    double slope = 0.0;
+    return se3di_fmi_unit_begin(u, 0.0, 1.0, 1e-6) && se3di_fmi_unit_set(u, &length, 1, &longer) &&
+           se3di_fmi_unit_set(u, inputs, 2, values) && se3di_fmi_unit_enter(u) &&
+           se3di_fmi_unit_derive(u, &output, 1, &length, 1, &seed, &slope) &&
+           se3di_fmi_unit_start(u) && step_on(u) && se3di_fmi_unit_set(u, inputs, 2, values) &&
+           se3di_fmi_unit_derive(u, &output, 1, &inputs[1], 1, &seed, &slope) &&
+           comes_back(u, output, step_on) && step_on(u) && se3di_fmi_unit_terminate(u);
+}
+
+enum { STATES_MAX = 40 };
+
+static bool drift_on(se3di_fmi_unit *u)
+{
+    double x[STATES_MAX], dx[STATES_MAX], signs[STATES_MAX];
+    const size_t n = se3di_fmi_unit_count_states(u), m = se3di_fmi_unit_count_indicators(u);
+    const double h = 0.01;
+    bool event = false;
+    CHECK(n > 0 && n <= STATES_MAX && m > 0 && m <= STATES_MAX);
+    if (!se3di_fmi_unit_get_states(u, x, n) || !se3di_fmi_unit_get_derivatives(u, dx, n)) {
+        return false;
+    }
+    for (size_t k = 0; k < n; ++k) {
+        x[k] += h * dx[k];
+    }
+    return se3di_fmi_unit_set_time(u, se3di_fmi_unit_get_time(u) + h) &&
+           se3di_fmi_unit_set_states(u, x, n) && se3di_fmi_unit_get_indicators(u, signs, m) &&
+           se3di_fmi_unit_complete_step(u, &event);
+}
+
+static bool live_exchanging(se3di_fmi_unit *u)
+{
+    const uint32_t output = find(u, "arm.position.x"), input = find(u, "load.input");
+    const double value = 2.0, seed = 1.0;
+    double slope = 0.0;
+    bool ends = false, moved = false;
+    return se3di_fmi_unit_begin(u, 0.0, (double)NAN, (double)NAN) && se3di_fmi_unit_enter(u) &&
+           se3di_fmi_unit_set(u, &input, 1, &value) && se3di_fmi_unit_start(u) &&
+           se3di_fmi_unit_update_event(u, &ends, &moved) && se3di_fmi_unit_enter_continuous(u) &&
+           drift_on(u) && se3di_fmi_unit_derive(u, &output, 1, &input, 1, &seed, &slope) &&
+           comes_back(u, output, drift_on) && se3di_fmi_unit_enter_event(u) &&
+           se3di_fmi_unit_update_event(u, &ends, &moved) && se3di_fmi_unit_terminate(u);
+}
+
+/* A unit that memory was refused to lives again from the start. */
+static se3d_status use_unit(const char *folder, bool exchanges, bool (*live)(se3di_fmi_unit *u),
+                            se3d_model_error *error)
+{
+    replaces = 1;
+    se3di_fmi_unit *u = se3di_fmi_unit_create(folder, NULL, exchanges, hear, error);
+    const bool good = u && live(u);
+    if (!u && !error->message[0]) {
+        snprintf(error->message, sizeof error->message, "out of memory"); /* of the unit itself */
+    }
+    if (u && !good) {
+        CHECK(se3di_fmi_unit_reset(u) && live(u));
+    }
+    se3di_fmi_unit_destroy(u);
+    replaces = 0;
+    return good                               ? SE3D_OK
+           : strstr(error->message, "memory") ? SE3D_ERR_NO_MEMORY
+                                              : SE3D_ERR_CALLBACK;
+}
+
+static se3d_status use_stepping(const char *folder, se3d_model_error *error)
+{
+    return use_unit(folder, false, live_stepping, error);
+}
+
+static se3d_status use_exchanging(const char *folder, se3d_model_error *error)
+{
+    return use_unit(folder, true, live_exchanging, error);
+}
+
+static int goes_on(void *ctx)
+{
+    (void)ctx;
+    return 0;
+}
+
+static bool look(se3di_live *live)
+{
+    double *places = malloc((se3di_live_count_places(live) + 1) * sizeof *places);
+    float *spheres = malloc((4 * se3di_live_count_particles(live) + 1) * sizeof *spheres);
+    FILE *file = tmpfile();
+    const bool has_spheres = se3di_live_count_particles(live) > 0;
+    const bool good = places && spheres && file && se3di_live_put_scene(live, file) &&
+                      (!has_spheres || se3di_live_get_particles(live, spheres));
+    if (places) {
+        se3di_live_get_places(live, places);
+    }
+    if (file) {
+        fclose(file);
+    }
+    free(places);
+    free(spheres);
+    return good;
+}
+
+/* A number is set, the file read again on the way and at the start, a body pulled. */
+static bool live_shown(se3di_live *live, char *message)
+{
+    static const double point[3] = {0.0, 0.0, 0.0}, place[3] = {0.5, 0.0, 0.5};
+    for (size_t k = 0; k < se3di_live_count_sliders(live); ++k) {
+        const se3di_live_slider *slider = se3di_live_get_slider(live, k);
+        if (!se3di_live_set(live, k, slider->value + 0.25)) {
+            return false;
+        }
+    }
+    const bool pulled = se3di_live_pull(live, 1, point, place);
+    return pulled && se3di_live_run(live, 0.01, message) && se3di_live_release(live) &&
+           look(live) && se3di_live_read(live, SE3DI_LIVE_GOING_ON, message) && !message[0] &&
+           se3di_live_run(live, 0.02, message) &&
+           se3di_live_read(live, SE3DI_LIVE_RESET, message) && look(live) &&
+           se3di_live_read(live, SE3DI_LIVE_CHANGED, message);
+}
+
+/* After a refusal the session is whole: all of it goes well again. */
+static se3d_status use_live(const char *path, se3d_model_error *error)
+{
+    char message[SE3DI_LIVE_MESSAGE_SIZE] = "";
+    const se3d_model_options options = se3d_model_options_default();
+    replaces = 1;
+    se3di_live *live = se3di_live_create(path, &options, goes_on, NULL, message);
+    const bool good = live && live_shown(live, message);
+    snprintf(error->message, sizeof error->message, "%.900s", good ? "" : message);
+    if (live && !good) {
+        (void)se3di_live_release(live);
+        if (!error->message[0]) {
+            snprintf(error->message, sizeof error->message, "refused"); /* what is only true */
+        }
+        CHECK(se3di_live_read(live, SE3DI_LIVE_ANEW, message) && live_shown(live, message));
+    }
+    se3di_live_destroy(live);
+    replaces = 0;
+    return good ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+}
+
 typedef se3d_status (*use)(const char *path, se3d_model_error *error);
 
 static se3d_status attempt(use what, const char *path, size_t refused, se3d_model_error *error)
@@ -364,7 +561,18 @@ static size_t refuse_each(use what, const char *path)
             break;
         }
     }
+    if (getenv("SE3D_SHOW")) {
+        fprintf(stderr, "%s: %zu\n", path, count);
+    }
     return count;
+}
+
+/* Paths that others had, too, end elsewhere here. */
+static size_t refuse_each_anew(use what, const char *path)
+{
+    memset(calls.seen, 0, sizeof calls.seen);
+    calls.seen_count = 0;
+    return refuse_each(what, path);
 }
 
 static size_t refuse_in_folder(use what, const char *folder, const char *const *endings)
@@ -381,11 +589,7 @@ static size_t refuse_in_folder(use what, const char *folder, const char *const *
         }
         if (is_one) {
             snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-            const size_t count = refuse_each(what, path);
-            if (getenv("SE3D_SHOW")) {
-                fprintf(stderr, "%s: %zu\n", path, count);
-            }
-            sum += count;
+            sum += refuse_each(what, path);
         }
     }
     if (directory) {
@@ -411,10 +615,69 @@ static void every_path_of_imports_survives_a_refusal(void)
     CHECK(refuse_in_folder(use_import, "fuzz/seeds/import", endings) > 100);
 }
 
+#define LIFE                                                                                       \
+    "se3d: 1\n"                                                                                    \
+    "parameters: {l: 1, half: l/2}\n"                                                              \
+    "bodies:\n"                                                                                    \
+    "  - {name: arm, mass: 1, inertia: [0.1, 0.1, 0.1], position: [half, 0, 0]}\n"                 \
+    "  - {name: block, mass: 1, inertia: [1, 1, 1], position: [0, 2, 0]}\n"                        \
+    "joints:\n"                                                                                    \
+    "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, 1, "    \
+    "0]}\n"                                                                                        \
+    "  - {name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 2, 0], axis: [1, "   \
+    "0, "                                                                                          \
+    "0]}\n"
+#define LIFE_ACTS                                                                                  \
+    "forces:\n"                                                                                    \
+    "  - {name: spring, type: tsda, body_i: ground, body_j: arm, point_i: [0, 0, 1], point_j: "    \
+    "[0.5, 0, 0], k: 50, l0: 1}\n"                                                                 \
+    "  - {name: load, type: effort, joint: pin, value: 1}\n"                                       \
+    "  - {name: end, type: stop, joint: pin, coordinate: angle, upper: 0.5, k: 1e3}\n"             \
+    "states: [{name: lag, type: lag, input: pin.angle, time_constant: 0.1}]\n"                     \
+    "events: [{name: low, channel: pin.angle, value: 0.01}]\n"                                     \
+    "output: [{file: a.csv, every: 0.1, channels: [arm.position, pin.angle]}]\n"
+#define LIFE_GRAINS                                                                                \
+    "materials: [{name: m, density: 1000, stiffness: 1e3}]\n"                                      \
+    "contact: {}\n"                                                                                \
+    "particles: [{material: m, radius: 0.1, lower: [3, 0, 0], upper: [3.5, 0.5, 0.5]}]\n"
+
+static void write_text(const char *name, const char *text)
+{
+    char path[900];
+    snprintf(path, sizeof path, "%s/%s", results(), name);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fputs(text, file) >= 0);
+    if (file) {
+        fclose(file);
+    }
+}
+
+static void every_path_of_units_survives_a_refusal(void)
+{
+    write_text("se3d.txt", "se3d-fmu 1\nmodel life.yaml\nset l=1.25\n");
+    write_text("life.yaml", LIFE "drivers: [{name: motor, joint: rail, rate: 0.25}]\n" LIFE_ACTS
+                                 "analysis: [{type: assembly}, {type: dynamics, duration: 1}]\n");
+    CHECK(refuse_each_anew(use_stepping, results()) > 250);
+    write_text("life.yaml", LIFE LIFE_ACTS "analysis: {type: dynamics, duration: 1}\n");
+    CHECK(refuse_each_anew(use_exchanging, results()) > 250);
+}
+
+static void every_path_of_a_live_model_survives_a_refusal(void)
+{
+    char path[900];
+    snprintf(path, sizeof path, "%s/life.yaml", results());
+    write_text("life.yaml",
+               LIFE "drivers: [{name: motor, joint: rail, rate: 0.25}]\n" LIFE_ACTS LIFE_GRAINS
+                    "analysis: [{type: assembly}, {type: dynamics, duration: 1, step: 1e-3}]\n");
+    CHECK(refuse_each_anew(use_live, path) > 250);
+}
+
 int main(void)
 {
     (void)mkdir(results(), 0777); /* if it is not there */
     RUN(every_path_of_imports_survives_a_refusal);
     RUN(every_path_of_models_survives_a_refusal);
+    RUN(every_path_of_units_survives_a_refusal);
+    RUN(every_path_of_a_live_model_survives_a_refusal);
     return check_finish();
 }

@@ -374,46 +374,56 @@ static void keep_fixed(const se3d_model *model, const double *poses, const doubl
     }
 }
 
-static se3d_snapshot *copy_snapshot(const se3d_system *from, se3d_system *to, se3di_iopool *pool)
+static se3d_status copy_snapshot(const se3d_system *from, se3d_system *to, se3di_iopool *pool,
+                                 se3d_snapshot **copy)
 {
     se3d_snapshot *old = NULL;
-    se3d_snapshot *copy = NULL;
     size_t size = 0;
-    if (se3d_snapshot_create(from, &old) >= 0 && se3d_snapshot_write(old, NULL, 0, &size) >= 0) {
+    se3d_status status = se3d_snapshot_create(from, &old);
+    status = status < 0 ? status : se3d_snapshot_write(old, NULL, 0, &size);
+    if (status >= 0) {
         unsigned char *bytes = se3di_iopool_array(pool, size, 1);
-        if (bytes && se3d_snapshot_write(old, bytes, size, &size) >= 0) {
-            (void)se3d_snapshot_read(to, bytes, size, &copy);
-        }
+        status = bytes ? se3d_snapshot_write(old, bytes, size, &size) : SE3D_ERR_NO_MEMORY;
+        status = status < 0 ? status : se3d_snapshot_read(to, bytes, size, copy);
     }
     se3d_snapshot_destroy(old);
-    return copy;
+    return status;
 }
 
-/* All that the state of `from` has, turns of joints and what forces remember, too. @return false:
- * the models are not of the same structure, nothing is moved. */
-static bool copy_state(const se3di_session *from, se3di_session *to)
+/* Put `to` where the snapshot is, but for what is fixed. */
+static se3d_status put_state(const se3di_session *from, se3di_session *to,
+                             const se3d_snapshot *snapshot, const double *poses, double *now)
 {
-    se3di_iopool pool;
-    se3di_iopool_init(&pool, NULL);
-    double *poses =
-        se3di_iopool_array(&pool, to->model->body_count, 2 * SE3DI_POSE * sizeof *poses);
-    se3d_snapshot *snapshot = poses && is_alike(from->model, to->model) &&
-                                      se3di_drawing_get_poses(to->model, poses) == SE3D_OK
-                                  ? copy_snapshot(from->model->system, to->model->system, &pool)
-                                  : NULL;
-    if (snapshot) {
-        move_rates(from, to);
-    }
-    const bool good = snapshot && se3d_snapshot_restore(snapshot, to->model->system) >= 0;
-    if (good) {
-        double *now = poses + SE3DI_POSE * to->model->body_count;
+    move_rates(from, to);
+    const se3d_status status = se3d_snapshot_restore(snapshot, to->model->system);
+    if (status >= 0) {
         (void)se3di_drawing_get_poses(to->model, now);
         keep_fixed(to->model, poses, now);
         (void)se3d_system_touch(to->model->system); /* other numbers act from now on */
     }
+    return status;
+}
+
+/* All that the state of `from` has, turns of joints and what forces remember, too. @return < 0:
+ * nothing is moved, for want of memory, or as the models are not of the same structure. */
+static se3d_status copy_state(const se3di_session *from, se3di_session *to)
+{
+    se3d_snapshot *snapshot = NULL;
+    const size_t numbers = SE3DI_POSE * to->model->body_count;
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, NULL);
+    double *poses = se3di_iopool_array(&pool, numbers, 2 * sizeof *poses);
+    se3d_status status = !poses                             ? SE3D_ERR_NO_MEMORY
+                         : is_alike(from->model, to->model) ? SE3D_OK
+                                                            : SE3D_ERR_STATE;
+    status = status < 0 ? status : se3di_drawing_get_poses(to->model, poses);
+    if (status >= 0) {
+        status = copy_snapshot(from->model->system, to->model->system, &pool, &snapshot);
+    }
+    status = status < 0 ? status : put_state(from, to, snapshot, poses, poses + numbers);
     se3d_snapshot_destroy(snapshot);
     se3di_iopool_destroy(&pool);
-    return good;
+    return status;
 }
 
 /* Numbers that were set in `before` are set in `s`, if it has them. */
@@ -497,7 +507,11 @@ static bool start(const se3di_session_source *from, const se3di_session *before,
     const size_t count = moves ? index : s->model->analysis_count;
     s->analysis = index;
     goes_on = goes_on && moves && before->solver;
-    const bool is_copied = goes_on && copy_state(before, s);
+    const se3d_status copied = goes_on ? copy_state(before, s) : SE3D_ERR_STATE;
+    const bool is_copied = copied >= 0;
+    if (copied == SE3D_ERR_NO_MEMORY) {
+        return say_memory(message);
+    }
     if ((!is_copied && !run_before(from, s, count, message)) ||
         (moves &&
          !make_solver(from, s, index, is_copied ? goes_not : "the model cannot start", message))) {
