@@ -636,7 +636,7 @@ static void every_path_of_imports_survives_a_refusal(void)
     "states: [{name: lag, type: lag, input: pin.angle, time_constant: 0.1}]\n"                     \
     "events: [{name: low, channel: pin.angle, value: 0.01}]\n"                                     \
     "output: [{file: a.csv, every: 0.1, channels: [arm.position, pin.angle]}]\n"
-#define LIFE_GRAINS                                                                                \
+#define LIFE_SPHERES                                                                               \
     "materials: [{name: m, density: 1000, stiffness: 1e3}]\n"                                      \
     "contact: {}\n"                                                                                \
     "particles: [{material: m, radius: 0.1, lower: [3, 0, 0], upper: [3.5, 0.5, 0.5]}]\n"
@@ -667,7 +667,7 @@ static void every_path_of_a_live_model_survives_a_refusal(void)
     char path[900];
     snprintf(path, sizeof path, "%s/life.yaml", results());
     write_text("life.yaml",
-               LIFE "drivers: [{name: motor, joint: rail, rate: 0.25}]\n" LIFE_ACTS LIFE_GRAINS
+               LIFE "drivers: [{name: motor, joint: rail, rate: 0.25}]\n" LIFE_ACTS LIFE_SPHERES
                     "analysis: [{type: assembly}, {type: dynamics, duration: 1, step: 1e-3}]\n");
     CHECK(refuse_each_anew(use_live, path) > 250);
 }
