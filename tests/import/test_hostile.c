@@ -26,6 +26,9 @@
     SDF("\n<joint name=\"j\" type=\"" type "\"><parent>world</parent><child>a</child>" x "</"      \
         "joint>")
 
+#define SDF_SHAPE(x)                                                                               \
+    SDF("<link name=\"b\">\n<visual name=\"v\"><geometry>" x "</geometry></visual></link>")
+
 #define MUJOCO(x) "<mujoco><worldbody><body>" x "</body></worldbody></mujoco>"
 
 #define MDL(x)                                                                                     \
@@ -51,6 +54,10 @@ static const bad_file table[] = {
     {"a.adm", "title\nMARKER/2\n", 2, {"on no PART", NULL}},
     {"a.adm", "title\nPART/2, MASS=1, ZG=0,0,0\n", 2, {"give no axes", NULL}},
     {"a.adm", "title\nUNITS/LENGTH=ELL\n", 2, {"ELL", "not known"}},
+    {"a.adm", "title\nUNITS/SYSTEM=ELL\n", 2, {"ELL", "not known"}},
+    {"a.adm", "title\nUNITS/FORCE=ELL\n", 2, {"ELL", "not known"}},
+    {"a.adm", "title\nUNITS/MASS=ELL\n", 2, {"ELL", "not known"}},
+    {"a.adm", "title\nUNITS/TIME=ELL\n", 2, {"ELL", "not known"}},
     {"a.adm", "title\nPART/2\nJOINT/1, REVOLUTE, I=1, J=2\n", 3, {"JOINT/1", "MARKER"}},
     {"a.adm", "title\nPART/2\nMARKER/1\nJOINT/1, REVOLUTE, I=1, J=1\n", 4, {"one part", NULL}},
     {"a.adm", "title\nPART/2\nMOTION/1, JOINT=7, FUNCTION=1\n", 3, {"no JOINT/7", NULL}},
@@ -58,6 +65,17 @@ static const bad_file table[] = {
      MDL("\"TSDAs\": [{\"bodyi\": \"1\", \"bodyj\": \"0\", \"l0\": -1}]"),
      2,
      {"number >= 0", NULL}},
+    {"a.mdl", "{\"constraints\": [], \"bodies\": [7]}", 1, {"a body", NULL}},
+    {"a.mdl", "{\"constraints\": [], \"bodies\": 7}", 1, {"list", NULL}},
+    {"a.mdl", "{\"constraints\": [7], \"bodies\": []}", 1, {"a constraint", NULL}},
+    {"a.mdl", "{\"constraints\": 7, \"bodies\": []}", 1, {"list", NULL}},
+    {"a.mdl", MDL("\"gravity\": [1, 2]"), 2, {"3 numbers", NULL}},
+    {"a.mdl", MDL("\"gravity\": \"down\""), 2, {"3 numbers", NULL}},
+    {"a.mdl",
+     "{\"constraints\": [], \"bodies\": [{\"id\": 1, \"mass\": 1, \"jbar\": [1, 1, 1],\n"
+     "\"q0\": [0, 0, 0, 0, 0, 0, 0]}]}",
+     1,
+     {"the Euler parameters of `body1` are 0", NULL}},
     {"a.mdl",
      MDL("\"simulation\": {\"tend\": 1, \"outputSteps\": 1e9}"),
      2,
@@ -73,6 +91,25 @@ static const bad_file table[] = {
     {"a.yaml", CHRONO("bodies:\n  - 7\n"), 4, {"no key `name`", NULL}},
     {"a.yaml", CHRONO("bodies:\n  - {name: a}\n"), 4, {"no key `location`", NULL}},
     {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0]}\n"), 4, {"3 numbers", NULL}},
+    {"a.yaml",
+     CHRONO("bodies:\n  - {name: a, location: [0, 0, 0], fixed: perhaps}\n"),
+     4,
+     {"true or false", NULL}},
+    {"a.yaml",
+     CHRONO("bodies:\n  - {name: a, location: [0, 0, 0], orientation: [0, 0, 0, 0], mass: 1}\n"),
+     4,
+     {"Euler parameters that are not 0", NULL}},
+    {"a.yaml",
+     CHRONO(CHRONO_BODY("a") " joints:\n  - {name: j, type: REVOLUTE, location: [0, 0, 0], axis: "
+                             "[0, 0, 0], body1: a, body2: a}\n"),
+     6,
+     {"a direction that is not 0", NULL}},
+    {"a.yaml", MOTOR("[1]"), 7, {"no key `type`", NULL}},
+    {"a.yaml", MOTOR("{type: POLYNOMIAL, coefficients: 7}"), 7, {"1 to 9 numbers", NULL}},
+    {"a.yaml", MOTOR("{type: POLYNOMIAL, coefficients: []}"), 7, {"1 to 9 numbers", NULL}},
+    {"a.yaml", MOTOR("{type: DATA, data: 7}"), 7, {"list", NULL}},
+    {"a.yaml", MOTOR("{type: DATA, data: [[0, 1], [2]]}"), 7, {"must be two numbers", NULL}},
+    {"a.yaml", MOTOR("{type: DATA, data: [[0, 1], 2]}"), 7, {"must be two numbers", NULL}},
     {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0, 1e99]}\n"), 4, {"number", NULL}},
     {"a.yaml", CHRONO("bodies:\n  - {name: a, location: [0, 0, 0]}\n"), 4, {"no key `mass`", NULL}},
     {"a.yaml",
@@ -197,6 +234,49 @@ static const bad_file table[] = {
      "<sdf><world><gravity>1</gravity><model name=\"m\"/></world></sdf>",
      1,
      {"3 numbers", NULL}},
+    {"a.sdf", SDF_SHAPE("<box><size>1 2</size></box>"), 3, {"3 numbers", NULL}},
+    {"a.sdf", SDF_SHAPE("<sphere><radius>r</radius></sphere>"), 3, {"1 number", NULL}},
+    {"a.sdf", SDF_SHAPE("<cylinder><length>l</length></cylinder>"), 3, {"1 number", NULL}},
+    {"a.sdf", SDF_SHAPE("<ellipsoid><radii>1</radii></ellipsoid>"), 3, {"3 numbers", NULL}},
+    {"a.sdf", SDF_SHAPE("<plane><normal>up</normal></plane>"), 3, {"3 numbers", NULL}},
+    {"a.sdf", SDF_SHAPE("<mesh/>"), 3, {"<mesh> has no <uri>", NULL}},
+    {"a.sdf", SDF_SHAPE("<mesh><uri/></mesh>"), 3, {"<mesh> has no <uri>", NULL}},
+    {"a.sdf", SDF_SHAPE("<mesh><uri>a</uri><scale>1</scale></mesh>"), 3, {"3 numbers", NULL}},
+    {"a.sdf",
+     SDF("<link name=\"b\">\n<inertial><inertia><ixx>i</ixx></inertia></inertial></link>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("revolute", "<axis><dynamics><damping>d</damping></dynamics></axis>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("revolute", "<axis><dynamics><friction>f</friction></dynamics></axis>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("revolute",
+               "<axis><dynamics><spring_stiffness>k</spring_stiffness></dynamics></axis>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("revolute",
+               "<axis><dynamics><spring_reference>q</spring_reference></dynamics></axis>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("screw", "<axis/><screw_thread_pitch>p</screw_thread_pitch>"),
+     3,
+     {"1 number", NULL}},
+    {"a.sdf", SDF_JOINT("screw", "<axis/><thread_pitch>p</thread_pitch>"), 3, {"1 number", NULL}},
+    {"a.sdf",
+     SDF_JOINT("universal", "<axis/><axis2><xyz>0 0 0</xyz></axis2>"),
+     3,
+     {"axis", "zero"}},
+    {"a.sdf",
+     SDF_JOINT("revolute2", "<axis/><axis2><limit><upper>u</upper></limit></axis2>"),
+     3,
+     {"1 number", NULL}},
     {"a.xml", "<mujoco/>", 1, {"no <body>", NULL}},
     {"a.xml", "<mujoco><include file=\"none.xml\"/></mujoco>", 0, {"none.xml", NULL}},
     {"a.xml", "<mujoco><include/></mujoco>", 1, {"file", NULL}},
@@ -214,6 +294,27 @@ static const bad_file table[] = {
      1,
      {"no `z`", NULL}},
     {"a.urdf", "<robot/>", 1, {"no <link>", NULL}},
+    {"a.urdf", JOINT("<origin xyz=\"0 0 0\" quat_xyzw=\"1 0\"/>"), 3, {"must be 4 numbers", NULL}},
+    {"a.urdf", JOINT("<dynamics friction=\"f\"/>"), 3, {"friction", "must be 1 number"}},
+    {"a.urdf", JOINT("<dynamics damping=\"d\"/>"), 3, {"damping", "must be 1 number"}},
+    {"a.urdf", JOINT("<limit upper=\"up\"/>"), 3, {"upper", "must be 1 number"}},
+    {"a.urdf", JOINT("<mimic/>"), 3, {"<mimic> has no `joint`", NULL}},
+    {"a.urdf", JOINT("<mimic joint=\"j\" multiplier=\"m\"/>"), 3, {"multiplier", NULL}},
+    {"a.urdf", JOINT("<mimic joint=\"j\" offset=\"o\"/>"), 3, {"offset", NULL}},
+    {"a.urdf",
+     ROBOT("<link name=\"a\"><visual><geometry>\n<box size=\"1 2\"/></geometry></visual></link>"),
+     3,
+     {"size", "3 numbers"}},
+    {"a.urdf",
+     ROBOT("<link name=\"a\"><visual><geometry>\n<cylinder length=\"l\"/></geometry></visual>"
+           "</link>"),
+     3,
+     {"1 number", NULL}},
+    {"a.urdf",
+     ROBOT("<link name=\"a\"><visual><geometry>\n<mesh filename=\"a.stl\" scale=\"1\"/>"
+           "</geometry></visual></link>"),
+     3,
+     {"scale", "3 numbers"}},
     {"a.urdf",
      "<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;\">]>\n<robot name=\"&b;\"/>",
      1,
@@ -316,6 +417,8 @@ static const strange_file strange[] = {
     {"a.adm", "title\n!   adams_view_name='time'\nPART/2, MASS=1, CM=2, IP=1,1,1\nMARKER/2\n", 0},
     {"a.adm", "title\nPART/2, MASS=1e-300, CM=2, IP=1e-300,1,1\nMARKER/2\n", 0},
     {"a.adm", MOTION("TIME"), 0},
+    {"a.mdl", MDL("\"TSDAs\": [7]"), 1},
+    {"a.yaml", MOTOR("{type: CONTROLLER}"), 0},
     {"a.adm", MOTION(""), 1},
     {"a.adm", MOTION("1+"), 1},
     {"a.adm", MOTION("1 2"), 1},
@@ -333,7 +436,50 @@ static const strange_file strange[] = {
     {"a.adm", CRANK "JOINT/2, TRANSLATIONAL, I=2, J=1\nJOINT/3, RACKPIN, I=3, J=1, PD=0\n", 1},
     {"a.adm", CRANK "SPRINGDAMPER/1, TRANSLATION, I=3, J=1, K=1, LENGTH=-1\n", 1},
     {"a.adm", CRANK "GRAPHICS/1, BOX, CORNER=3, X=1e20, Y=1e-3, Z=1\n", 0},
+    {"a.adm", CRANK "MOTION/1, ROTATIONAL, JOINT=1, FUNCTION=1, ICDISP=0.5\n", 0},
+    {"a.adm", MOTION("30d*TIME"), 0},
+    {"a.adm", MOTION("min(TIME,2)+MAX(TIME,0.5)"), 0},
+    {"a.adm", MOTION("VARVAL(7)"), 1},
+    {"a.adm", MOTION("VARVAL(x)"), 1},
+    {"a.adm", MOTION("TIME#2"), 1},
 #if defined(SE3D_HAS_EXPAT)
+    {"a.sdf", SDF_SHAPE("<empty/>"), 0},
+    {"a.sdf", SDF_SHAPE("<box><size>0 1 1</size></box>"), 1},
+    {"a.sdf", SDF_SHAPE("<box><size>1 0 1</size></box>"), 1},
+    {"a.sdf", SDF_SHAPE("<box><size>1 1 0</size></box>"), 1},
+    {"a.sdf", SDF_SHAPE("<sphere><radius>0</radius></sphere>"), 1},
+    {"a.sdf", SDF_SHAPE("<sphere><radius>1</radius></sphere>"), 0},
+    {"a.sdf", SDF_SHAPE("<capsule><radius>1</radius><length>2</length></capsule>"), 0},
+    {"a.sdf", SDF_SHAPE("<capsule><radius>1</radius><length>0</length></capsule>"), 1},
+    {"a.sdf", SDF_SHAPE("<cylinder><radius>1</radius><length>2</length></cylinder>"), 0},
+    {"a.sdf", SDF_SHAPE("<ellipsoid><radii>1 1 0</radii></ellipsoid>"), 1},
+    {"a.sdf", SDF_SHAPE("<ellipsoid><radii>1 0 1</radii></ellipsoid>"), 1},
+    {"a.sdf", SDF_SHAPE("<ellipsoid><radii>0 1 1</radii></ellipsoid>"), 1},
+    {"a.sdf", SDF_SHAPE("<plane><normal>0 0 0</normal></plane>"), 1},
+    {"a.sdf", SDF_SHAPE("<mesh><uri>none.stl</uri><submesh><name>a</name></submesh></mesh>"), 2},
+    {"a.sdf", SDF_SHAPE("<heightmap><uri>a.png</uri></heightmap>"), 1},
+    {"a.sdf", SDF("<link name=\"b\"><inertial auto=\"true\"><mass>1</mass></inertial></link>"), 1},
+    {"a.sdf", SDF("<link name=\"b\"><inertial auto=\"1\"><mass>1</mass></inertial></link>"), 1},
+    {"a.sdf", SDF("<link name=\"b\"><inertial auto=\"no\"><mass>1</mass></inertial></link>"), 0},
+    {"a.sdf",
+     SDF("<link name=\"b\"><velocity_decay><linear>0</linear><angular>0</angular></velocity_decay>"
+         "</link>"),
+     0},
+    {"a.sdf",
+     SDF("<link name=\"b\"><velocity_decay><linear>0</linear><angular>1</angular></velocity_decay>"
+         "</link>"),
+     1},
+    {"a.sdf", SDF("<link name=\"b\"><gravity>false</gravity></link>"), 1},
+    {"a.sdf", SDF("<link name=\"b\"><gravity>1</gravity></link>"), 0},
+    {"a.sdf", SDF("<link name=\"b\"><kinematic>true</kinematic></link>"), 1},
+    {"a.sdf", SDF("<link name=\"b\"><kinematic>0</kinematic></link>"), 0},
+    {"a.sdf", SDF("<gripper name=\"g\"/>"), 1},
+    {"a.sdf", SDF_JOINT("revolute", "<axis><limit><effort>5</effort></limit></axis>"), 0},
+    {"a.sdf", SDF_JOINT("revolute", "<axis><limit><velocity>5</velocity></limit></axis>"), 0},
+    {"a.sdf",
+     SDF_JOINT("revolute",
+               "<axis><limit><lower>-INF</lower><upper> infinity </upper></limit></axis>"),
+     0},
     {"a.urdf", ARM(BODY("1", "1", ""), ""), 0},
     {"a.urdf", ARM(BODY("1e-300", "1e-300", ""), ""), 0},
     {"a.urdf",
@@ -375,6 +521,36 @@ static void what_is_made_of_strange_files_can_be_read(void)
         se3d_model_import_destroy(import);
     }
 }
+
+#if defined(SE3D_HAS_EXPAT)
+/* The comment of the joint has what the file has. */
+static void only_bounds_that_are_given_are_told(void)
+{
+    static const struct {
+        const char *name, *text, *comment;
+    } rows[] = {
+        {"a.sdf", SDF_JOINT("revolute", "<axis><limit><effort>5</effort></limit></axis>"),
+         "# effort up to 5\n"},
+        {"a.sdf", SDF_JOINT("revolute", "<axis><limit><velocity>3</velocity></limit></axis>"),
+         "# rate up to 3\n"},
+        {"a.sdf",
+         SDF_JOINT("revolute",
+                   "<axis><limit><effort>5</effort><velocity>3</velocity></limit></axis>"),
+         "# effort up to 5, rate up to 3\n"},
+        {"a.urdf", ARM(BODY("1", "1", ""), "<limit effort=\"5\"/>"), "# drive: at most 5 N m\n"},
+        {"a.urdf", ARM(BODY("1", "1", ""), "<limit velocity=\"3\"/>"),
+         "# drive: at most 3 rad/s\n"},
+        {"a.urdf", ARM(BODY("1", "1", ""), "<limit effort=\"5\" velocity=\"3\"/>"),
+         "# drive: at most 5 N m, 3 rad/s\n"}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        se3d_model_import *import = NULL;
+        CHECK(se3d_model_import_text(rows[k].text, strlen(rows[k].text), rows[k].name, NULL,
+                                     &import, NULL) == SE3D_OK);
+        CHECK_CONTAINS(se3d_model_import_get_text(import, NULL), rows[k].comment);
+        se3d_model_import_destroy(import);
+    }
+}
+#endif
 
 /* Memory that ends after some allocations. */
 typedef struct purse {
@@ -511,6 +687,9 @@ int main(void)
 {
     RUN(every_bad_file_gets_a_message);
     RUN(what_is_made_of_strange_files_can_be_read);
+#if defined(SE3D_HAS_EXPAT)
+    RUN(only_bounds_that_are_given_are_told);
+#endif
     RUN(memory_may_end_anywhere);
 #if defined(SE3D_HAS_EXPAT)
     RUN(depth_and_number_of_elements_are_bounded);

@@ -23,6 +23,19 @@ static const struct {
     {"ball", SE3DI_LINK_SPHERICAL, KIND_PLAIN},      {"fixed", SE3DI_LINK_FIXED, KIND_PLAIN},
     {"universal", SE3DI_LINK_UNIVERSAL, KIND_TWO},   {"revolute2", SE3DI_LINK_UNIVERSAL, KIND_TWO}};
 
+/* The bounds of a drive that are given; NULL: none, or no memory. */
+static const char *describe_drive(se3di_machine *m, double effort, double rate)
+{
+    const bool pushes = effort > 0.0 && effort < ENDLESS;
+    const bool moves = rate > 0.0 && rate < ENDLESS;
+    const char *most = pushes ? se3di_machine_number(m, effort) : "";
+    const char *fastest = moves ? se3di_machine_number(m, rate) : "";
+    return pushes || moves ? se3di_machine_text(m, "%s%s%s%s%s", pushes ? "effort up to " : "",
+                                                most, pushes && moves ? ", " : "",
+                                                moves ? "rate up to " : "", fastest)
+                           : NULL;
+}
+
 /* Ends, damping, friction and spring along an axis. */
 static bool read_dynamics(se3di_machine *m, const se3di_xml *axis, bool endless,
                           se3di_link_joint *joint)
@@ -45,11 +58,7 @@ static bool read_dynamics(se3di_machine *m, const se3di_xml *axis, bool endless,
     }
     joint->has_lower = !endless && joint->lower > -ENDLESS;
     joint->has_upper = !endless && joint->upper < ENDLESS;
-    if ((effort > 0.0 && effort < ENDLESS) || (rate > 0.0 && rate < ENDLESS)) {
-        joint->comment =
-            se3di_machine_text(m, "effort up to %s, rate up to %s", se3di_machine_number(m, effort),
-                               se3di_machine_number(m, rate));
-    }
+    joint->comment = describe_drive(m, effort, rate);
     if (joint->friction < 0.0) {
         se3di_machine_note_of(m, SE3D_IMPORT_LOST, joint->line,
                               "the friction %g of `%.80s` is negative", joint->friction,

@@ -119,6 +119,18 @@ bool se3di_urdf_shapes(se3di_links *links, size_t link, const se3di_xml *root,
     return true;
 }
 
+/* The bounds of a drive that are given; NULL: none, or no memory. */
+static const char *describe_drive(se3di_machine *m, double effort, double rate, bool slides)
+{
+    const char *force = slides ? "N" : "N m";
+    const char *speed = slides ? "m/s" : "rad/s";
+    return effort > 0.0 && rate > 0.0
+               ? se3di_machine_text(m, "drive: at most %g %s, %g %s", effort, force, rate, speed)
+           : effort > 0.0 ? se3di_machine_text(m, "drive: at most %g %s", effort, force)
+           : rate > 0.0   ? se3di_machine_text(m, "drive: at most %g %s", rate, speed)
+                          : NULL;
+}
+
 static bool read_limits(se3di_machine *m, const se3di_xml *node, se3di_link_joint *joint)
 {
     double effort = 0.0;
@@ -138,10 +150,7 @@ static bool read_limits(se3di_machine *m, const se3di_xml *node, se3di_link_join
     const bool slides = joint->type == SE3DI_LINK_PRISMATIC;
     joint->has_lower = joint->has_upper =
         ends && (slides || (joint->type == SE3DI_LINK_REVOLUTE && strcmp(type, "revolute") == 0));
-    if (effort > 0.0 || rate > 0.0) {
-        joint->comment = se3di_machine_text(m, "drive: at most %g %s, %g %s", effort,
-                                            slides ? "N" : "N m", rate, slides ? "m/s" : "rad/s");
-    }
+    joint->comment = describe_drive(m, effort, rate, slides);
     if (joint->has_lower && (joint->lower > 0.0 || joint->upper < 0.0)) {
         se3di_machine_note_of(m, SE3D_IMPORT_NOTE, joint->line,
                               "zero is outside the range of `%.80s`: its stop pushes from the "
