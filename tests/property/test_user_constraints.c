@@ -619,6 +619,37 @@ static void a_copy_of_a_constraint_is_named_as_redundant(void)
     se3d_system_destroy(w.system);
 }
 
+/* A copy that is left out, and fails from some call on: the analysis says so, and goes on from a
+ * good state when it does not any more. */
+static void a_copy_that_fails_stops_the_analysis_with_its_name(void)
+{
+    for (int after = 1; after < 80; ++after) {
+        world w;
+        se3d_constraint made;
+        se3d_solver *solver;
+        open_world(&w, 0, 0.0);
+        se3d_user_constraint_def def = se3d_user_constraint_def_default();
+        def.name = "copy";
+        def.callback = distance_eval;
+        def.ctx = &w.data;
+        def.body_count = 2;
+        def.bodies[0] = w.body[0];
+        def.bodies[1] = w.body[1];
+        CHECK(!se3d_user_constraint_create(w.system, &def, &made));
+        se3d_solver_def settings = se3d_solver_def_default();
+        settings.method = after % 2 ? SE3D_METHOD_HHT : SE3D_METHOD_DOP853;
+        settings.step = 0.01;
+        CHECK(se3d_solver_create(w.system, &settings, &solver) >= 0);
+        w.data.fail_after = after;
+        CHECK(se3d_solver_run(solver, 1.0) == SE3D_ERR_CALLBACK);
+        CHECK_CONTAINS(se3d_system_get_error(w.system), "copy");
+        w.data.fail_after = 0;
+        CHECK(se3d_solver_run(solver, 1.0) >= 0);
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(w.system);
+    }
+}
+
 int main(void)
 {
     RUN(a_distance_by_callback_is_the_joint_in_every_analysis);
@@ -634,5 +665,6 @@ int main(void)
     RUN(definitions_out_of_range_are_refused);
     RUN(clones_and_runs_agree_bit_by_bit);
     RUN(a_copy_of_a_constraint_is_named_as_redundant);
+    RUN(a_copy_that_fails_stops_the_analysis_with_its_name);
     return check_finish();
 }
