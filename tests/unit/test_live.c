@@ -64,15 +64,15 @@ static void get_place(se3di_live *live, size_t body, double r[3])
 static double get_value(se3di_live *live, const char *column)
 {
     double values[20];
+    size_t k = 0;
     CHECK(se3di_live_count_columns(live) <= 20);
     se3di_live_get_values(live, values);
-    for (size_t k = 0; k < se3di_live_count_columns(live); ++k) {
-        if (strcmp(se3di_live_get_column(live, k), column) == 0) {
-            return values[k];
-        }
+    while (k < se3di_live_count_columns(live) &&
+           strcmp(se3di_live_get_column(live, k), column) != 0) {
+        ++k;
     }
-    CHECK(!"there is such a column");
-    return 0.0;
+    CHECK(k < se3di_live_count_columns(live)); /* there is such a column */
+    return k < se3di_live_count_columns(live) ? values[k] : (double)NAN;
 }
 
 /* The number whose name begins so. */
