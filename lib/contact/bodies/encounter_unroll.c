@@ -161,7 +161,7 @@ static double bow(const se3di_encounter *e, double ddelta, double *rate)
 
 /* If one body spins on the other by an angle about the normal, the marks move apart without slip.
  * Ways of constant speed and curvature over both surfaces are parallel if they are turned back by
- * half of what they turn from their begin to the point, and by what the area A = L^3 kappa/12
+ * half of what they turn from the start to the point, and by what the area A = L^3 kappa/12
  * between a way and its chord adds on a surface of the Gaussian curvature K (Gauss-Bonnet), K A/2:
  *
  *     xi + 2 tan(angle/4) n x way,       way = point - middle of the marks,   L = |way|
