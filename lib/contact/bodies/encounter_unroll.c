@@ -7,7 +7,8 @@
  *
  * in that plane: of a ball that has rolled by an angle theta at R sin(theta), not R theta. It is
  * exact for balls, and for cylinders across their axis, else to the third power of the way, with
- * the next term left out. Edges and corners do not roll.         docs/theory/body-contact.md */
+ * the next term left out. Edges and corners do not roll. Derivatives take the curvatures of an
+ * ellipsoid as those at the point.                               docs/theory/body-contact.md */
 #include "contact/bodies/encounter.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
