@@ -159,9 +159,7 @@ double se3di_convex_normal(const se3di_convex_contact *contact, double h, double
 /* The impulse along contact->change, and minus its derivative that way. */
 double se3di_convex_along(const se3di_convex_contact *contact, double h, const double v[3],
                           double *bend);
-/* The materials of a contact, and what they make of its law, of which the stretch may be. */
-const se3di_pair *se3di_convex_materials(const se3di_model *model,
-                                         const se3di_body_contact *record);
+/* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);

@@ -9,6 +9,7 @@
 #include "integrator/convex.h"
 
 #include "contact/bodies/body_contacts.h"
+#include "contact/bodies/law.h"
 #include "math/elementary.h"
 #include "math/vec3.h"
 
@@ -143,17 +144,10 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
     }
 }
 
-const se3di_pair *se3di_convex_materials(const se3di_model *model, const se3di_body_contact *record)
-{
-    const size_t material = (size_t)model->shapes[record->shape_i].material;
-    return &model->pairs[material * model->material_slots.count +
-                         (size_t)model->shapes[record->shape_j].material];
-}
-
 void se3di_convex_set_law(se3di_convex_contact *c, const se3di_model *model)
 {
     const se3di_body_contact *r = c->record;
-    const se3di_pair *pair = se3di_convex_materials(model, r);
+    const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
     const double radius =
         se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
@@ -252,7 +246,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     if (record->kind == SE3DI_CONTACT_STEPPED) {
         se3di_scale(0.5 * convex->h, record->roll, c->shift);
     }
-    choose_way(c, se3di_convex_materials(model, record), convex->h,
+    choose_way(c, se3di_pair_of(model, record->shape_i, record->shape_j), convex->h,
                se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal),
                loads_change(convex, c));
     if (c->way == SE3DI_CONVEX_IMPACT) {
@@ -279,7 +273,7 @@ static se3d_status refuse(const collecting *c, const se3di_body_contact *record,
 static se3d_status check_pair(const collecting *c, const se3di_body_contact *record)
 {
     const se3di_model *model = c->assembly->model;
-    const se3di_pair *pair = se3di_convex_materials(model, record);
+    const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
     if (pair->rolling > 0.0 || pair->torsion > 0.0) {
         return refuse(c, record, "rolling or torsional friction");
     }

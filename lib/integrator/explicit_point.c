@@ -155,15 +155,14 @@ static void grow_by_contact(const se3di_model *model, const se3di_body_contact *
                             double sums[2])
 {
     const uint32_t shapes[2] = {contact->shape_i, contact->shape_j};
-    const double overlap = contact->overlap;
-    const double stiffness =
-        overlap > 0.0 ? se3di_dot(contact->force, contact->force) / (overlap * overlap) : 0.0;
+    const double stiffness = se3di_contact_stiffness(model, contact);
     for (int k = 0; k < 2; ++k) {
         const uint32_t body = model->shapes[shapes[k]].body;
         double arm[3];
         se3di_sub(contact->point, model->frames[body].r, arm);
         const double size = se3di_dot(arm, arm);
-        const double force = 2.0 * stiffness * (se3di_dot(contact->point, contact->point) + size);
+        const double force =
+            2.0 * stiffness * stiffness * (se3di_dot(contact->point, contact->point) + size);
         grow_sums(&model->bodies[body], force, force * size, sums);
     }
 }

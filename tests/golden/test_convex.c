@@ -437,59 +437,74 @@ static void scene_hills(scene *s)
     CHECK(se3d_shape_create_heightfield(s->system, &def, &shape) == SE3D_OK);
 }
 
-/* Bodies on hinges about y, shapes about their centres. 0: cylinders as wheels of a frame, which
- * rolls over hills; 1: five balls that hang beside each other, of which the first one is let go;
- * 2: two balls on arms that fall on the floor; 3: the frame on a plane. */
-static scene build_machine(int kind, se3d_body *last)
+/* A frame on four wheels, cylinders on hinges about y, which rolls on a plane or over hills. */
+static scene build_cart(int has_hills, se3d_body *last)
 {
-    enum { FRAMES, CRADLES, ARMS, CARTS };
-    const int rolls = kind == FRAMES || kind == CARTS;
-    const double J[3] = {0.004, 0.004, 0.004}, half = 0.5 * PI, about_x[3] = {1.0, 0.0, 0.0};
-    const int count = rolls ? 4 : kind == CRADLES ? 5 : 2;
-    scene s =
-        scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, kind == CRADLES ? 1.0 : 0.2, rolls ? 1e8 : 1e6);
-    const double top[3] = {0.0, 0.0, kind == FRAMES ? 0.106 : 0.1005};
-    se3d_body frame = scene_ground(&s);
-    if (rolls) {
-        const double forth[3] = {0.5, 0.0, 0.0};
-        frame = scene_body(&s, 10.0, J, top, forth);
-    }
-    if (kind == FRAMES) {
+    const double J[3] = {0.004, 0.004, 0.004}, forth[3] = {0.5, 0.0, 0.0};
+    const double about_x[3] = {1.0, 0.0, 0.0}, height = has_hills ? 0.106 : 0.1005;
+    const double top[3] = {0.0, 0.0, height};
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, 0.2, 1e8);
+    const se3d_body frame = scene_body(&s, 10.0, J, top, forth);
+    if (has_hills) {
         scene_hills(&s);
-    } else if (kind != CRADLES) {
+    } else {
         scene_floor(&s, 0.0);
     }
-    for (int k = 0; k < count; ++k) {
-        const double angle = kind == CRADLES && k == 0 ? 0.3 : 0.0, arm = rolls ? 0.0 : 0.4;
-        const double x = kind == CRADLES ? 0.1 * k - arm * sin(angle) : 0.3 * (k % 2) - 0.15;
-        const double y = rolls ? 0.2 * (k / 2) - 0.1 : 0.0;
-        const double z = rolls ? top[2] : kind == CRADLES ? 1.0 - arm * cos(angle) : 0.2;
-        const double r[3] = {x, y, z};
+    for (int k = 0; k < 4; ++k) {
+        const double r[3] = {0.3 * (k % 2) - 0.15, 0.2 * (k / 2) - 0.1, height};
         se3d_joint_def def = se3d_joint_def_default();
         se3d_constraint hinge;
         *last = scene_body(&s, 1.0, J, r, scene_zero);
+        scene_turn(&s, *last, about_x, 0.5 * PI);
         se3d_shape_def shape = scene_shape(&s, *last);
         se3d_shape made;
-        if (rolls) {
-            scene_turn(&s, *last, about_x, half);
-            shape.radius = 0.1;
-            shape.length = 0.06;
-            CHECK(se3d_shape_create_cylinder(s.system, &shape, &made) == SE3D_OK);
-        } else {
-            scene_turn(&s, *last, about_y, angle);
-            shape.radius = 0.05;
-            CHECK(se3d_shape_create_sphere(s.system, &shape, &made) == SE3D_OK);
-        }
+        shape.radius = 0.1;
+        shape.length = 0.06;
+        CHECK(se3d_shape_create_cylinder(s.system, &shape, &made) == SE3D_OK);
         def.body_i = frame;
+        def.body_j = *last;
+        def.point_i[0] = r[0];
+        def.point_i[1] = r[1];
+        memcpy(def.axis_i, about_y, sizeof about_y);
+        def.axis_j[0] = def.axis_j[1] = 0.0;
+        def.axis_j[2] = -1.0;
+        CHECK(se3d_joint_create_revolute(s.system, &def, &hinge) == SE3D_OK);
+    }
+    return s;
+}
+
+/* 0: a cart on hills; balls on hinges about y: 1: five that hang beside each other, of which the
+ * first one is let go; 2: two on arms that fall on the floor; 3: a cart on a plane. */
+static scene build_machine(int kind, se3d_body *last)
+{
+    enum { CARTS_ON_HILLS, CRADLES, ARMS, CARTS };
+    const double J[3] = {0.004, 0.004, 0.004}, arm = 0.4;
+    const int count = kind == CRADLES ? 5 : 2;
+    if (kind == CARTS_ON_HILLS || kind == CARTS) {
+        return build_cart(kind == CARTS_ON_HILLS, last);
+    }
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.6, kind == CRADLES ? 1.0 : 0.2, 1e6);
+    if (kind == ARMS) {
+        scene_floor(&s, 0.0);
+    }
+    for (int k = 0; k < count; ++k) {
+        const double angle = kind == CRADLES && k == 0 ? 0.3 : 0.0;
+        const double x = kind == CRADLES ? 0.1 * k - arm * sin(angle) : 0.3 * (k % 2) - 0.15;
+        const double z = kind == CRADLES ? 1.0 - arm * cos(angle) : 0.2;
+        const double r[3] = {x, 0.0, z};
+        se3d_joint_def def = se3d_joint_def_default();
+        se3d_constraint hinge;
+        *last = scene_body(&s, 1.0, J, r, scene_zero);
+        scene_turn(&s, *last, about_y, angle);
+        se3d_shape_def shape = scene_shape(&s, *last);
+        se3d_shape made;
+        shape.radius = 0.05;
+        CHECK(se3d_shape_create_sphere(s.system, &shape, &made) == SE3D_OK);
+        def.body_i = scene_ground(&s);
         def.body_j = *last;
         memcpy(def.axis_i, about_y, sizeof about_y);
         memcpy(def.axis_j, about_y, sizeof about_y);
-        if (rolls) {
-            def.point_i[0] = x;
-            def.point_i[1] = y;
-            def.axis_j[1] = 0.0;
-            def.axis_j[2] = -1.0;
-        } else if (kind == CRADLES) {
+        if (kind == CRADLES) {
             def.point_i[0] = 0.1 * k;
             def.point_i[2] = 1.0;
             def.point_j[2] = arm;

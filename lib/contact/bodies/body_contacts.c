@@ -3,12 +3,15 @@
 #include "contact/bodies/body_contacts.h"
 
 #include "contact/bodies/broad.h"
+#include "contact/bodies/law.h"
 #include "contact/bodies/parted.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#define LANDED 1e-6 /* of R*: the overlap from which on the force over it is a stiffness */
 
 /* The first point of a pair of shapes; the list is in order of the pairs. */
 static size_t find_pair(const se3di_body_contact *list, size_t count, uint32_t i, uint32_t j)
@@ -159,6 +162,21 @@ static se3d_status add_energy(void *ctx, const se3di_encounter *e)
 {
     *(double *)ctx += se3di_encounter_energy(e);
     return SE3D_OK;
+}
+
+double se3di_contact_stiffness(const se3di_model *model, const se3di_body_contact *contact)
+{
+    const se3di_shape *i = &model->shapes[contact->shape_i], *j = &model->shapes[contact->shape_j];
+    const double kn = se3di_pair_of(model, contact->shape_i, contact->shape_j)->kn;
+    const double radius = se3di_shapes_contact_radius(i, j);
+    switch (model->contact.law) {
+    case SE3DI_LAW_HOOKE:
+        return kn;
+    case SE3DI_LAW_HERTZ_MINDLIN:
+        return 1.5 * kn * sqrt(radius * contact->overlap);
+    default: /* as it lands it has a force, and no overlap yet */
+        return se3di_norm(contact->force) / fmax(contact->overlap, LANDED * radius);
+    }
 }
 
 double se3di_contacts_potential(const se3di_model *model, double t)

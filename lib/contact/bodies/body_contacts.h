@@ -30,6 +30,9 @@ void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shap
 
 /* Add the wrenches of all contacts, [bodies * 6] as those of force elements. */
 void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench);
+/* How stiff one that is remembered is along its normal [N/m]; of a user's law, of which the force
+ * alone is known, that over the overlap. */
+double se3di_contact_stiffness(const se3di_model *model, const se3di_body_contact *contact);
 /* Energy of their springs [J]. */
 double se3di_contacts_potential(const se3di_model *model, double t);
 /* Power that goes into them [W]: into springs, and lost; of that what the drives of surfaces that

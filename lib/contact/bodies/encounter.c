@@ -14,6 +14,7 @@
  */
 #include "contact/bodies/encounter.h"
 
+#include "contact/bodies/law.h"
 #include "math/elementary.h"
 #include "math/inertia.h"
 #include "math/over.h"
@@ -260,7 +261,7 @@ void se3di_encounter_place(se3di_encounter *e)
     e->body[0] = i->body;
     e->body[1] = j->body;
     e->law = model->contact.law;
-    e->pair = model->pairs[(size_t)i->material * model->material_slots.count + (size_t)j->material];
+    e->pair = *se3di_pair_of(model, e->shape_i, e->shape_j);
     e->radius = se3di_shapes_contact_radius(i, j);
     eval_velocity(e);
     eval_mass(e);

@@ -78,6 +78,12 @@ void se3di_pair_mix_all(se3di_model *model)
     }
 }
 
+const se3di_pair *se3di_pair_of(const se3di_model *model, uint32_t i, uint32_t j)
+{
+    const size_t first = (size_t)model->shapes[i].material;
+    return &model->pairs[first * model->material_slots.count + (size_t)model->shapes[j].material];
+}
+
 double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
                        double radius, double mass, double reduced_mass)
 {

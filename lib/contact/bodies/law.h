@@ -13,6 +13,9 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
 /* Fill the model's table of pairs from its materials and what the user said of them. */
 void se3di_pair_mix_all(se3di_model *model);
 
+/* What holds between two shapes (dense). */
+const se3di_pair *se3di_pair_of(const se3di_model *model, uint32_t i, uint32_t j);
+
 /* The longest time of a step that resolves a contact of two spheres (a wall: radius_b and mass_b
  * infinite): 1/50 of the contact's time (hooke), 1/40 of Rayleigh's time (hertz_mindlin), of which
  * the lightest partner, `reduced_mass`, may leave less. */

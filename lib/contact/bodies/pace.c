@@ -12,6 +12,7 @@
 #include "contact/bodies/pace.h"
 
 #include "contact/bodies/broad.h"
+#include "contact/bodies/law.h"
 #include "contact/bodies/pace_stop.h"
 #include "force/force.h"
 #include "math/elementary.h"
@@ -50,17 +51,11 @@ static void limit(pace *p, double step, uint32_t i, uint32_t j)
     }
 }
 
-static const se3di_pair *pair_of(const se3di_model *model, uint32_t i, uint32_t j)
-{
-    size_t a = (size_t)model->shapes[i].material;
-    return &model->pairs[a * model->material_slots.count + (size_t)model->shapes[j].material];
-}
-
 /* Speed v without overlap. */
 static double contact_time(const se3di_model *model, uint32_t i, uint32_t j, double inverse_mass,
                            double v)
 {
-    const se3di_pair *pair = pair_of(model, i, j);
+    const se3di_pair *pair = se3di_pair_of(model, i, j);
     if (model->contact.law == SE3DI_LAW_HOOKE) {
         return se3di_over(3.14159265358979324, sqrt(pair->kn * inverse_mass));
     }
@@ -118,7 +113,7 @@ static void touching(pace *p, const se3di_body_contact *c)
 {
     const se3di_model *model = p->model;
     const uint32_t body[2] = {model->shapes[c->shape_i].body, model->shapes[c->shape_j].body};
-    const se3di_pair *pair = pair_of(model, c->shape_i, c->shape_j);
+    const se3di_pair *pair = se3di_pair_of(model, c->shape_i, c->shape_j);
     double v[2][3];
     for (int k = 0; k < 2; ++k) {
         velocity_at(&model->frames[body[k]], c->point, v[k]);
