@@ -109,8 +109,8 @@ typedef void (*se3di_part_finder)(const se3di_solid *i, size_t part, const se3di
  * are ways out of the pieces, and add what is missing. Returns 0 if none overlap. */
 int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
                        se3di_part_finder find);
-/* A cylinder of which a cap lies on a flat part of a closed mesh that nothing about it rises above.
- * Returns 0 if it does not. */
+/* A solid of which a flat side, a cap or a face, lies on a flat part of a closed mesh that nothing
+ * about it rises above, or over it. Returns 0 if none does. */
 int se3di_narrow_flush(const se3di_mesh_meeting *m);
 /* Two closed meshes that touch only where flat parts of them lie on each other, or do not touch
  * there. Returns 0 if they may touch elsewhere. */
