@@ -167,10 +167,34 @@ static void frames_on_each_other_touch_in_corners_and_crossings(void)
     }
 }
 
+/* Outlines are looked for in meshes of so many vertices: of larger ones nothing is worked out that
+ * would take the product of triangles and vertices. */
+static void what_is_outermost_is_asked_of_meshes_that_have_outlines(void)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    const prism_mesh t = prism_make(&prisms[FRAME], SCALE, HALF, (const double[2]){0.02, 0.02}, 0);
+    double *points = calloc(3 * (SE3DI_MESH_OUTLINE_MOST + 1), sizeof *points);
+    CHECK(points);
+    memcpy(points, t.points, 3 * t.point_count * sizeof *points);
+    for (size_t more = 0; more < 2; ++more) {
+        se3di_shape s = {.kind = SE3DI_SHAPE_MESH};
+        uint32_t outermost = 0;
+        CHECK(!se3di_mesh_build(&standard, points, SE3DI_MESH_OUTLINE_MOST + more, t.faces,
+                                t.face_count, &s));
+        for (uint32_t k = 0; k < s.triangle_count; ++k) {
+            outermost += se3di_mesh_is_outermost(&s, k) != 0;
+        }
+        CHECK(outermost == (more ? s.triangle_count : s.triangle_count - 8)); /* not its hole */
+        se3di_shape_release(&standard, &s);
+    }
+    free(points);
+}
+
 int main(void)
 {
     RUN(solids_over_a_hole_touch_in_their_corners_and_those_of_the_hole);
     RUN(a_cap_at_a_border_comes_off_to_the_side);
     RUN(frames_on_each_other_touch_in_corners_and_crossings);
+    RUN(what_is_outermost_is_asked_of_meshes_that_have_outlines);
     return check_finish();
 }

@@ -14,23 +14,22 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAN     1e-2 /* sine of the angle between the parts at most */
-#define DEEP     0.1  /* of the size: the deepest at most */
-#define LEVEL    1e-6 /* of the size: what is in one plane */
-#define SLACK    1e-4 /* of the extent: places that are one */
-#define FACING   0.9  /* cosine: a triangle of the part, not one on its edge */
-#define WIDE     4.0  /* times the depth: so far from all sides there is a place at least */
-#define SIDES    512  /* of an outline */
-#define CHUNK    8    /* of them with a box */
-#define PLACES   512
-#define VERTICES 16384
-#define STACK    128
-#define TRIES    4           /* pairs of planes that are looked at */
-#define VISITS   400         /* pairs of boxes in which they are looked for */
-#define SHALLOW  0.1         /* of the deepest: places that count the less */
-#define MORE     1.01        /* times farther: what takes the place of another, not by rounding */
-#define CORNER   0x40000000u /* features: corners, not crossings; */
-#define SECOND   0x80000000u /* of the second of the two */
+#define LEAN    1e-2 /* sine of the angle between the parts at most */
+#define DEEP    0.1  /* of the size: the deepest at most */
+#define LEVEL   1e-6 /* of the size: what is in one plane */
+#define SLACK   1e-4 /* of the extent: places that are one */
+#define FACING  0.9  /* cosine: a triangle of the part, not one on its edge */
+#define WIDE    4.0  /* times the depth: so far from all sides there is a place at least */
+#define SIDES   512  /* of an outline */
+#define CHUNK   8    /* of them with a box */
+#define PLACES  512
+#define STACK   128
+#define TRIES   4           /* pairs of planes that are looked at */
+#define VISITS  400         /* pairs of boxes in which they are looked for */
+#define SHALLOW 0.1         /* of the deepest: places that count the less */
+#define MORE    1.01        /* times farther: what takes the place of another, not by rounding */
+#define CORNER  0x40000000u /* features: corners, not crossings; */
+#define SECOND  0x80000000u /* of the second of the two */
 
 typedef struct side {
     double a[2], b[2];
@@ -48,7 +47,7 @@ typedef struct outline {
     size_t count;
     side list[SIDES];
     box boxes[SIDES / CHUNK];
-    uint64_t is_in[VERTICES / 64]; /* bits: vertices in the plane */
+    uint64_t is_in[SE3DI_MESH_OUTLINE_MOST / 64]; /* bits: vertices in the plane */
 } outline;
 
 typedef struct place {
@@ -576,8 +575,9 @@ static void begin(pair *p, const se3di_solid *i, const se3di_solid *j)
 int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     pair p;
-    if (i->shape->closed == 0 || j->shape->closed == 0 || i->shape->vertex_count > VERTICES ||
-        j->shape->vertex_count > VERTICES) {
+    if (i->shape->closed == 0 || j->shape->closed == 0 ||
+        i->shape->vertex_count > SE3DI_MESH_OUTLINE_MOST ||
+        j->shape->vertex_count > SE3DI_MESH_OUTLINE_MOST) {
         return 0;
     }
     begin(&p, i, j);

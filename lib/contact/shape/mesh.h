@@ -6,6 +6,8 @@
 
 #include "model/model.h"
 
+#define SE3DI_MESH_OUTLINE_MOST 16384 /* vertices of meshes of which outlines are looked for */
+
 /* A place where a sphere touches: a point of the surface, shape frame. */
 typedef struct se3di_touch {
     double point[3], normal[3]; /* the normal points to the sphere's centre */
@@ -72,7 +74,8 @@ int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t
 int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side);
 /* Whether the triangle beyond an edge of a closed mesh is in the same plane, but for rounding. */
 int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side);
-/* Whether nothing of a closed mesh is beyond the plane of a triangle, as far as is known. */
+/* Whether nothing of a closed mesh is beyond the plane of a triangle, as far as is known: of meshes
+ * of more vertices than outlines are looked for all triangles count as such. */
 int se3di_mesh_is_outermost(const se3di_shape *shape, uint32_t triangle);
 /* Find that out; its sense is known. */
 void se3di_mesh_note_outermost(se3di_shape *shape);
