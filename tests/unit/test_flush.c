@@ -122,6 +122,32 @@ static void a_cap_at_a_border_comes_off_to_the_side(void)
     }
 }
 
+/* A step may carry it in. The bars of the frame are 0.01 m wide. */
+static void a_solid_within_the_body_is_pushed_out_by_the_way_its_pieces_tell(void)
+{
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const double half = 0.002;
+    se3di_shape frame,
+        solids[2] = {{.kind = SE3DI_SHAPE_CYLINDER, .radius = half, .half_length = half},
+                     {.kind = SE3DI_SHAPE_BOX, .half = {half, half, half}, .half_length = half}};
+    make_frame(1, &frame);
+    for (int k = 0; k < 2 * 5; ++k) {
+        const double z = 0.0125 + 0.001 * (k / 2), way = fmin(z - 0.01, 0.02 - z) + half;
+        double deepest = 0.0;
+        se3di_shape *solid = &solids[k % 2];
+        se3di_shape_pose at = of;
+        se3di_manifold m;
+        solid->bound = se3di_shape_bound(solid);
+        at.x[2] = z;
+        se3di_narrow_find(solid, &at, &frame, &of, &m);
+        for (uint32_t n = 0; n < m.count; ++n) {
+            deepest = fmax(deepest, m.points[n].overlap);
+        }
+        CHECK_NEAR(deepest, way, 1e-6 * way);
+    }
+    release(&frame);
+}
+
 /* On top of the other, moved along it and turned about the way up. */
 static void lay(double x, double z, double angle, double depth, se3di_shape_pose *at)
 {
@@ -194,6 +220,7 @@ int main(void)
 {
     RUN(solids_over_a_hole_touch_in_their_corners_and_those_of_the_hole);
     RUN(a_cap_at_a_border_comes_off_to_the_side);
+    RUN(a_solid_within_the_body_is_pushed_out_by_the_way_its_pieces_tell);
     RUN(frames_on_each_other_touch_in_corners_and_crossings);
     RUN(what_is_outermost_is_asked_of_meshes_that_have_outlines);
     return check_finish();

@@ -687,7 +687,18 @@ void se3di_mesh_box_of(const meeting *m, double low[3], double high[3])
     }
 }
 
-/* Whether the solid is off every triangle about it. */
+/* Whether the solid's middle is. */
+static int is_in_piece(const meeting *m)
+{
+    const se3di_shape *s = m->mesh->shape;
+    int found = 0;
+    for (size_t k = 0; k < s->piece_count && m->has_pieces && !found; ++k) {
+        found = se3di_piece_holds(&s->pieces[k], m->center, SAME * m->size);
+    }
+    return found;
+}
+
+/* Whether the solid is off every triangle about it, and pieces do not hold it. */
 static int is_clear(const meeting *m)
 {
     any_met all = {m, 0};
@@ -697,7 +708,7 @@ static int is_clear(const meeting *m)
     }
     se3di_mesh_box_of(m, low, high);
     se3di_mesh_visit_box(m->mesh->shape, low, high, meet_any, &all);
-    return !all.met;
+    return !all.met && !is_in_piece(m);
 }
 
 static void find_parts(meeting *m)
