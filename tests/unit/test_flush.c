@@ -2,7 +2,7 @@
 /* Flat on flat: a cylinder, a box and a second mesh on a frame with a hole. What they touch in is
  * known: no point looks to a side, however shallow the overlap and however short the way into
  * the hole, and the same points are there after the least move. */
-#include "contact/narrow/narrow.h"
+#include "contact/narrow/mesh.h"
 #include "contact/shape/mesh.h"
 #include "support/poses.h"
 #include "support/prisms.h"
@@ -193,6 +193,119 @@ static void frames_on_each_other_touch_in_corners_and_crossings(void)
     }
 }
 
+/* A triangle in quarters, so many times, each with corners of its own. */
+static void add_quarters(const double a[3], const double b[3], const double c[3], int times,
+                         double **to)
+{
+    double ab[3], bc[3], ca[3];
+    if (times == 0) {
+        se3di_copy(a, *to);
+        se3di_copy(b, *to + 3);
+        se3di_copy(c, *to + 6);
+        *to += 9;
+        return;
+    }
+    for (int k = 0; k < 3; ++k) {
+        ab[k] = 0.5 * (a[k] + b[k]);
+        bc[k] = 0.5 * (b[k] + c[k]);
+        ca[k] = 0.5 * (c[k] + a[k]);
+    }
+    add_quarters(a, ab, ca, times - 1, to);
+    add_quarters(ab, b, bc, times - 1, to);
+    add_quarters(ca, bc, c, times - 1, to);
+    add_quarters(ab, bc, ca, times - 1, to);
+}
+
+#define QUARTERS 4
+#define CORNERS  (3 * 20 * 256) /* of the plate's 20 triangles */
+
+/* An angle plate as a file of STL has it: oblique, of single precision, of triangles so small that
+ * neighbours are not in one plane by more than 1e-6 of their size. */
+static void make_plate(const double R[9], se3di_shape *s)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    const prism_mesh t = prism_make(&prisms[L], 0.02, HALF, (const double[2]){0.0, 0.0}, 0);
+    double *points = malloc(3 * CORNERS * sizeof *points), *end = points;
+    uint32_t *faces = malloc(CORNERS * sizeof *faces);
+    CHECK(points && faces);
+    for (size_t k = 0; k < t.face_count; ++k) {
+        const uint32_t *f = t.faces + 3 * k;
+        add_quarters(t.points + 3 * f[0], t.points + 3 * f[1], t.points + 3 * f[2], QUARTERS, &end);
+    }
+    CHECK(end == points + 3 * CORNERS);
+    for (size_t k = 0; k < CORNERS; ++k) {
+        double x[3];
+        se3di_mul(R, points + 3 * k, x);
+        for (int r = 0; r < 3; ++r) {
+            points[3 * k + (size_t)r] = (double)(float)x[r];
+        }
+        faces[k] = (uint32_t)k;
+    }
+    *s = (se3di_shape){.kind = SE3DI_SHAPE_MESH};
+    CHECK(!se3di_mesh_build(&standard, points, CORNERS, faces, CORNERS / 3, s));
+    CHECK(s->closed);
+    s->bound = se3di_shape_bound(s);
+    piece_count = s->piece_count;
+    free(points);
+    free(faces);
+}
+
+static int is_on_plate(double x, double z)
+{
+    const double slack = 1e-5;
+    int found = 0;
+    for (size_t k = 0; k < prisms[L].pieces; ++k) {
+        const double *b = prisms[L].boxes[k];
+        found = found || (x > 0.02 * b[0] - slack && z > 0.02 * b[1] - slack &&
+                          x < 0.02 * b[2] + slack && z < 0.02 * b[3] + slack);
+    }
+    return found;
+}
+
+/* All points are over both plates, and reach to the ends of what is. */
+static void check_extent(const se3di_manifold *m, const double R[9], const double move[3])
+{
+    double low[3] = {1.0, 1.0, 1.0}, high[3] = {0.0, 0.0, 0.0};
+    for (uint32_t n = 0; n < m->count; ++n) {
+        double x[3];
+        se3di_mul_transposed(R, m->points[n].point, x);
+        CHECK(is_on_plate(x[0], x[2]) && is_on_plate(x[0] - move[0], x[2] - move[2]));
+        for (int c = 0; c < 3; ++c) {
+            low[c] = fmin(low[c], x[c]);
+            high[c] = fmax(high[c], x[c]);
+        }
+    }
+    for (int c = 0; c < 3; c += 2) {
+        CHECK_NEAR(low[c], move[c], 1e-5);
+        CHECK_NEAR(high[c], 0.02 * (c ? 3.0 : 2.0), 1e-5);
+    }
+}
+
+/* Outlines are closed although triangles take their neighbours for in one plane or not each by its
+ * own measure: what is over only one of the plates is no place of contact. */
+static void rounded_plates_touch_only_where_both_are(void)
+{
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const double move[3] = {0.004, 2.0 * HALF - 1e-6, 0.003};
+    uint64_t seed = 3;
+    int told = 0;
+    for (int k = 0; k < 8; ++k) {
+        se3di_shape plate;
+        se3di_shape_pose turn, at = of;
+        poses_turn(&seed, &turn);
+        make_plate(turn.R, &plate);
+        se3di_mul(turn.R, move, at.x);
+        const se3di_solid below = {&plate, &of}, above = {&plate, &at};
+        se3di_manifold m = {.count = 0};
+        if (se3di_narrow_outlines(&below, &above, &m)) { /* its planes are good enough */
+            check_extent(&m, turn.R, move);
+            ++told;
+        }
+        release(&plate);
+    }
+    CHECK(told >= 4);
+}
+
 /* Outlines are looked for in meshes of so many vertices: of larger ones nothing is worked out that
  * would take the product of triangles and vertices. */
 static void what_is_outermost_is_asked_of_meshes_that_have_outlines(void)
@@ -222,6 +335,7 @@ int main(void)
     RUN(a_cap_at_a_border_comes_off_to_the_side);
     RUN(a_solid_within_the_body_is_pushed_out_by_the_way_its_pieces_tell);
     RUN(frames_on_each_other_touch_in_corners_and_crossings);
+    RUN(rounded_plates_touch_only_where_both_are);
     RUN(what_is_outermost_is_asked_of_meshes_that_have_outlines);
     return check_finish();
 }

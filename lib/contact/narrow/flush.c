@@ -35,6 +35,7 @@ typedef struct cap {
     uint32_t id[SE3DI_FACE_CORNERS];
     int corner_count, count, part_count;
     uint32_t all[NEAR], near[NEAR]; /* about the solid; of the part */
+    uint8_t is_border[NEAR][3];     /* sides of these beyond which the part ends */
 } cap;
 
 static void normal_of(const cap *c, uint32_t triangle, double n[3])
@@ -160,8 +161,7 @@ static int is_within(const cap *c, const double x[3], double margin)
             double at[3];
             ends[0] = se3di_mesh_corner(s, c->near[k], n);
             ends[1] = ends[2] = se3di_mesh_corner(s, c->near[k], n + 1);
-            if (!se3di_mesh_edge_is_level(s, c->near[k], n) &&
-                se3di_triangle_nearest(ends, x, at, NULL) < margin * margin) {
+            if (c->is_border[k][n] && se3di_triangle_nearest(ends, x, at, NULL) < margin * margin) {
                 return 0;
             }
         }
@@ -334,7 +334,7 @@ static void touch_part(cap *c)
     touch_corners(c);
     for (int k = 0; k < c->part_count; ++k) {
         for (uint32_t side = 0; side < 3; ++side) {
-            if (!se3di_mesh_edge_is_level(c->m->mesh->shape, c->near[k], side)) {
+            if (c->is_border[k][side]) {
                 touch_side(c, c->near[k], side);
             }
         }
@@ -369,7 +369,7 @@ static int has_hole(const cap *c)
         for (uint32_t side = 0; side < 3; ++side) {
             double way[3], share[2];
             const double *a = se3di_mesh_corner(s, c->near[k], side);
-            if (se3di_mesh_edge_is_level(s, c->near[k], side)) {
+            if (!c->is_border[k][side]) {
                 continue;
             }
             se3di_sub(se3di_mesh_corner(s, c->near[k], side + 1), a, way);
@@ -384,11 +384,17 @@ static int has_hole(const cap *c)
 
 static void keep_part(cap *c)
 {
+    const uint32_t *beyond = se3di_mesh_beyond(c->m->mesh->shape);
     c->part_count = 0;
     for (int k = 0; k < c->count; ++k) {
-        if (is_of_part(c, c->all[k])) {
-            c->near[c->part_count++] = c->all[k];
+        if (!is_of_part(c, c->all[k])) {
+            continue;
         }
+        for (size_t side = 0; side < 3; ++side) {
+            const uint32_t next = beyond[3 * (size_t)c->all[k] + side];
+            c->is_border[c->part_count][side] = (uint8_t)!is_of_part(c, next);
+        }
+        c->near[c->part_count++] = c->all[k];
     }
 }
 

@@ -261,7 +261,9 @@ static int is_of_part(const pair *p, int which, uint32_t triangle)
     return se3di_dot(n, o->n) > FACING;
 }
 
-/* Returns 0 if there are too many sides. */
+/* Sides beyond which the mesh goes on off the part: of triangles that are of it or not, not of
+ * planes that are the same or not, so that the outline is closed. Returns 0 if there are too many.
+ */
 static int find_outline(pair *p, int which)
 {
     outline *o = &p->part[which];
@@ -269,8 +271,11 @@ static int find_outline(pair *p, int which)
     note_vertices(p, which);
     o->count = 0;
     for (uint32_t t = 0; t < s->triangle_count; ++t) {
-        for (uint32_t k = 0; k < 3 && is_of_part(p, which, t); ++k) {
-            if (se3di_mesh_edge_is_level(s, t, k)) {
+        if (!is_of_part(p, which, t)) {
+            continue;
+        }
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (is_of_part(p, which, se3di_mesh_beyond(s)[3 * (size_t)t + k])) {
                 continue;
             }
             if (o->count == SIDES) {

@@ -23,8 +23,6 @@
 #define AT_EDGE         1e-6  /* of its length: a triangle is at the middle of an edge */
 #define COPLANAR        0.999 /* cosine of the angle of triangles that are one */
 #define TOLD            4     /* bits of an edge */
-#define LEVEL           8
-#define FLUSH           1e-6  /* of the size: the next triangle is in the plane of a face */
 #define ON_TRIANGLE     1e-8  /* of the radius: a point is on a triangle */
 #define FLAT            1e-9  /* of the size: a vertex is in the plane of a face */
 #define CONVEX_MOST     1000  /* triangles; more are found faster by the tree */
@@ -182,11 +180,6 @@ int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_
     return shape->rows == 0 && (se3di_mesh_facets(shape)[triangle].edges[side] & TOLD) != 0;
 }
 
-int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side)
-{
-    return (se3di_mesh_facets(shape)[triangle].edges[side] & LEVEL) != 0;
-}
-
 /* Which way the triangle beyond an edge leads. */
 static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t beyond)
 {
@@ -199,8 +192,8 @@ static void note_bend(se3di_shape *s, uint32_t triangle, uint32_t side, uint32_t
         most = fmax(most, se3di_dot(d, f->normal));
         size = fmax(size, se3di_norm(d));
     }
-    f->edges[side] = (uint8_t)((least < -FLAT * size ? 1 : 0) | (most > FLAT * size ? 2 : 0) |
-                               (fmax(most, -least) < FLUSH * size ? LEVEL : 0));
+    f->edges[side] = (uint8_t)((least < -FLAT * size ? 1 : 0) | (most > FLAT * size ? 2 : 0));
+    se3di_mesh_beyond(s)[3 * (size_t)triangle + side] = beyond;
 }
 
 static se3d_status find_sense(const se3d_allocator *allocator, se3di_shape *s);
@@ -224,11 +217,12 @@ static se3d_status fill(const se3d_allocator *allocator, const double *vertices,
     builder b = {vertices, shape->triangles, nodes, 0};
     build(&b, 0, kept);
     se3d_status status = SE3D_ERR_NO_MEMORY;
-    const size_t bytes = b.node_count * sizeof *nodes + kept * sizeof(facet);
+    const size_t bytes = b.node_count * sizeof *nodes + kept * SE3DI_MESH_BYTES;
     shape->tree = se3di_alloc(allocator, bytes, 1);
     if (shape->tree) {
         shape->tree_bytes = bytes;
         memcpy(shape->tree, nodes, b.node_count * sizeof *nodes);
+        memset(se3di_mesh_beyond(shape), 0, 3 * (size_t)kept * sizeof(uint32_t));
         fill_facets(shape);
         status = find_sense(allocator, shape);
         shape->convex = make_convex(shape);
@@ -851,6 +845,10 @@ static int32_t make_convex(se3di_shape *s)
         const uint8_t first = edges[0];
         edges[0] = edges[2];
         edges[2] = first;
+        uint32_t *beyond = se3di_mesh_beyond(s) + 3 * k;
+        const uint32_t last = beyond[2];
+        beyond[2] = beyond[0];
+        beyond[0] = last;
     }
     s->closed = 1;
     return 1;

@@ -72,8 +72,6 @@ int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t
 /* Whether an edge of a closed mesh need not be looked at from this triangle: it is about flat, or
  * the triangle beyond it, which comes first, tells of it. */
 int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side);
-/* Whether the triangle beyond an edge of a closed mesh is in the same plane, but for rounding. */
-int se3di_mesh_edge_is_level(const se3di_shape *shape, uint32_t triangle, uint32_t side);
 /* Whether nothing of a closed mesh is beyond the plane of a triangle, as far as is known: of meshes
  * of more vertices than outlines are looked for all triangles count as such. */
 int se3di_mesh_is_outermost(const se3di_shape *shape, uint32_t triangle);
