@@ -122,6 +122,113 @@ static void a_cap_at_a_border_comes_off_to_the_side(void)
     }
 }
 
+/* ---- what else is as high as a side ---- */
+
+enum { LOWER_RIDGE, LEVEL_RIDGE, TIP, SLOW_FLANK, SLOW_RIDGE, BESIDES };
+
+/* In the x-z plane: a part ends at a groove, beyond which there is a ridge; or at a flank. */
+static const prism beside_part[] = {
+    {"lower ridge",
+     9,
+     {{-1, -1},
+      {1.4, -1},
+      {1.4, -.5},
+      {1.2, -.5},
+      {1, -.002},
+      {.8, -.5},
+      {0, -.5},
+      {0, 0},
+      {-1, 0}},
+     0,
+     {{0}}},
+    {"level ridge",
+     9,
+     {{-1, -1}, {1.4, -1}, {1.4, -.5}, {1.2, -.5}, {1, 0}, {.8, -.5}, {0, -.5}, {0, 0}, {-1, 0}},
+     0,
+     {{0}}},
+    {"slow flank",
+     8,
+     {{-1, -1}, {0, -1}, {.5, -.9}, {1, -1}, {4, -1}, {4, -.02}, {0, 0}, {-1, 0}},
+     0,
+     {{0}}}};
+
+/* A part for x < 0 and a roof beyond it, whose ridge falls off by 0.005. */
+static const prism_mesh slow_ridge = {
+    .points = {-1, -.5, 0,  0,  -.5, 0,  0, 0,   0,  0, .5,  0,  -1, .5, 0,  4, 0,  -.02,
+               -1, -.5, -1, -1, .5,  -1, 0, -.5, -1, 4, -.5, -1, 0,  .5, -1, 4, .5, -1},
+    .faces = {0,  1,  2, 0, 2, 3,  0,  3,  4, 2, 1,  8,  3,  2, 10, 2, 8, 9, 2,  9,
+              5,  10, 2, 5, 5, 11, 10, 11, 5, 9, 8,  10, 11, 8, 11, 9, 6, 7, 10, 6,
+              10, 8,  6, 8, 1, 6,  1,  0,  4, 3, 10, 4,  10, 7, 0,  4, 7, 0, 7,  6},
+    .point_count = 12,
+    .face_count = 20};
+
+/* In three strips, so that triangles about the solid are not at the ends of its sides. */
+static void cut_in_strips(const prism *p, prism_mesh *t)
+{
+    const uint32_t n = (uint32_t)p->corners, layers[4] = {0, 2 * n, 3 * n, n};
+    t->face_count = 2 * (p->corners - 2); /* its ends */
+    t->point_count = 4 * p->corners;
+    for (uint32_t k = 0; k < 3 * n; ++k) {
+        const uint32_t *l = layers + k / n, a = k % n, b = (a + 1) % n;
+        const uint32_t side[6] = {l[0] + a, l[1] + a, l[0] + b, l[0] + b, l[1] + a, l[1] + b};
+        memcpy(t->faces + 3 * t->face_count, side, sizeof side);
+        t->face_count += 2;
+    }
+    for (uint32_t k = 0; k < 2 * n; ++k) {
+        memcpy(t->points + 3 * (2 * n + k), t->points + 3 * k, 3 * sizeof *t->points);
+        t->points[3 * (2 * n + k) + 1] *= 0.6;
+    }
+}
+
+static void make_beside(int kind, se3di_shape *s)
+{
+    const se3d_allocator standard = se3di_alloc_default();
+    const prism *p = &beside_part[kind == SLOW_FLANK ? 2 : kind > 0];
+    const double half = kind == TIP ? 0.2 : 1.5;
+    prism_mesh t =
+        kind == SLOW_RIDGE ? slow_ridge : prism_make(p, 1.0, half, (const double[2]){0.0, 0.0}, 0);
+    if (kind == SLOW_FLANK) {
+        cut_in_strips(p, &t);
+    }
+    if (kind == TIP) {
+        t.points[3 * 4 + 2] = -0.3; /* the other end of the ridge */
+    }
+    *s = (se3di_shape){.kind = SE3DI_SHAPE_MESH};
+    CHECK(!se3di_mesh_build(&standard, t.points, t.point_count, t.faces, t.face_count, s));
+    CHECK(s->closed);
+    s->bound = se3di_shape_bound(s);
+    piece_count = s->piece_count;
+}
+
+/* A cap that leans by 0.009 is 0.0009 deep at the end of the part, and deeper in what is beyond. */
+static void caps_touch_all_that_is_as_high_as_they_are(void)
+{
+    static const double depth[BESIDES] = {0.0079, 0.0099, 0.0099, 0.0053, 0.0053};
+    const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    const double lean = 0.009, p[4] = {cos(0.5 * lean), 0.0, sin(0.5 * lean), 0.0};
+    se3di_shape cap = {.kind = SE3DI_SHAPE_CYLINDER, .radius = 0.8, .half_length = 0.4};
+    cap.bound = se3di_shape_bound(&cap);
+    for (int k = 0; k < 2 * BESIDES; ++k) {
+        se3di_shape mesh;
+        se3di_shape_pose at = {.x = {0.3, 0.0, -0.4 * lean}};
+        se3di_manifold m;
+        double deepest = 0.0;
+        make_beside(k / 2, &mesh);
+        mesh.piece_count = k % 2 ? piece_count : 0;
+        se3di_quat_to_matrix(p, at.R);
+        for (int r = 0; r < 3; ++r) {
+            at.x[r] += cap.half_length * at.R[3 * r + 2];
+        }
+        se3di_narrow_find(&cap, &at, &mesh, &of, &m);
+        for (uint32_t n = 0; n < m.count; ++n) {
+            deepest = fmax(deepest, m.points[n].overlap);
+        }
+        CHECK(deepest > 0.98 * depth[k / 2]);
+        CHECK(deepest < 1.02 * depth[k / 2] || k == 2 * SLOW_RIDGE); /* that takes pieces */
+        release(&mesh);
+    }
+}
+
 /* A step may carry it in. The bars of the frame are 0.01 m wide. */
 static void a_solid_within_the_body_is_pushed_out_by_the_way_its_pieces_tell(void)
 {
@@ -216,33 +323,28 @@ static void add_quarters(const double a[3], const double b[3], const double c[3]
     add_quarters(ab, bc, ca, times - 1, to);
 }
 
-#define QUARTERS 4
-#define CORNERS  (3 * 20 * 256) /* of the plate's 20 triangles */
-
-/* An angle plate as a file of STL has it: oblique, of single precision, of triangles so small that
- * neighbours are not in one plane by more than 1e-6 of their size. */
-static void make_plate(const double R[9], se3di_shape *s)
+/* As a file of STL has it: oblique and of single precision, each triangle in 256. */
+static void make_fine(const prism_mesh *t, const double R[9], se3di_shape *s)
 {
     const se3d_allocator standard = se3di_alloc_default();
-    const prism_mesh t = prism_make(&prisms[L], 0.02, HALF, (const double[2]){0.0, 0.0}, 0);
-    double *points = malloc(3 * CORNERS * sizeof *points), *end = points;
-    uint32_t *faces = malloc(CORNERS * sizeof *faces);
+    const size_t count = 3 * t->face_count * 256;
+    double *points = malloc(3 * count * sizeof *points), *end = points;
+    uint32_t *faces = malloc(count * sizeof *faces);
     CHECK(points && faces);
-    for (size_t k = 0; k < t.face_count; ++k) {
-        const uint32_t *f = t.faces + 3 * k;
-        add_quarters(t.points + 3 * f[0], t.points + 3 * f[1], t.points + 3 * f[2], QUARTERS, &end);
+    for (size_t k = 0; k < t->face_count; ++k) {
+        const uint32_t *f = t->faces + 3 * k;
+        add_quarters(t->points + 3 * f[0], t->points + 3 * f[1], t->points + 3 * f[2], 4, &end);
     }
-    CHECK(end == points + 3 * CORNERS);
-    for (size_t k = 0; k < CORNERS; ++k) {
+    for (size_t k = 0; k < count; ++k) {
         double x[3];
         se3di_mul(R, points + 3 * k, x);
-        for (int r = 0; r < 3; ++r) {
-            points[3 * k + (size_t)r] = (double)(float)x[r];
+        for (size_t r = 0; r < 3; ++r) {
+            points[3 * k + r] = (double)(float)x[r];
         }
         faces[k] = (uint32_t)k;
     }
     *s = (se3di_shape){.kind = SE3DI_SHAPE_MESH};
-    CHECK(!se3di_mesh_build(&standard, points, CORNERS, faces, CORNERS / 3, s));
+    CHECK(!se3di_mesh_build(&standard, points, count, faces, count / 3, s));
     CHECK(s->closed);
     s->bound = se3di_shape_bound(s);
     piece_count = s->piece_count;
@@ -287,13 +389,14 @@ static void rounded_plates_touch_only_where_both_are(void)
 {
     const se3di_shape_pose of = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     const double move[3] = {0.004, 2.0 * HALF - 1e-6, 0.003};
+    const prism_mesh t = prism_make(&prisms[L], 0.02, HALF, (const double[2]){0.0, 0.0}, 0);
     uint64_t seed = 3;
     int told = 0;
     for (int k = 0; k < 8; ++k) {
         se3di_shape plate;
         se3di_shape_pose turn, at = of;
         poses_turn(&seed, &turn);
-        make_plate(turn.R, &plate);
+        make_fine(&t, turn.R, &plate);
         se3di_mul(turn.R, move, at.x);
         const se3di_solid below = {&plate, &of}, above = {&plate, &at};
         se3di_manifold m = {.count = 0};
@@ -333,6 +436,7 @@ int main(void)
 {
     RUN(solids_over_a_hole_touch_in_their_corners_and_those_of_the_hole);
     RUN(a_cap_at_a_border_comes_off_to_the_side);
+    RUN(caps_touch_all_that_is_as_high_as_they_are);
     RUN(a_solid_within_the_body_is_pushed_out_by_the_way_its_pieces_tell);
     RUN(frames_on_each_other_touch_in_corners_and_crossings);
     RUN(rounded_plates_touch_only_where_both_are);

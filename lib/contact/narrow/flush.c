@@ -15,13 +15,15 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAN  1e-2 /* sine of the angle between cap and part at most */
-#define DEEP  0.1  /* of the size: the deepest at most */
-#define LEVEL 1e-6 /* of the size: what is in one plane */
-#define SLACK 1e-4 /* of the extent: places that are one; a rim is over the part in spite of it */
-#define WIDE  4.0  /* times the depth: so far from all sides there is a place at least */
-#define NEAR  512  /* triangles about the solid at most */
-#define TRIES 4    /* directions in which a face is looked for */
+#define LEAN  1e-2  /* sine of the angle between cap and part at most */
+#define DEEP  0.1   /* of the size: the deepest at most */
+#define LEVEL 1e-6  /* of the size: what is in one plane */
+#define SLACK 1e-4  /* of the extent: places that are one; a rim is over the part in spite of it */
+#define WIDE  4.0   /* times the depth: so far from all sides there is a place at least */
+#define STEEP 0.1   /* sine of the angle by which walls of the part fall off at least */
+#define SLOW  0.995 /* about its cosine */
+#define NEAR  512   /* triangles about the solid at most */
+#define TRIES 4     /* directions in which a face is looked for */
 
 /* All in the frame of the mesh. */
 typedef struct cap {
@@ -50,6 +52,13 @@ static double height_of(const cap *c, const double x[3])
     double d[3];
     se3di_sub(x, c->middle, d);
     return c->height + se3di_dot(d, c->n);
+}
+
+/* The same of a corner of a triangle. */
+static double height_at(const cap *c, uint32_t triangle, uint32_t k)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    return height_of(c, s->vertices + 3 * (size_t)s->triangles[3 * (size_t)triangle + k]);
 }
 
 static void note_near(void *ctx, uint32_t triangle)
@@ -91,27 +100,10 @@ static int find_part(cap *c)
     return found;
 }
 
-/* Whether nothing about the solid rises above the part, and nothing else is as high as its side. */
-static int is_highest(const cap *c)
-{
-    for (int t = 0; t < c->count; ++t) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (uint32_t k = 0; k < 3; ++k) {
-            const double height = height_of(c, se3di_mesh_corner(c->m->mesh->shape, c->all[t], k));
-            low = fmin(low, height);
-            high = fmax(high, height);
-        }
-        if (high > c->level || (low < -c->level && low > -c->deepest - c->level)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
 static int is_of_part(const cap *c, uint32_t triangle)
 {
     for (uint32_t k = 0; k < 3; ++k) {
-        if (!(fabs(height_of(c, se3di_mesh_corner(c->m->mesh->shape, triangle, k))) < c->level)) {
+        if (!(fabs(height_at(c, triangle, k)) < c->level)) {
             return 0;
         }
     }
@@ -382,20 +374,108 @@ static int has_hole(const cap *c)
     return 0;
 }
 
-static void keep_part(cap *c)
+/* ---- what is about the solid ---- */
+
+/* Of the corners of a triangle, as bits, which are in the plane of the part; -1: one is not, but as
+ * high as the side. */
+static int find_level(const cap *c, uint32_t triangle)
 {
-    const uint32_t *beyond = se3di_mesh_beyond(c->m->mesh->shape);
+    int level = 0;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const double height = height_at(c, triangle, k);
+        if (fabs(height) < c->level) {
+            level |= 1 << k;
+        } else if (height > fmin(0.0, -c->deepest - c->level)) {
+            return -1;
+        }
+    }
+    return level;
+}
+
+static void keep_part(cap *c, uint32_t triangle)
+{
+    const uint32_t *beyond = se3di_mesh_beyond(c->m->mesh->shape) + 3 * (size_t)triangle;
+    for (int side = 0; side < 3; ++side) {
+        c->is_border[c->part_count][side] = (uint8_t)!is_of_part(c, beyond[side]);
+    }
+    c->near[c->part_count++] = triangle;
+}
+
+/* Whether a corner of the mesh, in the plane of the part, is of it or not about the solid. */
+static int is_of_corners(const cap *c, uint32_t vertex)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    const double *x = s->vertices + 3 * (size_t)vertex;
+    for (int k = 0; k < c->part_count; ++k) {
+        const uint32_t *own = s->triangles + 3 * (size_t)c->near[k];
+        if (own[0] == vertex || own[1] == vertex || own[2] == vertex) {
+            return 1;
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (x[k] < c->low[k] || x[k] > c->high[k]) {
+            return 1;
+        }
+    }
+    return is_over(c, x, c->level); /* a mesh may have a corner several times */
+}
+
+/* Whether a side leads out of the plane of the part and falls off slowly, not in a steep wall. */
+static int falls_slowly(const cap *c, uint32_t triangle, uint32_t side)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    const uint32_t next = se3di_mesh_beyond(s)[3 * (size_t)triangle + side];
+    double way[3], n[3], other[3];
+    se3di_sub(se3di_mesh_corner(s, triangle, side + 1), se3di_mesh_corner(s, triangle, side), way);
+    const double fall = se3di_dot(way, c->n);
+    if (fall * fall > STEEP * STEEP * se3di_dot(way, way)) {
+        return 0;
+    }
+    normal_of(c, triangle, n);
+    normal_of(c, next, other);
+    return se3di_dot(n, other) < SLOW || se3di_dot(n, c->n) > SLOW;
+}
+
+/* Whether a triangle that has corners in the plane of the part is where the part ends, and falls
+ * off from there faster than the side, which leans, can. */
+static int is_wall(const cap *c, uint32_t triangle)
+{
+    const se3di_shape *s = c->m->mesh->shape;
+    const int level = find_level(c, triangle), is_tip = (level & (level - 1)) == 0;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const int first = level >> k & 1, second = level >> (k + 1) % 3 & 1;
+        const size_t at = 3 * (size_t)triangle + k;
+        if ((first && second && !is_of_part(c, se3di_mesh_beyond(s)[at])) ||
+            (first != second && falls_slowly(c, triangle, k)) ||
+            (first && is_tip && !is_of_corners(c, s->triangles[at]))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Find the part's triangles. Returns whether nothing about the solid rises above the part, and
+ * nothing else is as high as its side. */
+static int keep_parts(cap *c)
+{
+    uint32_t walls[NEAR];
+    int wall_count = 0;
     c->part_count = 0;
     for (int k = 0; k < c->count; ++k) {
-        if (!is_of_part(c, c->all[k])) {
-            continue;
+        const int level = find_level(c, c->all[k]);
+        if (level < 0) {
+            return 0;
         }
-        for (size_t side = 0; side < 3; ++side) {
-            const uint32_t next = beyond[3 * (size_t)c->all[k] + side];
-            c->is_border[c->part_count][side] = (uint8_t)!is_of_part(c, next);
+        if (level == 7) {
+            keep_part(c, c->all[k]);
+        } else if (level > 0) {
+            walls[wall_count++] = c->all[k];
         }
-        c->near[c->part_count++] = c->all[k];
     }
+    while (wall_count > 0 && is_wall(c, walls[wall_count - 1])) {
+        --wall_count;
+    }
+    return wall_count == 0;
 }
 
 /* ---- the sides of a solid ---- */
@@ -419,11 +499,7 @@ static int lies_flush(cap *c)
     double lowest[3];
     (void)se3di_mesh_lowest(c->m, c->n, lowest);
     c->deepest = -height_of(c, lowest);
-    if (!is_highest(c)) {
-        return 0;
-    }
-    keep_part(c);
-    return !(c->deepest > 0.0) || are_wide(c);
+    return keep_parts(c) && (!(c->deepest > 0.0) || are_wide(c));
 }
 
 /* Whether a cap lies on a part of the mesh, or over it. */
