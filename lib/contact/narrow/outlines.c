@@ -47,7 +47,8 @@ typedef struct outline {
     size_t count;
     side list[SIDES];
     box boxes[SIDES / CHUNK];
-    uint64_t is_in[SE3DI_MESH_OUTLINE_MOST / 64]; /* bits: vertices in the plane */
+    uint64_t is_in[SE3DI_MESH_OUTLINE_MOST / 64];  /* bits: vertices in the plane; */
+    uint64_t is_own[SE3DI_MESH_OUTLINE_MOST / 64]; /* of the part */
 } outline;
 
 typedef struct place {
@@ -247,15 +248,24 @@ static void add_side(const pair *p, outline *o, uint32_t triangle, uint32_t edge
     ++o->count;
 }
 
+static int has_bit(const uint64_t *bits, uint32_t k)
+{
+    return (int)(bits[k / 64] >> k % 64 & 1u);
+}
+
+/* Which corners of a triangle are in the plane, as bits. */
+static int find_level(const outline *o, uint32_t triangle)
+{
+    const uint32_t *v = o->solid->shape->triangles + 3 * (size_t)triangle;
+    return has_bit(o->is_in, v[0]) | has_bit(o->is_in, v[1]) << 1 | has_bit(o->is_in, v[2]) << 2;
+}
+
 static int is_of_part(const pair *p, int which, uint32_t triangle)
 {
     const outline *o = &p->part[which];
-    const uint32_t *v = o->solid->shape->triangles + 3 * (size_t)triangle;
     double n[3];
-    for (int k = 0; k < 3; ++k) {
-        if (!(o->is_in[v[k] / 64] >> v[k] % 64 & 1u)) {
-            return 0;
-        }
+    if (find_level(o, triangle) != 7) {
+        return 0;
     }
     normal_of(p, which, triangle, n);
     return se3di_dot(n, o->n) > FACING;
@@ -269,12 +279,15 @@ static int find_outline(pair *p, int which)
     outline *o = &p->part[which];
     const se3di_shape *s = o->solid->shape;
     note_vertices(p, which);
+    memset(o->is_own, 0, (s->vertex_count + 63) / 64 * sizeof *o->is_own);
     o->count = 0;
     for (uint32_t t = 0; t < s->triangle_count; ++t) {
         if (!is_of_part(p, which, t)) {
             continue;
         }
         for (uint32_t k = 0; k < 3; ++k) {
+            const uint32_t own = s->triangles[3 * (size_t)t + k];
+            o->is_own[own / 64] |= (uint64_t)1 << own % 64;
             if (is_of_part(p, which, se3di_mesh_beyond(s)[3 * (size_t)t + k])) {
                 continue;
             }
@@ -338,6 +351,10 @@ static int is_over(const outline *o, const double x[2], double slack)
         if (k % CHUNK == 0 &&
             (x[1] < b->low[1] - slack || x[1] > b->high[1] + slack || x[0] < b->low[0] - slack)) {
             k += CHUNK - 1; /* none of these is at x, or left of it */
+            continue;
+        }
+        if ((s->a[1] > x[1] + slack && s->b[1] > x[1] + slack) ||
+            (s->a[1] < x[1] - slack && s->b[1] < x[1] - slack)) {
             continue;
         }
         if ((s->a[1] > x[1]) != (s->b[1] > x[1])) {
@@ -463,6 +480,40 @@ static void find_crossings(pair *p)
             meet_sides(p, e, &b->list[n]);
         }
     }
+}
+
+/* Whether a triangle has in the plane only what is of the part, not a ridge or a tip of its own. */
+static int ends_part(const pair *p, int which, uint32_t triangle)
+{
+    const outline *o = &p->part[which];
+    const se3di_shape *s = o->solid->shape;
+    const int level = find_level(o, triangle);
+    for (uint32_t k = 0; k < 3 && level > 0 && level < 7; ++k) {
+        const size_t at = 3 * (size_t)triangle + k;
+        const int first = level >> k & 1, second = level >> (k + 1) % 3 & 1;
+        double x[3], flat[2];
+        if (first && second && find_level(o, se3di_mesh_beyond(s)[at]) < 7) {
+            return 0;
+        }
+        if (first && !has_bit(o->is_own, s->triangles[at])) { /* or that corner is there twice */
+            carry(p, which, se3di_mesh_corner(s, triangle, k), x);
+            flatten(p, x, flat);
+            if (!is_over(o, flat, p->slack)) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+static int is_whole(const pair *p, int which)
+{
+    const size_t count = p->part[which].solid->shape->triangle_count;
+    uint32_t k = 0;
+    while (k < count && ends_part(p, which, k)) {
+        ++k;
+    }
+    return k == count;
 }
 
 /* Whether x is over a part and no side of it is nearer. */
@@ -594,7 +645,7 @@ int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_mani
     }
     se3di_perpendicular(p.part[1].n, p.u);
     se3di_cross(p.part[1].n, p.u, p.w);
-    if (!find_outline(&p, 0) || !find_outline(&p, 1)) {
+    if (!find_outline(&p, 0) || !find_outline(&p, 1) || !is_whole(&p, 0) || !is_whole(&p, 1)) {
         return 0;
     }
     find_corners(&p, 0);
