@@ -108,14 +108,7 @@ static void turn_axes(se3di_linear *linear, double h)
         se3di_quat_normalize(half, half);
         se3di_quat_mul(p0, half, p); /* axes -> ground */
         se3di_quat_to_matrix(p, A);
-        double *B = linear->turn + 9 * (size_t)k;
-        const double *body_A = assembly->model->frames[body].A;
-        for (int r = 0; r < 3; ++r) {
-            for (int c = 0; c < 3; ++c) {
-                B[3 * r + c] =
-                    body_A[r] * A[c] + body_A[3 + r] * A[3 + c] + body_A[6 + r] * A[6 + c];
-            }
-        }
+        se3di_mat_mul_transposed(assembly->model->frames[body].A, A, linear->turn + 9 * (size_t)k);
     }
 }
 

@@ -242,12 +242,7 @@ static void add_couplings(const se3di_frame *i, const se3di_frame *j, const doub
                           const double a_j[3], const se3di_fused_blocks *blocks)
 {
     double R[9], left[9], right[9], tilde[9];
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            R[3 * r + c] =
-                i->A[r] * j->A[c] + i->A[3 + r] * j->A[3 + c] + i->A[6 + r] * j->A[6 + c];
-        }
-    }
+    se3di_mat_mul_transposed(i->A, j->A, R);
     se3di_tilde(alpha, tilde);
     se3di_mat_mul(tilde, R, left);
     se3di_tilde(a_j, tilde);

@@ -88,6 +88,16 @@ static inline void se3di_mat_mul(const double A[9], const double B[9], double ou
     }
 }
 
+/* out = A^T B */
+static inline void se3di_mat_mul_transposed(const double A[9], const double B[9], double out[9])
+{
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) {
+            out[3 * r + c] = A[r] * B[c] + A[3 + r] * B[3 + c] + A[6 + r] * B[6 + c];
+        }
+    }
+}
+
 /* x = A^-1 b, A row-major. */
 static inline void se3di_solve3(const double A[9], const double b[3], double x[3])
 {

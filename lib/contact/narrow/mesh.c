@@ -636,18 +636,6 @@ static void find_center(meeting *m)
     se3di_solid_to_local(m->mesh, m->solid->at->x, m->origin);
 }
 
-static void find_turn(meeting *m)
-{
-    const double *solid = m->solid->at->R, *mesh = m->mesh->at->R;
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            m->R[3 * r + c] =
-                solid[r] * mesh[c] + solid[3 + r] * mesh[3 + c] + solid[6 + r] * mesh[6 + c];
-        }
-    }
-    se3di_solid_to_local(m->solid, m->mesh->at->x, m->x);
-}
-
 static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
                   se3di_manifold *manifold)
 {
@@ -659,7 +647,8 @@ static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
     m->size = se3di_shape_contact_size(s);
     m->has_pieces = mesh->shape->piece_count > 0 && !se3di_shape_is(s, SE3DI_SHAPE_IS_SWEPT);
     find_center(m);
-    find_turn(m);
+    se3di_mat_mul_transposed(m->solid->at->R, m->mesh->at->R, m->R);
+    se3di_solid_to_local(m->solid, m->mesh->at->x, m->x);
     find_side(m);
 }
 

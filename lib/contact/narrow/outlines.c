@@ -620,12 +620,7 @@ static void begin(pair *p, const se3di_solid *i, const se3di_solid *j)
     p->slack = SLACK * fmin(i->shape->bound, j->shape->bound);
     p->count = 0;
     se3di_solid_to_local(j, i->at->x, p->x);
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            p->R[3 * r + c] = j->at->R[r] * i->at->R[c] + j->at->R[3 + r] * i->at->R[3 + c] +
-                              j->at->R[6 + r] * i->at->R[6 + c];
-        }
-    }
+    se3di_mat_mul_transposed(j->at->R, i->at->R, p->R);
 }
 
 int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)

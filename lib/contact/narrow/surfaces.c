@@ -669,13 +669,7 @@ static void search_in(search *s, const se3di_solid *own, const se3di_solid *othe
     memset(s->outside, 0, sizeof s->outside);
     s->count = 0;
     se3di_solid_to_local(other, own->at->x, s->x);
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            s->R[3 * r + c] = other->at->R[r] * own->at->R[c] +
-                              other->at->R[3 + r] * own->at->R[3 + c] +
-                              other->at->R[6 + r] * own->at->R[6 + c];
-        }
-    }
+    se3di_mat_mul_transposed(other->at->R, own->at->R, s->R);
     find_sense(s);
     s->deepest = 0.0;
     if (s->sense != 0) {
