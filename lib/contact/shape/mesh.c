@@ -607,52 +607,47 @@ int se3di_mesh_crosses(const se3di_shape *shape, const double from[3], const dou
     return se3di_mesh_find_cuts(shape, from, to, 1, &cut) > 0;
 }
 
-static int is_in_box(const mesh_node *node, const double low[3], const double high[3])
+/* The nodes of a tree that are still to be looked at. */
+typedef struct box_walk {
+    uint32_t stack[STACK_SIZE];
+    int depth;
+} box_walk;
+
+/* The next leaf that meets a box; NULL: none more. */
+static const mesh_node *next_leaf(const mesh_node *nodes, const double low[3], const double high[3],
+                                  box_walk *walk)
 {
-    int meets = 1;
-    for (int a = 0; a < 3; ++a) {
-        meets = meets && node->low[a] <= high[a] && node->high[a] >= low[a];
+    while (walk->depth > 0) {
+        const uint32_t at = walk->stack[--walk->depth];
+        const mesh_node *node = &nodes[at];
+        int meets = 1;
+        for (int a = 0; a < 3; ++a) {
+            meets = meets && node->low[a] <= high[a] && node->high[a] >= low[a];
+        }
+        if (meets && node->count > 0) {
+            return node;
+        }
+        if (meets) {
+            walk->stack[walk->depth++] = node->right;
+            walk->stack[walk->depth++] = at + 1;
+        }
     }
-    return meets;
+    return NULL;
 }
 
 int se3di_mesh_meets_box(const se3di_shape *shape, const double low[3], const double high[3])
 {
-    const mesh_node *nodes = shape->tree;
-    uint32_t stack[STACK_SIZE] = {0};
-    int depth = 1;
-    while (depth > 0) {
-        const uint32_t at = stack[--depth];
-        const mesh_node *node = &nodes[at];
-        const int meets = is_in_box(node, low, high);
-        if (meets && node->count > 0) {
-            return 1;
-        }
-        if (meets) {
-            stack[depth++] = node->right;
-            stack[depth++] = at + 1;
-        }
-    }
-    return 0;
+    box_walk walk = {{0}, 1};
+    return next_leaf(shape->tree, low, high, &walk) != NULL;
 }
 
 void se3di_mesh_visit_box(const se3di_shape *shape, const double low[3], const double high[3],
                           void (*visitor)(void *ctx, uint32_t triangle), void *ctx)
 {
-    const mesh_node *nodes = shape->tree;
-    uint32_t stack[STACK_SIZE] = {0};
-    int depth = 1;
-    while (depth > 0) {
-        const uint32_t at = stack[--depth];
-        const mesh_node *node = &nodes[at];
-        if (!is_in_box(node, low, high)) {
-            continue;
-        }
-        if (node->count == 0) {
-            stack[depth++] = node->right;
-            stack[depth++] = at + 1;
-        }
-        for (uint32_t k = node->begin; k < node->begin + node->count; ++k) {
+    box_walk walk = {{0}, 1};
+    const mesh_node *leaf;
+    while ((leaf = next_leaf(shape->tree, low, high, &walk)) != NULL) {
+        for (uint32_t k = leaf->begin; k < leaf->begin + leaf->count; ++k) {
             visitor(ctx, k);
         }
     }
