@@ -103,6 +103,14 @@ static inline void poses_hull(poses_solid *s, uint64_t *seed)
     se3di_free(&allocator, hull.planes, 4 * hull.triangle_count, sizeof(double));
 }
 
+/* The arrays of a hull, which are within the solid, after it was copied, too. */
+static inline void poses_link(poses_solid *s)
+{
+    s->shape.vertices = s->vertices;
+    s->shape.triangles = s->triangles;
+    s->shape.planes = s->planes;
+}
+
 static inline void poses_random_solid(int kind, uint64_t *seed, poses_solid *s)
 {
     memset(s, 0, sizeof *s);
@@ -114,9 +122,7 @@ static inline void poses_random_solid(int kind, uint64_t *seed, poses_solid *s)
     }
     if (kind == SE3DI_SHAPE_HULL) {
         poses_hull(s, seed);
-        s->shape.vertices = s->vertices;
-        s->shape.triangles = s->triangles;
-        s->shape.planes = s->planes;
+        poses_link(s);
     }
     s->shape.bound = se3di_shape_bound(&s->shape);
 }

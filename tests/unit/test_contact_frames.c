@@ -20,9 +20,7 @@ typedef struct pair {
 static void link_hull(poses_solid *s)
 {
     if (s->shape.kind == SE3DI_SHAPE_HULL) {
-        s->shape.vertices = s->vertices;
-        s->shape.triangles = s->triangles;
-        s->shape.planes = s->planes;
+        poses_link(s);
         se3di_hull_set_planes(&s->shape);
     }
 }
