@@ -26,17 +26,34 @@ typedef struct bent {
     double along, w2;
 } bent;
 
+/* How deep the point is below the surface of body k, as a part of the overlap. */
+static double share_of(const se3di_encounter *e, int k)
+{
+    return k ? 1.0 - e->at->share : e->at->share;
+}
+
+/* Whether the surface bends. */
+static int get_curvature(const se3di_encounter *e, int k, double curvature[2])
+{
+    const se3di_bend *bend = k ? &e->at->bend_j : &e->at->bend_i;
+    const double inside = share_of(e, k) * e->at->overlap;
+    for (int m = 0; m < 2; ++m) {
+        const double radius = bend->r[m] - inside;
+        curvature[m] = radius < HUGE_VAL && radius > SHARP * e->radius ? 1.0 / radius : 0.0;
+    }
+    return curvature[0] > 0.0 || curvature[1] > 0.0;
+}
+
 /* Whether the way bends. */
 static int set_bent(const se3di_encounter *e, int k, const double way[3], bent *b)
 {
-    const se3di_bend *bend = k ? &e->at->bend_j : &e->at->bend_i;
-    const double inside = (k ? 1.0 - e->at->share : e->at->share) * e->at->overlap;
+    if (!get_curvature(e, k, b->curvature)) {
+        return 0;
+    }
     b->along = b->w2 = 0.0;
-    se3di_copy(bend->u, b->u[0]);
-    se3di_cross(e->at->normal, bend->u, b->u[1]);
+    se3di_copy(k ? e->at->bend_j.u : e->at->bend_i.u, b->u[0]);
+    se3di_cross(e->at->normal, b->u[0], b->u[1]);
     for (int m = 0; m < 2; ++m) {
-        const double radius = bend->r[m] - inside;
-        b->curvature[m] = radius < HUGE_VAL && radius > SHARP * e->radius ? 1.0 / radius : 0.0;
         b->a[m] = se3di_dot(b->u[m], way);
         b->q[m] = b->curvature[m] * b->a[m];
         b->along += b->a[m] * b->q[m];
@@ -86,7 +103,7 @@ void se3di_encounter_unroll_rate(const se3di_encounter *e, int k, const double t
         return;
     }
     const double *n = e->at->normal;
-    const double share = k ? 1.0 - e->at->share : e->at->share;
+    const double share = share_of(e, k);
     const double g = unbend(b.w2, &slope);
     se3di_sub(dmark, dp, dway);
     se3di_cross(turn, b.u[0], du[0]); /* the directions go with the body, in the tangent plane */
@@ -144,19 +161,21 @@ static double lengthen(const se3di_encounter *e)
     return -(e->memory->spin[0] + e->memory->spin[1]) * e->elapsed / 24.0;
 }
 
-/* What the angle has more by the square of the way, and its derivative along one of the overlap. */
-static double bow(const se3di_encounter *e, double ddelta, double *rate)
+/* What the angle has more by the square of the way; `rate`, unless NULL: d of it by the overlap. */
+static double bow(const se3di_encounter *e, double *rate)
 {
     double sum = 0.0, change = 0.0;
     for (int k = 0; k < 2; ++k) {
-        bent b;
-        const double none[3] = {0.0, 0.0, 0.0}, share = k ? 1.0 - e->at->share : e->at->share;
-        (void)set_bent(e, k, none, &b);
-        const double part = (k ? 1.0 : -1.0) * b.curvature[0] * b.curvature[1] * e->memory->spin[k];
-        sum += part;
-        change += part * (b.curvature[0] + b.curvature[1]) * share;
+        double curvature[2];
+        if (get_curvature(e, k, curvature)) {
+            const double part = (k ? 1.0 : -1.0) * curvature[0] * curvature[1] * e->memory->spin[k];
+            sum += part;
+            change += part * (curvature[0] + curvature[1]) * share_of(e, k);
+        }
     }
-    *rate = change * ddelta * e->elapsed / 12.0;
+    if (rate) {
+        *rate = change * e->elapsed / 12.0;
+    }
     return sum * e->elapsed / 12.0;
 }
 
@@ -172,10 +191,10 @@ static double bow(const se3di_encounter *e, double ddelta, double *rate)
 void se3di_encounter_wander(se3di_encounter *e, const double middle[3])
 {
     const double *n = e->at->normal;
-    double way[3], across[3], slope, rate;
+    double way[3], across[3], slope;
     se3di_sub(e->at->point, middle, way);
     se3di_cross(n, way, across);
-    const double angle = se3di_dot(e->turn, n) + bow(e, 0.0, &rate) * se3di_dot(across, across);
+    const double angle = se3di_dot(e->turn, n) + bow(e, NULL) * se3di_dot(across, across);
     se3di_add_scaled(half_turn(angle, &slope), across, e->xi);
     se3di_add_scaled(-se3di_dot(n, way), n, way);
     se3di_add_scaled(angle * lengthen(e), way, e->xi);
@@ -186,8 +205,8 @@ void se3di_encounter_wander_rate(const se3di_encounter *e, const double middle[3
                                  double dxi[3])
 {
     const double *n = e->at->normal;
-    double way[3], across[3], dacross[3], x[3], slope, dmore;
-    const double more = bow(e, ddelta, &dmore);
+    double way[3], across[3], dacross[3], x[3], slope, rate;
+    const double more = bow(e, &rate);
     se3di_sub(e->at->point, middle, way);
     se3di_cross(n, way, across);
     se3di_cross(dn, way, dacross);
@@ -196,7 +215,7 @@ void se3di_encounter_wander_rate(const se3di_encounter *e, const double middle[3
     const double angle = se3di_dot(e->turn, n) + more * se3di_dot(across, across);
     const double dangle = se3di_dot(dturn, n) + se3di_dot(e->turn, dn) +
                           2.0 * more * se3di_dot(across, dacross) +
-                          dmore * se3di_dot(across, across);
+                          rate * ddelta * se3di_dot(across, across);
     se3di_add_scaled(half_turn(angle, &slope), dacross, dxi);
     se3di_add_scaled(slope * dangle, across, dxi);
     const double along = se3di_dot(n, way);
