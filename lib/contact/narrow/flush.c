@@ -28,7 +28,6 @@
 /* All in the frame of the mesh. */
 typedef struct cap {
     const se3di_mesh_meeting *m;
-    double low[3], high[3];   /* the box of the solid */
     double middle[3], out[3]; /* of the side; its outward normal */
     double n[3], height;      /* of the part; of the middle over it */
     double level, deepest;    /* of the side, below the part */
@@ -69,8 +68,9 @@ static void note_near(void *ctx, uint32_t triangle)
     se3di_triangle_corners(c->m->mesh->shape, triangle, corner);
     for (int k = 0; k < 3; ++k) {
         const double *a = corner[0], *b = corner[1], *d = corner[2];
-        is_beside = is_beside || (a[k] < c->low[k] && b[k] < c->low[k] && d[k] < c->low[k]) ||
-                    (a[k] > c->high[k] && b[k] > c->high[k] && d[k] > c->high[k]);
+        const double low = c->m->low[k], high = c->m->high[k];
+        is_beside = is_beside || (a[k] < low && b[k] < low && d[k] < low) ||
+                    (a[k] > high && b[k] > high && d[k] > high);
     }
     if (!is_beside) {
         if (c->count < NEAR) {
@@ -98,16 +98,6 @@ static int find_part(cap *c)
         }
     }
     return found;
-}
-
-static int is_of_part(const cap *c, uint32_t triangle)
-{
-    for (uint32_t k = 0; k < 3; ++k) {
-        if (!(fabs(height_at(c, triangle, k)) < c->level)) {
-            return 0;
-        }
-    }
-    return 1;
 }
 
 /* A place of both, unless it is there. */
@@ -230,17 +220,16 @@ static int find_lowest(const cap *c)
 /* Whether side and part have something in common at a place that is on the border of both. */
 static int have_region(const cap *c, const double at[3])
 {
-    static const double ways[8][2] = {{1.0, 0.1},   {0.7, 0.8},   {-0.1, 1.0}, {-0.8, 0.7},
-                                      {-1.0, -0.1}, {-0.7, -0.8}, {0.1, -1.0}, {0.8, -0.7}};
     double u[3], w[3];
     int found = 0;
     se3di_perpendicular(c->n, u);
     se3di_cross(c->n, u, w);
-    for (int k = 0; k < 8 && !found; ++k) {
-        double x[3];
+    for (int k = 0; k < SE3DI_WAYS_ASIDE && !found; ++k) {
+        double x[3], by[2];
+        se3di_step_aside(k, 3.0 * SLACK * c->extent, by);
         se3di_copy(at, x);
-        se3di_add_scaled(3.0 * SLACK * c->extent * ways[k][0], u, x);
-        se3di_add_scaled(3.0 * SLACK * c->extent * ways[k][1], w, x);
+        se3di_add_scaled(by[0], u, x);
+        se3di_add_scaled(by[1], w, x);
         found = is_below(c, x, 0.0) && is_over(c, x, c->level);
     }
     return found;
@@ -392,6 +381,11 @@ static int find_level(const cap *c, uint32_t triangle)
     return level;
 }
 
+static int is_of_part(const cap *c, uint32_t triangle)
+{
+    return find_level(c, triangle) == 7;
+}
+
 static void keep_part(cap *c, uint32_t triangle)
 {
     const uint32_t *beyond = se3di_mesh_beyond(c->m->mesh->shape) + 3 * (size_t)triangle;
@@ -413,7 +407,7 @@ static int is_of_corners(const cap *c, uint32_t vertex)
         }
     }
     for (int k = 0; k < 3; ++k) {
-        if (x[k] < c->low[k] || x[k] > c->high[k]) {
+        if (x[k] < c->m->low[k] || x[k] > c->m->high[k]) {
             return 1;
         }
     }
@@ -603,8 +597,7 @@ int se3di_narrow_flush(const se3di_mesh_meeting *m)
     c.m = m;
     c.level = LEVEL * m->size;
     c.count = 0;
-    se3di_mesh_box_of(m, c.low, c.high);
-    se3di_mesh_visit_box(m->mesh->shape, c.low, c.high, note_near, &c);
+    se3di_mesh_visit_box(m->mesh->shape, m->low, m->high, note_near, &c);
     if (c.count > NEAR ||
         !(has_rims ? lies_on_cap(&c, -1.0) || lies_on_cap(&c, 1.0) : lies_on_some_face(&c))) {
         return 0;

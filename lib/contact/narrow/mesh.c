@@ -663,16 +663,16 @@ static void meet_any(void *ctx, uint32_t triangle)
     a->met = a->met || !is_parted(a->m, triangle);
 }
 
-void se3di_mesh_box_of(const meeting *m, double low[3], double high[3])
+static void find_box(meeting *m)
 {
     for (int k = 0; k < 3; ++k) {
         double n[3] = {0.0, 0.0, 0.0}, at[3];
         n[k] = 1.0;
-        low[k] = -se3di_mesh_lowest(m, n, at) - SAME * m->size;
-        low[k] += at[k];
+        m->low[k] = -se3di_mesh_lowest(m, n, at) - SAME * m->size;
+        m->low[k] += at[k];
         n[k] = -1.0;
-        high[k] = se3di_mesh_lowest(m, n, at) + SAME * m->size;
-        high[k] += at[k];
+        m->high[k] = se3di_mesh_lowest(m, n, at) + SAME * m->size;
+        m->high[k] += at[k];
     }
 }
 
@@ -691,12 +691,7 @@ static int is_in_piece(const meeting *m)
 static int is_clear(const meeting *m)
 {
     any_met all = {m, 0};
-    double low[3], high[3];
-    if (m->mesh->shape->rows > 0) {
-        return 0;
-    }
-    se3di_mesh_box_of(m, low, high);
-    se3di_mesh_visit_box(m->mesh->shape, low, high, meet_any, &all);
+    se3di_mesh_visit_box(m->mesh->shape, m->low, m->high, meet_any, &all);
     return !all.met && !is_in_piece(m);
 }
 
@@ -756,8 +751,11 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
 {
     meeting m;
     begin(&m, i, mesh, manifold);
-    if (is_clear(&m) || se3di_narrow_flush(&m)) {
-        return;
+    if (mesh->shape->rows == 0) { /* a heightfield has no tree */
+        find_box(&m);
+        if (is_clear(&m) || se3di_narrow_flush(&m)) {
+            return;
+        }
     }
     if (!m.has_pieces) {
         find_parts(&m);

@@ -28,9 +28,11 @@ typedef struct se3di_mesh_way {
 
 typedef struct se3di_mesh_meeting {
     const se3di_solid *solid, *mesh;
-    double origin[3];  /* of the solid */
-    double center[3];  /* a point within it */
-    double R[9], x[3]; /* from the frame of the mesh to the solid's */
+    double origin[3];       /* of the solid */
+    double center[3];       /* a point within it */
+    double R[9], x[3];      /* from the frame of the mesh to the solid's */
+    double low[3], high[3]; /* along the mesh's axes: a box that holds the solid, but for rounding;
+                               if it is looked for in what is about it */
     double size;
     int sense; /* of the triangles: 1 counter-clockwise seen from the solid, -1 clockwise, 0: each
                   for itself */
@@ -70,8 +72,6 @@ double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
 uint32_t se3di_mesh_way_of(const double n[3]);
 /* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
-/* The box along the mesh's axes that holds the solid, but for rounding. */
-void se3di_mesh_box_of(const se3di_mesh_meeting *m, double low[3], double high[3]);
 /* A triangle as a solid of its own, with room for its corners; whether the solid overlaps it. */
 se3di_shape se3di_mesh_flat(const se3di_mesh_meeting *m, uint32_t triangle, double corners[9]);
 int se3di_mesh_overlaps(const se3di_mesh_meeting *m, uint32_t triangle);
@@ -109,6 +109,9 @@ typedef void (*se3di_part_finder)(const se3di_solid *i, size_t part, const se3di
  * are ways out of the pieces, and add what is missing. Returns 0 if none overlap. */
 int se3di_narrow_judge(const se3di_solid *i, const se3di_solid *mesh, se3di_manifold *manifold,
                        se3di_part_finder find);
+/* A step of about a length in a plane, in one of some directions all around, along no axis. */
+#define SE3DI_WAYS_ASIDE 8
+void se3di_step_aside(int way, double length, double by[2]);
 /* A solid of which a flat side, a cap or a face, lies on a flat part of a closed mesh that nothing
  * about it rises above, or over it. Returns 0 if none does. */
 int se3di_narrow_flush(const se3di_mesh_meeting *m);

@@ -401,20 +401,28 @@ static void keep(pair *p, const place *new)
     }
 }
 
-static void step_aside(const double from[2], int way, double length, double x[2])
+void se3di_step_aside(int way, double length, double by[2])
 {
-    static const double ways[8][2] = {{1.0, 0.1},   {0.7, 0.8},   {-0.1, 1.0}, {-0.8, 0.7},
-                                      {-1.0, -0.1}, {-0.7, -0.8}, {0.1, -1.0}, {0.8, -0.7}};
-    x[0] = from[0] + length * ways[way][0];
-    x[1] = from[1] + length * ways[way][1];
+    static const double ways[SE3DI_WAYS_ASIDE][2] = {{1.0, 0.1},  {0.7, 0.8},   {-0.1, 1.0},
+                                                     {-0.8, 0.7}, {-1.0, -0.1}, {-0.7, -0.8},
+                                                     {0.1, -1.0}, {0.8, -0.7}};
+    by[0] = length * ways[way][0];
+    by[1] = length * ways[way][1];
+}
+
+static void step_from(const double from[2], int way, double length, double x[2])
+{
+    se3di_step_aside(way, length, x);
+    x[0] += from[0];
+    x[1] += from[1];
 }
 
 /* Whether the parts have something in common at a place that is on the outline of both. */
 static int have_region(const pair *p, const double x[2])
 {
-    for (int way = 0; way < 8; ++way) {
+    for (int way = 0; way < SE3DI_WAYS_ASIDE; ++way) {
         double at[2];
-        step_aside(x, way, 3.0 * p->slack, at);
+        step_from(x, way, 3.0 * p->slack, at);
         if (is_over(&p->part[0], at, 0.0) && is_over(&p->part[1], at, 0.0)) {
             return 1;
         }
@@ -532,9 +540,9 @@ static int are_wide(const pair *p)
 {
     const double margin = WIDE * fmin(p->deepest[0], p->deepest[1]) + p->slack;
     for (size_t k = 0; k < p->count; ++k) {
-        for (int way = 0; way < 8; ++way) {
+        for (int way = 0; way < SE3DI_WAYS_ASIDE; ++way) {
             double x[2];
-            step_aside(p->list[k].x, way, 3.0 * margin, x);
+            step_from(p->list[k].x, way, 3.0 * margin, x);
             if (is_within(&p->part[0], x, margin) && is_within(&p->part[1], x, margin)) {
                 return 1;
             }
