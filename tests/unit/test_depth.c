@@ -129,13 +129,16 @@ static void compare(const se3di_shape *i, const se3di_shape_pose *at, const se3d
         se3di_sub(p->normal, n, turn);
         off = fabs(p->overlap - wanted);
     }
+    const se3di_solid one_is = {i, at}, two_is = {j, of};
+    const double same_depth =
+        SAME + se3di_cap_bulge(&one_is, n, wanted) + se3di_cap_bulge(&two_is, back, wanted);
     const double beyond = j->kind == SE3DI_SHAPE_MESH ? 0.0 : beyond_of(i, at, j, of, &m);
     const double lean = se3di_norm(turn);
-    const int less = p && along < wanted - 1e-12 && fabs(p->overlap - along) < SAME;
+    const int less = p && along < wanted - 1e-12 && fabs(p->overlap - along) < same_depth;
     const int along_sides = are_along(i, at, j, of);
     const double most = 2e-5 + (along_sides ? 0.3 : 1e-2) * wanted;
-    const int same = off < SAME && (lean < (along_sides ? 0.05 : SAME) ||
-                                    (lean < 10.0 * SAME && along < wanted + 1e-14));
+    const int same = off < same_depth && (lean < (along_sides ? 0.05 : SAME) ||
+                                          (lean < 10.0 * SAME && along < wanted + 1e-14));
     ++a->counted;
     a->less += less;
     a->wrong += !same && !less;

@@ -8,8 +8,10 @@
 
 #include <math.h>
 
-#define CUT_CORNERS (2 * SE3DI_FACE_CORNERS)
-#define SLACK       1e-4 /* of the face's size: corners beyond a side by less stay, at the side */
+#define CUT_CORNERS    (2 * SE3DI_FACE_CORNERS)
+#define CROSSINGS      64u /* numbers of corners are below */
+#define CROSSING_COUNT 960u
+#define SLACK          1e-4 /* of the face: corners beyond a side by less stay, at the side */
 
 typedef struct cut {
     int count;
@@ -17,8 +19,15 @@ typedef struct cut {
     uint32_t id[CUT_CORNERS];
 } cut;
 
+/* Numbers of places where sides cross are drawn from few: of equal ones the later is another. */
 static void cut_add(cut *to, const double x[3], uint32_t id)
 {
+    for (int k = 0; k < to->count; ++k) {
+        if (to->id[k] == id) {
+            id = CROSSINGS + (id + 1u - CROSSINGS) % CROSSING_COUNT;
+            k = -1; /* all again */
+        }
+    }
     if (to->count < CUT_CORNERS) {
         se3di_copy(x, to->corner[to->count]);
         to->id[to->count++] = id;
@@ -53,7 +62,7 @@ static void cut_side(const cut *from, const double n[3], double level, double sl
             se3di_add(a, x, x);
             uint32_t low = from->id[k] < from->id[next] ? from->id[k] : from->id[next];
             uint32_t high = from->id[k] < from->id[next] ? from->id[next] : from->id[k];
-            cut_add(to, x, 64u + ((low * 61u + high) * 17u + side) % 960u);
+            cut_add(to, x, CROSSINGS + ((low * 61u + high) * 17u + side) % CROSSING_COUNT);
         }
     }
 }

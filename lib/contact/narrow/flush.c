@@ -194,29 +194,6 @@ static int are_wide(const cap *c)
     return 0;
 }
 
-/* Whether the place of the rim that is lowest is over the part. */
-static int has_lowest(const cap *c)
-{
-    double down[3], x[3];
-    se3di_scale(-1.0, c->n, down);
-    se3di_add_scaled(se3di_dot(c->n, c->out), c->out, down);
-    const double size = se3di_norm(down);
-    se3di_copy(c->middle, x);
-    se3di_add_scaled(size > 0.0 ? c->radius / size : 0.0, down, x);
-    se3di_add_scaled(-height_of(c, x), c->n, x);
-    return is_over(c, x, c->level);
-}
-
-/* The point of the rim that is next to its lowest place, and tells how deep that is; -1: none. */
-static int find_lowest(const cap *c)
-{
-    int lowest = 0;
-    for (int k = 1; k < c->corner_count; ++k) {
-        lowest = height_of(c, c->corner[k]) < height_of(c, c->corner[lowest]) ? k : lowest;
-    }
-    return c->radius > 0.0 && has_lowest(c) ? lowest : -1;
-}
-
 /* Whether side and part have something in common at a place that is on the border of both. */
 static int have_region(const cap *c, const double at[3])
 {
@@ -238,15 +215,13 @@ static int have_region(const cap *c, const double at[3])
 /* Corners of the side, or points of its rim, that are over the part. */
 static void touch_corners(cap *c)
 {
-    const int lowest = find_lowest(c);
     for (int k = 0; k < c->corner_count; ++k) {
         double x[3];
         const double height = height_of(c, c->corner[k]);
         se3di_copy(c->corner[k], x);
         se3di_add_scaled(-height, c->n, x);
         if (is_over(c, x, c->level) || (is_over(c, x, SLACK * c->extent) && have_region(c, x))) {
-            add_place(c, x, c->n, k == lowest ? c->deepest : -height,
-                      8 * c->id[k] + se3di_mesh_way_of(c->n));
+            add_place(c, x, c->n, -height, 8 * c->id[k] + se3di_mesh_way_of(c->n));
         }
     }
 }
@@ -479,7 +454,7 @@ static void place_rim(cap *c, int is_upper)
     const uint32_t first = is_upper ? 4 : 0;
     double rim[8][3], normal[3];
     se3di_mul(c->m->mesh->at->R, c->n, normal);
-    (void)se3di_cylinder_rims(c->m->solid, normal, rim);
+    (void)se3di_cylinder_rims(c->m->solid, normal, c->deepest, rim);
     c->corner_count = 4;
     for (uint32_t k = 0; k < 4; ++k) {
         c->id[k] = first + k;
@@ -487,13 +462,22 @@ static void place_rim(cap *c, int is_upper)
     }
 }
 
-/* Whether the part is found, and nothing else can touch. */
+/* Whether nothing else than a part can touch. */
 static int lies_flush(cap *c)
 {
+    return keep_parts(c) && (!(c->deepest > 0.0) || are_wide(c));
+}
+
+/* Find the part below a side, and how deep this is in it. */
+static int find_deepest(cap *c)
+{
     double lowest[3];
+    if (!find_part(c)) {
+        return 0;
+    }
     (void)se3di_mesh_lowest(c->m, c->n, lowest);
     c->deepest = -height_of(c, lowest);
-    return keep_parts(c) && (!(c->deepest > 0.0) || are_wide(c));
+    return 1;
 }
 
 /* Whether a cap lies on a part of the mesh, or over it. */
@@ -508,7 +492,7 @@ static int lies_on_cap(cap *c, double end)
     se3di_scale(end, axis, axis);
     se3di_mul_transposed(c->m->mesh->at->R, axis, c->out);
     c->radius = c->extent = s->radius;
-    if (!find_part(c)) {
+    if (!find_deepest(c)) {
         return 0;
     }
     place_rim(c, end > 0.0);
@@ -559,7 +543,7 @@ static int lies_on_face(cap *c, const double n[3])
         c->extent = fmax(c->extent, se3di_norm(d));
     }
     se3di_mul_transposed(c->m->mesh->at->R, face.normal, c->out);
-    return find_part(c) && lies_flush(c) && has_hole(c);
+    return find_deepest(c) && lies_flush(c) && has_hole(c);
 }
 
 /* In the directions of the triangles about the solid that it is not deep in. */

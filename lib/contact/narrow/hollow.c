@@ -25,11 +25,10 @@
 #define NEAR_DEPTHS 10.0  /* near a place: depths */
 #define NEAR_LEAST  1e-5  /* the same: of a piece, at least and at most */
 #define NEAR_MOST   1e-1
-#define WITHIN      1e-2   /* of that: so far within a piece the other one is in it */
-#define EXACT       1e-9   /* of the size: depths that are one */
-#define RIM         3.1e-5 /* of the size: by how much points of an upright rim are too shallow */
-#define ALIKE       1e-4   /* rad: ways that are about the same */
-#define SHALLOWER   0.05   /* of a way's depth: by how much a contact that shows it may be */
+#define WITHIN      1e-2 /* of that: so far within a piece the other one is in it */
+#define EXACT       1e-9 /* of the size: depths that are one */
+#define ALIKE       1e-4 /* rad: ways that are about the same */
+#define SHALLOWER   0.05 /* of a way's depth: by how much a contact that shows it may be */
 #define FEATURE     0xa0000000u
 
 /* How a piece of the one (all of it if it is convex) comes off a piece of the other. */
@@ -245,8 +244,9 @@ static int is_shown_by(const ways *all, const way *w, const se3di_contact_point 
 static void show(ways *all, int k)
 {
     const way *w = &all->list[k];
-    const double slack =
-        se3di_shape_is(w->own, SE3DI_SHAPE_HAS_RIMS) ? RIM * w->own->bound : EXACT * all->size;
+    const se3di_solid own = {w->own, &w->at};
+    const double slack = EXACT * all->size;
+    const double depth = w->depth - se3di_cap_bulge(&own, w->n, w->depth);
     se3di_contact_point *deepest = NULL;
     for (uint32_t c = 0; c < all->point_count; ++c) {
         se3di_contact_point *at = &all->points[c];
@@ -254,17 +254,17 @@ static void show(ways *all, int k)
             deepest = at;
         }
     }
-    if (deepest && deepest->overlap > w->depth - fmax(slack, SHALLOWER * w->depth)) {
-        if (deepest->overlap < w->depth + EXACT * all->size) {
+    if (deepest && deepest->overlap > depth - fmax(slack, SHALLOWER * depth)) {
+        if (deepest->overlap < depth + slack) {
             se3di_copy(w->n, deepest->normal);
-            deepest->overlap = w->depth;
+            deepest->overlap = depth;
         }
         return;
     }
     touch(all, w);
     for (uint32_t c = 0; c < all->touched.count; ++c) {
         const se3di_contact_point *from = &all->touched.points[c];
-        if (!(from->overlap < w->depth)) {
+        if (!(from->overlap < depth)) {
             se3di_contact_point to;
             se3di_contact_point_set(&to, from->point, w->n, w->depth, FEATURE + (uint32_t)k);
             se3di_add_scaled(-0.5 * w->depth, w->n, to.point); /* on the mesh */

@@ -90,11 +90,11 @@ void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *plane, se3di_
 void se3di_plane_convex(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_smooth(const se3di_solid *i, const se3di_solid *plane, se3di_manifold *manifold);
 void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_manifold *manifold);
-/* Four points of each rim of a cylinder: the lowest one towards a face with this normal, that
- * across it, and at right angles; if it stands about upright they are turned a little, so that the
- * lowest is less low than the rim, by less than 3.1e-5 of its radius. Returns the sine of the
- * tilt. */
-double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3]);
+/* Four points of each rim of a cylinder whose lowest place is so deep in a face with this normal:
+ * the lowest one, that across it, and at right angles; on a cap that is deep all around they are
+ * turned (se3di_cap_lean). Returns the sine of the tilt. */
+double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double deep,
+                           double rim[8][3]);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it, with
  * overlaps along the unit `along`, outward from the face. */
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,

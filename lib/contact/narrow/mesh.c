@@ -496,7 +496,7 @@ static void meet_rims(void *ctx, uint32_t triangle)
 {
     const meeting *m = ctx;
     const double *corner[3];
-    double normal[3], rim[8][3];
+    double normal[3], rim[8][3], low[3];
     face f;
     if (!se3di_mesh_face_of(m, triangle, &f)) {
         return;
@@ -505,7 +505,8 @@ static void meet_rims(void *ctx, uint32_t triangle)
         corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
     }
     se3di_mul(m->mesh->at->R, f.n, normal);
-    se3di_cylinder_rims(m->solid, normal, rim);
+    (void)se3di_mesh_lowest(m, f.n, low);
+    (void)se3di_cylinder_rims(m->solid, normal, -se3di_mesh_height(&f, low), rim);
     for (uint32_t k = 0; k < 8; ++k) {
         double x[3], at[3];
         se3di_solid_to_local(m->mesh, rim[k], x);

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Shapes on planes: half spaces without end. */
 #include "contact/narrow/internal.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
 
-#define RIM_BIAS 1e-4 /* turn of a rim's points towards the shape's x axis, standing upright */
-#define RIM_TILT 1e-2 /* sine of the tilt above which there is none */
+#define RIM_TILT 1e-2 /* sine of the tilt above which a rim bends about its lowest point */
 
 typedef struct half_space {
     const double *x; /* on it */
@@ -62,54 +62,33 @@ void se3di_plane_capsule(const se3di_solid *i, const se3di_solid *j, se3di_manif
     }
 }
 
-/* The direction in which a rim is lowest. Upright it has none: it then leans to the shape's x axis,
- * so that its points stay where they are on the body. */
-static double rim_direction(const se3di_solid *i, const double normal[3], const double axis[3],
-                            double out[3])
+double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double deep,
+                           double rim[8][3])
 {
-    double x[3];
-    se3di_scale(-1.0, normal, out);
-    se3di_add_scaled(-se3di_dot(out, axis), axis, out);
-    double tilt = se3di_norm(out);
-    double bias = tilt < RIM_TILT ? RIM_BIAS * (1.0 - tilt / RIM_TILT) : 0.0;
-    se3di_solid_axis(i, 0, x);
-    se3di_add_scaled(bias, x, out);
-    double size = se3di_norm(out);
-    if (size > 0.0) {
-        se3di_scale(1.0 / size, out, out);
-    } else {
-        se3di_copy(x, out);
-    }
-    return tilt;
-}
-
-double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double rim[8][3])
-{
-    double axis[3], low[3], side[3];
-    se3di_solid_axis(i, 2, axis);
-    double tilt = rim_direction(i, normal, axis, low);
-    se3di_cross(axis, low, side);
+    double down[3], lean[2];
+    se3di_mul_transposed(i->at->R, normal, down);
+    se3di_scale(-1.0, down, down);
+    se3di_cap_lean(i->shape, down, deep, lean);
     for (uint32_t k = 0; k < 8; ++k) {
-        double turn = k & 1u ? -i->shape->radius : i->shape->radius;
-        se3di_copy(i->at->x, rim[k]);
-        se3di_add_scaled(k & 4u ? i->shape->half_length : -i->shape->half_length, axis, rim[k]);
-        se3di_add_scaled(turn, k & 2u ? side : low, rim[k]);
+        const double turn = k & 1u ? -i->shape->radius : i->shape->radius;
+        const double local[3] = {turn * (k & 2u ? -lean[1] : lean[0]),
+                                 turn * (k & 2u ? lean[0] : lean[1]),
+                                 k & 4u ? i->shape->half_length : -i->shape->half_length};
+        se3di_solid_to_ground(i, local, rim[k]);
     }
-    return tilt;
+    return se3di_hypot(down[0], down[1]);
 }
 
-/* The lowest point of a rim that stands about upright is to one side, and less low. */
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    double rim[8][3], axis[3], side[3], low[3];
-    double tilt = se3di_cylinder_rims(i, plane.n, rim);
+    double rim[8][3], axis[3], side[3], down[3], lowest[3], d[3];
+    se3di_scale(-1.0, plane.n, down);
+    se3di_core_support(i, down, lowest);
+    se3di_sub(lowest, plane.x, d);
+    const double tilt = se3di_cylinder_rims(i, plane.n, se3di_dot(d, down), rim);
     se3di_solid_axis(i, 2, axis);
     se3di_cross(plane.n, axis, side);
-    se3di_sub(rim[0], rim[1], low);
-    const double lift = tilt * i->shape->radius + 0.5 * se3di_dot(low, plane.n);
-    se3di_add_scaled(-lift, plane.n, rim[0]);
-    se3di_add_scaled(-lift, plane.n, rim[4]);
     for (uint32_t k = 0; k < 8; ++k) {
         se3di_contact_point *p = touch_plane(&plane, rim[k], 0.0, k, manifold);
         if (p && k % 4 == 0 && tilt > RIM_TILT) {

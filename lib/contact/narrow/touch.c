@@ -277,23 +277,48 @@ static void bend_points(const parting *p, const se3di_face *face_i, const se3di_
     }
 }
 
-/* No point is deeper than the two are, and one is as deep. */
-static void complete(const parting *p, se3di_manifold *manifold)
+/* How much less far the corners of a face reach than the solid: those that stand for a rim. */
+static double bulge_of(const se3di_solid *solid, const double n[3], const se3di_face *face)
+{
+    double farthest[3], d[3], least = HUGE_VAL;
+    if (!se3di_solid_has_rims(solid) || face->count < 3) {
+        return 0.0;
+    }
+    se3di_core_support(solid, n, farthest);
+    for (int k = 0; k < face->count; ++k) {
+        se3di_sub(farthest, face->corner[k], d);
+        least = fmin(least, se3di_dot(d, n));
+    }
+    return fmax(least, 0.0);
+}
+
+/* No point is deeper than the two are, and one is as deep, but for bulges. */
+static void complete(const parting *p, double bulge, se3di_manifold *manifold)
 {
     const double size = p->i->shape->bound + p->j->shape->bound;
     double deepest = 0.0;
     for (uint32_t k = 0; k < manifold->count; ++k) {
         se3di_contact_point *c = &manifold->points[k];
         c->overlap = fmin(c->overlap, p->depth);
-        deepest = fmax(deepest, c->overlap);
+        deepest = fmax(deepest, c->overlap + bulge);
     }
-    const double gap = p->depth - deepest;
+    const double gap = fmax(p->depth - deepest, 0.0);
     if (manifold->count == 0 || gap > LIFT * size) {
         point_touches(p, manifold->count > 0 ? WITNESS : 0, manifold);
         return;
     }
     for (uint32_t k = 0; k < manifold->count; ++k) {
         manifold->points[k].overlap += gap;
+    }
+}
+
+/* The part of a solid that looks along n best; a cap as it lies at the depth of the two. */
+static void find_face(const parting *p, const se3di_solid *solid, const double n[3],
+                      se3di_face *face)
+{
+    se3di_face_find(solid, n, face);
+    if (se3di_solid_has_rims(solid) && face->count > 2) {
+        se3di_cap_find(solid, n, p->depth, face);
     }
 }
 
@@ -307,8 +332,8 @@ static void touch(const parting *p, se3di_manifold *manifold)
         return;
     }
     se3di_scale(-1.0, p->n, back);
-    se3di_face_find(p->i, p->n, &face_i);
-    se3di_face_find(p->j, back, &face_j);
+    find_face(p, p->i, p->n, &face_i);
+    find_face(p, p->j, back, &face_j);
     const int flat_i = face_i.count > 2 && se3di_dot(face_i.normal, p->n) > FACE_COSINE;
     const int flat_j = face_j.count > 2 && se3di_dot(face_j.normal, back) > FACE_COSINE;
     if (flat_i) {
@@ -321,7 +346,7 @@ static void touch(const parting *p, se3di_manifold *manifold)
     if (flat_i || flat_j) {
         bend_points(p, &face_i, &face_j, manifold);
     }
-    complete(p, manifold);
+    complete(p, bulge_of(p->i, p->n, &face_i) + bulge_of(p->j, back, &face_j), manifold);
 }
 
 /* The nearest points of the edges that cross. */

@@ -24,7 +24,6 @@
 #define PARTS    12 /* of the angle between two faces */
 #define HALVINGS 60
 #define EQUAL    1e-9        /* of the size: depths that are one */
-#define RIM      3.1e-5      /* of the size: by how much points of an upright rim are too shallow */
 #define INWARD   1e-3        /* of the way to the middle of a face */
 #define FEATURE  0xc0000000u /* of ways: not those of corners, edges and triangles */
 
@@ -350,16 +349,16 @@ static int is_least(const se3di_mesh_meeting *m, int k)
     return 1;
 }
 
-/* A contact that is this way but for rounding becomes it, as does the lowest point of an upright
- * rim. */
+/* A contact that is this way but for rounding becomes it; points of a rim are less deep by their
+ * bulge. */
 static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
-    const int is_rim = se3di_shape_is(m->solid->shape, SE3DI_SHAPE_HAS_RIMS);
-    const double slack = is_rim ? RIM * m->solid->shape->bound : EQUAL * m->size;
+    const double slack = EQUAL * m->size;
     se3di_contact_point *deepest = NULL;
     double ground[3];
     se3di_mul(m->mesh->at->R, way->n, ground);
     se3di_scale(-1.0, ground, ground);
+    const double depth = way->depth - se3di_cap_bulge(m->solid, ground, way->depth);
     for (uint32_t k = 0; k < m->manifold->count; ++k) {
         se3di_contact_point *p = &m->manifold->points[k];
         double turn[3];
@@ -368,12 +367,12 @@ static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
             deepest = p;
         }
     }
-    if (!deepest || !(deepest->overlap > way->depth - slack)) {
+    if (!deepest || !(deepest->overlap > depth - slack)) {
         return 0;
     }
-    if (deepest->overlap < way->depth + slack) {
+    if (deepest->overlap < depth + slack) {
         se3di_copy(ground, deepest->normal);
-        deepest->overlap = way->depth;
+        deepest->overlap = depth;
     }
     return 1;
 }

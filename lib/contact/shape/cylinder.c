@@ -9,6 +9,8 @@
 
 #define CAP_COSINE  0.9 /* a cylinder seen along less than this shows its side */
 #define CAP_CORNERS 8
+#define DIAGONAL    0.70710678118654752
+#define UPRIGHT     4e-4 /* twice the sine of the tilt above which a cap's corners follow it */
 
 static const se3di_dimension dimensions[] = {
     {"length", offsetof(se3d_shape_def, length), offsetof(se3di_shape, half_length), 0.5, 1, 0},
@@ -64,36 +66,62 @@ static void support_cylinder(const se3di_shape *s, const double d[3], double out
     out[2] = d[2] < 0.0 ? -s->half_length : s->half_length;
 }
 
-static void face_cap(const se3di_solid *solid, const double d[3], se3di_face *face)
+void se3di_cap_lean(const se3di_shape *s, const double d[3], double deep, double lean[2])
 {
-    static const double cosine[CAP_CORNERS] = {
-        1.0,  0.70710678118654752,  0.0, -0.70710678118654752,
-        -1.0, -0.70710678118654752, 0.0, 0.70710678118654752};
+    const double rise = s->radius * se3di_hypot(d[0], d[1]); /* of the rim over the middle */
+    const double stay = DIAGONAL * fmax(fmin(deep, UPRIGHT * s->radius) - 2.0 * rise, 0.0);
+    const double x = s->radius * d[0] + stay, y = s->radius * d[1] + stay;
+    const double size = se3di_hypot(x, y);
+    lean[0] = size > 0.0 ? x / size : DIAGONAL;
+    lean[1] = size > 0.0 ? y / size : DIAGONAL;
+}
+
+double se3di_cap_bulge(const se3di_solid *solid, const double d[3], double deep)
+{
+    double local[3], lean[2];
+    if (!se3di_shape_is(solid->shape, SE3DI_SHAPE_HAS_RIMS)) {
+        return 0.0;
+    }
+    se3di_mul_transposed(solid->at->R, d, local);
+    se3di_cap_lean(solid->shape, local, deep, lean);
+    const double along = fabs(local[0] * lean[0] + local[1] * lean[1]);
+    const double across = fabs(local[1] * lean[0] - local[0] * lean[1]);
+    const double less = se3di_hypot(local[0], local[1]) - fmax(along, across);
+    return solid->shape->radius * fmax(less, 0.0);
+}
+
+static void face_cap(const se3di_solid *solid, const double d[3], double deep, se3di_face *face)
+{
+    static const double cosine[CAP_CORNERS] = {1.0,  DIAGONAL,  0.0, -DIAGONAL,
+                                               -1.0, -DIAGONAL, 0.0, DIAGONAL};
     const se3di_shape *s = solid->shape;
-    double sign = d[2] < 0.0 ? -1.0 : 1.0;
-    double tilt = se3di_hypot(d[0], d[1]);
-    double bias = tilt < 1e-2 ? 1e-4 * (1.0 - tilt / 1e-2) : 0.0; /* as on planes */
-    double lean[2] = {d[0] + bias, d[1]};
-    double size = se3di_hypot(lean[0], lean[1]);
-    double x = size > 0.0 ? lean[0] / size : 1.0;
-    double y = size > 0.0 ? lean[1] / size : 0.0;
-    double n[3] = {0.0, 0.0, sign};
+    double lean[2];
+    se3di_cap_lean(s, d, deep, lean);
+    const double sign = d[2] < 0.0 ? -1.0 : 1.0;
+    const double n[3] = {0.0, 0.0, sign};
     se3di_mul(solid->at->R, n, face->normal);
     face->count = CAP_CORNERS;
     face->id = sign < 0.0;
     for (int k = 0; k < CAP_CORNERS; ++k) {
-        double c = cosine[k];
-        double w = sign * cosine[(k + 6) % CAP_CORNERS]; /* the sine */
-        double local[3] = {s->radius * (c * x - w * y), s->radius * (c * y + w * x),
-                           sign * s->half_length};
+        const double c = cosine[k];
+        const double w = sign * cosine[(k + 6) % CAP_CORNERS]; /* the sine */
+        const double local[3] = {s->radius * (c * lean[0] - w * lean[1]),
+                                 s->radius * (c * lean[1] + w * lean[0]), sign * s->half_length};
         se3di_solid_to_ground(solid, local, face->corner[k]);
     }
+}
+
+void se3di_cap_find(const se3di_solid *solid, const double d[3], double deep, se3di_face *face)
+{
+    double local[3];
+    se3di_mul_transposed(solid->at->R, d, local);
+    face_cap(solid, local, deep, face);
 }
 
 static void face_cylinder(const se3di_solid *solid, const double d[3], se3di_face *face)
 {
     if (fabs(d[2]) > CAP_COSINE) {
-        face_cap(solid, d, face);
+        face_cap(solid, d, 0.0, face);
     } else {
         se3di_face_set_line(solid, d, solid->shape->radius, face);
     }

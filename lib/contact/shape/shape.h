@@ -137,6 +137,16 @@ double se3di_core_radius(const se3di_shape *shape);
 void se3di_core_support(const se3di_solid *solid, const double d[3], double point[3]);
 /* The part of the shape that looks along d best. */
 void se3di_face_find(const se3di_solid *solid, const double d[3], se3di_face *face);
+/* The direction (unit, along the shape's x and y) from a cylinder's axis to the first of the points
+ * that stand for the rim of a cap. The cap looks along d (shape frame), its lowest place is `deep`.
+ * As long as all of the cap is deep they stay on the body, but for what they turn as it leans: four
+ * or more points all around push alike wherever they are. Else the first is the lowest place. */
+void se3di_cap_lean(const se3di_shape *s, const double d[3], double deep, double lean[2]);
+/* By how much the deepest of four such points is less deep than the lowest place; d in the ground
+ * frame. 0 for what has no rim. */
+double se3di_cap_bulge(const se3di_solid *solid, const double d[3], double deep);
+/* The cap that looks along d (ground frame) as a face with corners so placed. */
+void se3di_cap_find(const se3di_solid *solid, const double d[3], double deep, se3di_face *face);
 /* That of a shape with straight sides along z which have this radius: a line. */
 void se3di_face_set_line(const se3di_solid *solid, const double d[3], double radius,
                          se3di_face *face);
