@@ -122,7 +122,8 @@ static void a_house_of_cards_gains_nothing(void)
 }
 
 /* Stiff enough to stand, but so stiff that forces which do not belong to the velocities of a step
- * would shake it. */
+ * would shake it. Built just touching it lands straight: it would sway by 1e-5 m for 20 s if
+ * rounding told which corners are the first to touch. */
 static void a_high_stack_stays_where_it_is(void)
 {
     enum { HIGH = 30 };
@@ -144,8 +145,8 @@ static void a_high_stack_stays_where_it_is(void)
     }
     CHECK(growth < 1e-13 * first);
     CHECK(se3d_body_get_position(s.system, top, r) == SE3D_OK);
-    CHECK_NEAR(r[0], 0.0, 1e-6);
-    CHECK_NEAR(r[1], 0.0, 1e-6);
+    CHECK_NEAR(r[0], 0.0, 1e-12);
+    CHECK_NEAR(r[1], 0.0, 1e-12);
     CHECK_NEAR(r[2], 0.05 + 0.1 * (HIGH - 1), 5e-4);
     CHECK(se3d_system_count_contacts(s.system) == 4 * HIGH);
     scene_end(&s);

@@ -277,6 +277,37 @@ static void boxes_on_each_other_touch_at_four_corners(void)
     }
 }
 
+/* A box that begins to touch, flat on another or on a plane that leans: by rounding some of its
+ * corners are in it and others are not. All or none count. */
+static void what_begins_to_touch_flat_has_all_corners(void)
+{
+    se3di_shape box = shape_of(SE3DI_SHAPE_BOX), plane = shape_of(SE3DI_SHAPE_PLANE);
+    int found = 0;
+    for (int k = 0; k < 400; ++k) {
+        const double angle = 0.01 * k, p[4] = {cos(angle), 0.0, sin(angle), 0.0};
+        se3di_shape_pose one = {.x = {0.3 * k, 0.1, 0.1 * k}}, two = one;
+        se3di_manifold m;
+        double up[3];
+        se3di_quat_to_matrix(p, one.R);
+        memcpy(two.R, one.R, sizeof two.R);
+        for (int c = 0; c < 3; ++c) {
+            up[c] = one.R[3 * c + 2];
+            one.x[c] += k % 2 ? box.half[2] * up[c] : 0.0;
+        }
+        two.x[0] += 2.0 * box.half[2] * up[0];
+        two.x[1] += 2.0 * box.half[2] * up[1];
+        two.x[2] += 2.0 * box.half[2] * up[2];
+        if (k % 2) { /* the plane through the lower face of the upper one */
+            se3di_narrow_find(&plane, &one, &box, &two, &m);
+        } else {
+            se3di_narrow_find(&box, &one, &box, &two, &m);
+        }
+        CHECK(m.count == 0 || m.count == 4);
+        found += m.count == 4;
+    }
+    CHECK(found > 20 && found < 380);
+}
+
 static void cylinders_stand_on_four_and_lie_on_two_points(void)
 {
     se3di_shape cylinder = shape_of(SE3DI_SHAPE_CYLINDER);
@@ -304,6 +335,7 @@ int main(void)
     RUN(degenerate_poses_give_finite_contacts);
     RUN(overlaps_are_continuous);
     RUN(boxes_on_each_other_touch_at_four_corners);
+    RUN(what_begins_to_touch_flat_has_all_corners);
     RUN(cylinders_stand_on_four_and_lie_on_two_points);
     return check_finish();
 }

@@ -92,11 +92,13 @@ void se3di_face_bend(const se3di_face *incident, double radius, se3di_bend *bend
 }
 
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
-                       const double along[3], double radius, int flip, se3di_manifold *manifold)
+                       const double along[3], double radius, double depth, int flip,
+                       se3di_manifold *manifold)
 {
     cut a = {.count = 0}, b;
     cut *from = &a, *to = &b;
-    const double slack = SLACK * face_size(reference);
+    const double size = face_size(reference), slack = SLACK * size;
+    const double rounding = se3di_narrow_rounding(reference->corner[0], size);
     const double lean = se3di_dot(reference->normal, along);
     for (int k = 0; k < incident->count; ++k) {
         cut_add(from, incident->corner[k], (uint32_t)k);
@@ -106,11 +108,11 @@ void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
         double side[3], n[3];
         se3di_sub(reference->corner[(k + 1) % reference->count], p, side);
         se3di_cross(side, along, n);
-        double size = se3di_norm(n);
-        if (!(size > 0.0)) {
+        const double length = se3di_norm(n);
+        if (!(length > 0.0)) {
             continue;
         }
-        se3di_scale(1.0 / size, n, n);
+        se3di_scale(1.0 / length, n, n);
         cut_side(from, n, se3di_dot(n, p), slack, (uint32_t)k, to);
         cut *other = from;
         from = to;
@@ -120,7 +122,8 @@ void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
     for (int k = 0; k < from->count; ++k) {
         double d[3], point[3], normal[3];
         se3di_sub(reference->corner[0], from->corner[k], d);
-        const double overlap = se3di_dot(d, reference->normal) / lean + radius;
+        double overlap = se3di_dot(d, reference->normal) / lean + radius;
+        overlap = depth < rounding && overlap > -rounding ? depth : overlap;
         if (!(overlap > 0.0)) {
             continue;
         }

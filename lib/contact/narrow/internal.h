@@ -4,6 +4,9 @@
 #define SE3DI_CONTACT_NARROW_INTERNAL_H
 
 #include "contact/narrow/narrow.h"
+#include "math/vec3.h"
+
+#include <float.h>
 
 static inline int se3di_solid_has_rims(const se3di_solid *solid)
 {
@@ -96,9 +99,17 @@ void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_m
 double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double deep,
                            double rim[8][3]);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it, with
- * overlaps along the unit `along`, outward from the face. */
+ * overlaps along the unit `along`, outward from the face. The two are `depth` deep. */
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
-                       const double along[3], double radius, int flip, se3di_manifold *manifold);
+                       const double along[3], double radius, double depth, int flip,
+                       se3di_manifold *manifold);
+/* What rounding may make of the height of a corner over a face: where two flat parts begin to touch
+ * and are not deeper than this, all corners that are within it are as deep. Else three of four may
+ * be the first, and what falls flat would turn. */
+static inline double se3di_narrow_rounding(const double place[3], double size)
+{
+    return 64.0 * DBL_EPSILON * (size + se3di_norm(place));
+}
 /* How a part of a surface bends that is touched at its corners, or as a line. */
 void se3di_face_bend(const se3di_face *incident, double radius, se3di_bend *bend);
 

@@ -20,16 +20,18 @@ static half_space half_space_of(const se3di_solid *plane)
     return half;
 }
 
-/* A point of i with the radius about it, if it is below the plane j. */
-static se3di_contact_point *touch_plane(const half_space *plane, const double x[3], double radius,
-                                        uint32_t feature, se3di_manifold *manifold)
+static double height_of(const half_space *plane, const double x[3])
 {
-    double d[3], point[3], normal[3];
+    double d[3];
     se3di_sub(x, plane->x, d);
-    double height = se3di_dot(d, plane->n);
-    if (!(height < radius)) {
-        return NULL;
-    }
+    return se3di_dot(d, plane->n);
+}
+
+/* A point of i at a height over the plane j. */
+static se3di_contact_point *touch_at(const half_space *plane, const double x[3], double height,
+                                     double radius, uint32_t feature, se3di_manifold *manifold)
+{
+    double point[3], normal[3];
     se3di_copy(x, point);
     se3di_add_scaled(-height, plane->n, point);
     se3di_scale(-1.0, plane->n, normal);
@@ -39,14 +41,40 @@ static se3di_contact_point *touch_plane(const half_space *plane, const double x[
     return p;
 }
 
+/* A point of i with the radius about it, if it is below the plane j. */
+static se3di_contact_point *touch_plane(const half_space *plane, const double x[3], double radius,
+                                        uint32_t feature, se3di_manifold *manifold)
+{
+    const double height = height_of(plane, x);
+    return height < radius ? touch_at(plane, x, height, radius, feature, manifold) : NULL;
+}
+
+/* Corners lower than `below`, as if none of them were higher than `highest`. Returns the height of
+ * the lowest. */
+static double touch_corners(const half_space *plane, const se3di_solid *i, double below,
+                            double highest, se3di_manifold *manifold)
+{
+    const se3di_shape_class *kind = se3di_shape_class_of(i->shape);
+    double local[3], x[3], lowest = HUGE_VAL;
+    for (uint32_t k = 0; kind->corner(i->shape, k, local); ++k) {
+        se3di_solid_to_ground(i, local, x);
+        const double height = height_of(plane, x);
+        lowest = fmin(lowest, height);
+        if (height < below) {
+            touch_at(plane, x, fmin(height, highest), 0.0, k, manifold);
+        }
+    }
+    return lowest;
+}
+
 void se3di_plane_corners(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    const se3di_shape_class *kind = se3di_shape_class_of(i->shape);
-    double local[3], x[3];
-    for (uint32_t k = 0; kind->corner(i->shape, k, local); ++k) {
-        se3di_solid_to_ground(i, local, x);
-        touch_plane(&plane, x, 0.0, k, manifold);
+    const double rounding = se3di_narrow_rounding(i->at->x, i->shape->bound);
+    const double lowest = touch_corners(&plane, i, 0.0, HUGE_VAL, manifold);
+    if (lowest < 0.0 && lowest > -rounding) {
+        manifold->count = 0;
+        (void)touch_corners(&plane, i, rounding, lowest, manifold);
     }
 }
 
@@ -82,11 +110,10 @@ double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double 
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    double rim[8][3], axis[3], side[3], down[3], lowest[3], d[3];
+    double rim[8][3], axis[3], side[3], down[3], lowest[3];
     se3di_scale(-1.0, plane.n, down);
     se3di_core_support(i, down, lowest);
-    se3di_sub(lowest, plane.x, d);
-    const double tilt = se3di_cylinder_rims(i, plane.n, se3di_dot(d, down), rim);
+    const double tilt = se3di_cylinder_rims(i, plane.n, -height_of(&plane, lowest), rim);
     se3di_solid_axis(i, 2, axis);
     se3di_cross(plane.n, axis, side);
     for (uint32_t k = 0; k < 8; ++k) {

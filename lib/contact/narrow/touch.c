@@ -337,9 +337,9 @@ static void touch(const parting *p, se3di_manifold *manifold)
     const int flat_i = face_i.count > 2 && se3di_dot(face_i.normal, p->n) > FACE_COSINE;
     const int flat_j = face_j.count > 2 && se3di_dot(face_j.normal, back) > FACE_COSINE;
     if (flat_i) {
-        se3di_narrow_clip(&face_i, &face_j, p->n, p->radius, 0, manifold);
+        se3di_narrow_clip(&face_i, &face_j, p->n, p->radius, p->depth, 0, manifold);
     } else if (flat_j) {
-        se3di_narrow_clip(&face_j, &face_i, back, p->radius, 1, manifold);
+        se3di_narrow_clip(&face_j, &face_i, back, p->radius, p->depth, 1, manifold);
     } else if (face_i.count == 2 && face_j.count == 2 && lines_meet(p, &both)) {
         lines_touch(p, &both, manifold);
     }
