@@ -16,8 +16,10 @@
 #include <string.h>
 
 #define ITERATIONS  200
-#define FOLLOWING   60   /* iterations in which the caps of friction follow */
-#define MAY_FOLLOW  0.1  /* of impulses: what is left where they do */
+#define FOLLOWING   60   /* iterations in which the caps of friction follow, */
+#define ALL_FOLLOW  120  /* none of them after so many */
+#define MAY_FOLLOW  0.1  /* of impulses: what is left where they do; */
+#define PATIENCE    10   /* or after so many iterations in which they did not */
 #define ACCURACY    1e-9 /* of impulses */
 #define CAP_CHANGE  3e-4 /* of the largest cap: it needs no other iteration */
 #define IS_NEAR     1e-5 /* of impulses: this iteration may be the last */
@@ -30,6 +32,7 @@
 #define KEPT        16    /* if one in so many slopes has changed the preconditioner is made anew */
 #define GUESSES     6     /* at which contacts act and how, before */
 #define GUESSED     1e-3  /* of the largest impulse: they will hardly change */
+#define ASTRAY      10.0  /* of all momentum: what guesses may change and are not doubted */
 #define ROUNDING    1e-12 /* of velocities: a change that leads nowhere */
 #define LINE_STEPS  60
 #define LINE_SLOPE  1e-3 /* of the cost along the line, relative to that at its beginning */
@@ -664,6 +667,41 @@ static void approach(se3di_convex *c, se3di_equations *equations, const se3di_co
     }
 }
 
+/* What is not balanced at v, with the caps that belong to it. */
+static double unbalanced(se3di_convex *c, const se3di_convex_island *island)
+{
+    see(c, island);
+    follow(c, island, 0);
+    evaluate(c, island, 0);
+    return weigh(c, island, c->gradient);
+}
+
+/* Guesses may go astray where bodies are light and contacts stiff. If they change velocities by
+ * more than anything gives a reason for, and v* is nearer to the optimum, begin there. */
+static void doubt(se3di_convex *c, se3di_equations *equations, const se3di_convex_island *island)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
+    if (!(weigh(c, island, c->moved) > ASTRAY * ASTRAY * island->momentum)) {
+        return;
+    }
+    const double guessed = unbalanced(c, island);
+    memcpy(c->carried + first, c->moved + first, count * sizeof *c->moved);
+    memcpy(equations->b + first, c->v + first, count * sizeof *c->v);
+    memset(c->moved + first, 0, count * sizeof *c->moved);
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        const size_t at = 6 * (size_t)c->place[k];
+        if (at >= first && at < first + count) {
+            memcpy(c->v + at, c->aim + 6 * k, 6 * sizeof *c->v);
+        }
+    }
+    if (unbalanced(c, island) > guessed) {
+        memcpy(c->moved + first, c->carried + first, count * sizeof *c->moved);
+        memcpy(c->v + first, equations->b + first, count * sizeof *c->v);
+    }
+    see(c, island);
+}
+
 static se3d_status fail(const se3di_convex *c, se3di_equations *equations, double rest)
 {
     return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
@@ -698,28 +736,45 @@ static double share_of(double rest, double before)
     return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
+/* Whether caps and gyration follow, and how often they have, or wait. */
+typedef struct following {
+    int looks, waited;
+    int goes_on, waits;
+} following;
+
+static void follow_in_time(se3di_convex *c, const se3di_convex_island *island, int iteration,
+                           int may_wait, double rest, following *f)
+{
+    f->goes_on = f->looks < FOLLOWING && iteration < ALL_FOLLOW;
+    f->waits = may_wait && !(rest <= MAY_FOLLOW) && f->waited < PATIENCE;
+    f->waited = f->waits ? f->waited + 1 : 0;
+    if (f->goes_on && !f->waits) {
+        ++f->looks;
+        follow(c, island, iteration > 0 && rest <= GO_AHEAD);
+        se3di_convex_gyrate(c, island);
+    }
+}
+
 static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
                                 se3di_convex_island *island)
 {
     const se3di_assembly *assembly = &equations->assembly;
+    following f = {.looks = 0};
     double rest = HUGE_VAL;
     if (begin(c, assembly, island)) {
         approach(c, equations, island);
+        doubt(c, equations, island);
     }
     for (int k = 0; k < ITERATIONS; ++k) {
         SE3DI_TRY(se3di_equations_ask(equations));
-        const int waits = assembly->row_count == 0 && k > 0 && !(rest <= MAY_FOLLOW);
-        if (k < FOLLOWING && !waits) {
-            follow(c, island, k > 0 && rest <= GO_AHEAD);
-            se3di_convex_gyrate(c, island);
-        }
+        follow_in_time(c, island, k, k > 0 && assembly->row_count == 0, rest, &f);
         const int with_slopes = k > 0 && rest > IS_NEAR;
         evaluate(c, island, with_slopes);
         const double before = rest;
         rest = measure(c, equations, island);
-        const int stays = k >= FOLLOWING && rest <= ENOUGH && rest >= 0.5 * before;
+        const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
         if ((k > 0 || assembly->row_count == 0) && (rest <= ACCURACY || stays) &&
-            (!waits || k >= FOLLOWING)) {
+            !(f.waits && f.goes_on)) {
             return SE3D_OK;
         }
         if (!with_slopes) {
