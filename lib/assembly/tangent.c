@@ -151,6 +151,7 @@ static size_t remove_duplicates(int32_t *pairs, size_t count)
 }
 
 #define TANGENT_ARRAYS 9
+#define BODY_ARRAYS    3 /* the first, of bodies; the others of couplings */
 
 static void list_arrays(se3di_tangent *t, double **list[TANGENT_ARRAYS],
                         size_t count[TANGENT_ARRAYS])
@@ -161,7 +162,7 @@ static void list_arrays(se3di_tangent *t, double **list[TANGENT_ARRAYS],
                                        &t->D_lower, &t->M_upper, &t->M_lower};
     for (int k = 0; k < TANGENT_ARRAYS; ++k) {
         list[k] = arrays[k];
-        count[k] = (k < 3 ? t->assembly->body_count : t->coupling_count) * block * block;
+        count[k] = (k < BODY_ARRAYS ? t->assembly->body_count : t->coupling_count) * block * block;
         count[k] = k < 7 || t->assembly->armature_count > 0 ? count[k] : 0;
     }
 }
@@ -196,7 +197,8 @@ static se3d_status allocate(se3di_tangent *tangent)
         se3di_alloc(allocator, 2 * tangent->coupling_capacity, sizeof *tangent->coupling);
     tangent->joint_pair =
         se3di_alloc(allocator, tangent->assembly->constraint_count, sizeof *tangent->joint_pair);
-    if (!tangent->coupling || !tangent->joint_pair) {
+    tangent->is_filled = se3di_alloc(allocator, tangent->coupling_capacity, 1);
+    if (!tangent->coupling || !tangent->joint_pair || !tangent->is_filled) {
         return SE3D_ERR_NO_MEMORY;
     }
     (void)list_pairs(tangent);
@@ -209,6 +211,7 @@ static se3d_status allocate(se3di_tangent *tangent)
             return SE3D_ERR_NO_MEMORY;
         }
     }
+    memset(tangent->is_filled, 1, tangent->coupling_capacity); /* with whatever was there */
     return SE3D_OK;
 }
 
@@ -238,6 +241,7 @@ void se3di_tangent_destroy(se3di_tangent *tangent)
                sizeof *tangent->coupling);
     se3di_free(allocator, tangent->joint_pair, tangent->assembly->constraint_count,
                sizeof *tangent->joint_pair);
+    se3di_free(allocator, tangent->is_filled, tangent->coupling_capacity, 1);
     memset(tangent, 0, sizeof *tangent);
 }
 
@@ -257,6 +261,7 @@ static double *find_block(const se3di_tangent *tangent, int which, int32_t row, 
     }
     double *upper = which ? tangent->D_upper : tangent->K_upper;
     double *lower = which ? tangent->D_lower : tangent->K_lower;
+    tangent->is_filled[pair] = 1;
     return (row < column ? upper : lower) + (size_t)pair * n * n;
 }
 
@@ -275,6 +280,7 @@ static void add_armature_mass(se3di_tangent *tangent, const se3di_armature *a, s
         if (pair >= 0) {
             const int first = a->body[0] < a->body[1] ? 0 : 1;
             const double *g = a->g[first], *other = a->g[1 - first];
+            tangent->is_filled[pair] = 1;
             tangent->M_upper[(size_t)pair * n * n + e] += a->inertia * g[r] * other[c];
             tangent->M_lower[(size_t)pair * n * n + e] += a->inertia * other[r] * g[c];
         }
@@ -560,6 +566,7 @@ static void add_fused_curvature(se3di_tangent *tangent, uint32_t joint, const do
     se3di_fused_blocks blocks = {.ii = find_block(tangent, 0, i, i),
                                  .jj = find_block(tangent, 0, j, j)};
     if (tangent->joint_pair[joint] >= 0) {
+        tangent->is_filled[tangent->joint_pair[joint]] = 1;
         double *upper = tangent->K_upper + 36 * (size_t)tangent->joint_pair[joint];
         double *lower = tangent->K_lower + 36 * (size_t)tangent->joint_pair[joint];
         blocks.ij = i < j ? upper : lower;
@@ -729,18 +736,34 @@ static void add_rp_terms(const se3di_body *body, const se3di_frame *frame, const
     }
 }
 
+/* All blocks of bodies, and those of couplings that are filled. */
+static void clear(se3di_tangent *tangent)
+{
+    const size_t n = (size_t)tangent->assembly->formulation->block, size = n * n * sizeof(double);
+    double **arrays[TANGENT_ARRAYS];
+    size_t counts[TANGENT_ARRAYS];
+    list_arrays(tangent, arrays, counts);
+    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
+        if (k < BODY_ARRAYS) {
+            memset(*arrays[k], 0, counts[k] * sizeof(double));
+            continue;
+        }
+        for (size_t c = 0; c < tangent->coupling_count && counts[k] > 0; ++c) {
+            if (tangent->is_filled[c]) {
+                memset(*arrays[k] + c * n * n, 0, size);
+            }
+        }
+    }
+    memset(tangent->is_filled, 0, tangent->coupling_capacity);
+}
+
 se3d_status se3di_tangent_eval(se3di_tangent *tangent, double t, const double *vdot,
                                const double *lambda, se3di_error *error)
 {
     const se3di_assembly *assembly = tangent->assembly;
     const se3di_model *model = assembly->model;
     size_t n = (size_t)assembly->formulation->block;
-    double **arrays[TANGENT_ARRAYS];
-    size_t counts[TANGENT_ARRAYS];
-    list_arrays(tangent, arrays, counts);
-    for (int k = 0; k < TANGENT_ARRAYS; ++k) {
-        memset(*arrays[k], 0, counts[k] * sizeof(double));
-    }
+    clear(tangent);
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const se3di_body *body = &model->bodies[assembly->free_body[k]];
         const se3di_frame *frame = &model->frames[assembly->free_body[k]];
@@ -783,6 +806,9 @@ static void add_blocks(const se3di_tangent *tangent, const double *const blocks[
     for (size_t k = 0; k < tangent->coupling_count; ++k) {
         size_t i = (size_t)tangent->coupling[2 * k];
         size_t j = (size_t)tangent->coupling[2 * k + 1];
+        if (!tangent->is_filled[k]) {
+            continue;
+        }
         add_block(blocks[1] + k * n * n, n, s, x + j * n, out + i * n);
         add_block(blocks[2] + k * n * n, n, s, x + i * n, out + j * n);
     }

@@ -19,6 +19,7 @@ typedef struct se3di_tangent {
     size_t coupling_capacity;
     int32_t *coupling;   /* [2 * couplings] free bodies i < j, increasing */
     int32_t *joint_pair; /* [constraints] coupling of the bodies of a fused joint, -1: none */
+    uint8_t *is_filled;  /* [couplings] something may not be zero; of many that may touch few do */
     int32_t is_convex;   /* K without negative curvature (r-omega): assembly/convex.h */
     int32_t reserved;
     const double *excess; /* [forces] of n in a wrench -n g, that is no curvature; NULL: none */

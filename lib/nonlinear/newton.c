@@ -109,6 +109,9 @@ static void combine_all(se3di_newton *newton, const se3di_newton_weights *weight
     }
     for (size_t k = 0; k < tangent->coupling_count; ++k) {
         const int32_t *pair = tangent->coupling + 2 * k;
+        if (!tangent->is_filled[k]) {
+            continue;
+        }
         combine(tangent->D_upper + k * size, coupled ? tangent->M_upper + k * size : NULL,
                 tangent->K_upper + k * size, newton->Tinv + 9 * (size_t)pair[1], weights, n);
         combine(tangent->D_lower + k * size, coupled ? tangent->M_lower + k * size : NULL,
