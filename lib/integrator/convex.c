@@ -57,6 +57,7 @@ static void share_work(se3di_convex *c, const se3di_assembly *assembly)
     }
     c->lambda = next;
     c->aimed = next + assembly->row_count;
+    c->push = c->aimed + assembly->row_count;
 }
 
 /* The room of a step, which lasts as long as the run is prepared. */
@@ -73,7 +74,8 @@ static se3d_status open_room(se3di_integration *integration)
     }
     void *work = c->work, *touched = c->touched;
     const size_t count = /* there is memory, also where nothing is free */
-        1 + VECTORS * (size_t)assembly->unknown_count + ROW_VECTORS * (size_t)assembly->row_count;
+        1 + VECTORS * (size_t)assembly->unknown_count + ROW_VECTORS * (size_t)assembly->row_count +
+        6 * (size_t)assembly->dense_count;
     se3d_status status =
         se3di_array_reserve(allocator, &work, &c->work_capacity, count, sizeof(double));
     c->work = work;
@@ -246,13 +248,44 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* What the impulses pressed with in the step, where they did, less what the contacts at its end do:
+ * a point that has moved on would turn a shaft that nothing turned. */
+static void find_push(const se3di_convex *c, const se3di_assembly *assembly, double t1)
+{
+    const se3di_model *model = assembly->model;
+    const size_t count = 6 * (size_t)assembly->dense_count;
+    memset(c->push, 0, count * sizeof *c->push);
+    se3di_contacts_add_wrenches(model, t1, c->push);
+    for (size_t k = 0; k < count; ++k) {
+        c->push[k] = 0.0 - c->push[k];
+    }
+    for (size_t k = 0; k < c->contact_count; ++k) {
+        const se3di_convex_contact *contact = &c->contacts[k];
+        for (int e = 0; e < 2; ++e) {
+            if (contact->free[e] >= 0) {
+                const uint32_t body = assembly->free_body[contact->free[e]];
+                const double share = (e ? 1.0 : -1.0) / c->h;
+                double torque[3], turned[3];
+                se3di_cross(contact->arm[e], contact->impulse, torque);
+                se3di_mul_transposed(model->frames[body].A, torque, turned);
+                se3di_add_scaled(share, contact->impulse, c->push + 6 * (size_t)body);
+                se3di_add_scaled(share, turned, c->push + 6 * (size_t)body + 3);
+            }
+        }
+    }
+}
+
 /* Without constraints each body has its own equations; what sleeps has none. */
 static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations, double t1)
 {
     se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
     if (assembly->row_count > 0) {
-        return se3di_acceleration_solve(equations, t1);
+        find_push(c, assembly, t1);
+        assembly->push = c->push;
+        const se3d_status status = se3di_acceleration_solve(equations, t1);
+        assembly->push = NULL;
+        return status;
     }
     SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t1, equations->error));
     ++equations->counters.evaluations;

@@ -84,6 +84,7 @@ typedef struct se3di_convex {
     double *carried;  /* M change [unknowns] */
     double *lambda;   /* impulses of constraints [rows] */
     double *aimed;    /* c [rows] */
+    double *push;     /* of the impulses, less that of the records at the end [6 * bodies] */
     uint8_t *touched; /* [free bodies] a contact acts on it */
     size_t touched_capacity;
     /* Bodies have places in which each island's follow each other; vectors of the solver are in

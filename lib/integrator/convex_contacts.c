@@ -388,13 +388,13 @@ static void set_wander(const se3di_convex_contact *c, const se3di_model *model, 
     }
 }
 
-/* A contact that acted in the step. */
+/* A contact that acted in the step, and lasts. */
 static void record_one(const se3di_convex *convex, const se3di_convex_contact *c,
                        const se3di_model *model, se3di_body_contact *r)
 {
     double xi[3] = {0.0, 0.0, 0.0};
     r->kind = c->way == SE3DI_CONVEX_SPRING ? SE3DI_CONTACT_STEPPED : SE3DI_CONTACT_PARTING;
-    se3di_scale(1.0 / convex->h, c->impulse, r->force);
+    se3di_add_scaled(1.0 / convex->h, c->impulse, r->force);
     if (c->way == SE3DI_CONVEX_SPRING) {
         stretch_after(c, convex->h, xi);
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
@@ -405,17 +405,60 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
     }
 }
 
+/* How far the point of `c` is from that of `r`, over their arms; 1 where a body says it is another
+ * place. */
+static double distance_of(const se3di_convex_contact *c, const se3di_model *model,
+                          const se3di_body_contact *r)
+{
+    double most = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        double arm[3], moved[3];
+        if (c->free[k] >= 0) {
+            const uint32_t body = model->shapes[k ? r->shape_j : r->shape_i].body;
+            se3di_sub(r->point, model->frames[body].r, arm);
+            se3di_sub(arm, c->arm[k], moved);
+            const double size = se3di_norm(arm), way = se3di_norm(moved);
+            most = fmax(most, way < WANDER_MOST * size ? way / size : 1.0);
+        }
+    }
+    return most;
+}
+
 static int is_same(const se3di_body_contact *a, const se3di_body_contact *b)
 {
     return a->shape_i == b->shape_i && a->shape_j == b->shape_j && a->feature == b->feature;
 }
 
+/* What acted in the step, on the contacts of its pair at the end, which begin at `next`: a point
+ * that has come to the next facet presses there. */
+static void record_contact(const se3di_convex *convex, const se3di_convex_contact *c,
+                           const se3di_model *model, se3di_body_contact *next,
+                           const se3di_body_contact *end)
+{
+    se3di_body_contact *nearest = NULL;
+    double least = 1.0;
+    for (; next < end && !se3di_convex_is_before(c->record, next); ++next) {
+        const double distance = distance_of(c, model, next);
+        if (is_same(c->record, next)) {
+            record_one(convex, c, model, next);
+            return;
+        }
+        if (distance < least) {
+            least = distance;
+            nearest = next;
+        }
+    }
+    if (nearest) {
+        se3di_add_scaled(1.0 / convex->h, c->impulse, nearest->force);
+    }
+}
+
 void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
 {
     const double none[3] = {0.0, 0.0, 0.0};
-    size_t first = 0;
-    for (size_t k = 0; k < model->contacts.next_count; ++k) {
-        se3di_body_contact *r = &model->contacts.next[k];
+    se3di_body_contact *next = model->contacts.next;
+    const se3di_body_contact *end = next + model->contacts.next_count;
+    for (se3di_body_contact *r = next; r < end; ++r) {
         if (se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
             continue;
         }
@@ -425,17 +468,12 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
         memset(r->torque, 0, sizeof r->torque);
         memset(r->roll, 0, sizeof r->roll);
         set_anchors(model, r, none);
-        while (first < convex->contact_count &&
-               se3di_convex_is_before(convex->contacts[first].record, r)) {
-            ++first;
+    }
+    for (size_t k = 0; k < convex->contact_count; ++k) {
+        const se3di_convex_contact *c = &convex->contacts[k];
+        while (next < end && se3di_convex_is_before(next, c->record)) {
+            ++next;
         }
-        for (size_t at = first;
-             at < convex->contact_count && !se3di_convex_is_before(r, convex->contacts[at].record);
-             ++at) {
-            if (is_same(convex->contacts[at].record, r)) {
-                record_one(convex, &convex->contacts[at], model, r);
-                break;
-            }
-        }
+        record_contact(convex, c, model, next, end);
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Method convex: energy never grows in heaps, walls, dominoes and cards, in any step, and it
- * changes by what is dissipated, to rounding. */
+ * changes by what is dissipated, to rounding, and by what drivers do. */
 #include "support/scene.h"
 
 static void heap(scene *s)
@@ -190,11 +190,71 @@ static void a_high_stack_stays_where_it_is(void)
     scene_end(&s);
 }
 
+static void add_shaft(scene *s, double radius, const char *angle)
+{
+    const double J[3] = {0.1, 0.1, 0.1};
+    se3d_joint_def hinge = se3d_joint_def_default();
+    se3d_driver_def motor = se3d_driver_def_default();
+    se3d_constraint driver;
+    se3d_shape shape;
+    const se3d_body shaft = scene_body(s, 2.0, J, scene_zero, scene_zero);
+    se3d_shape_def solid = scene_shape(s, shaft);
+    solid.radius = radius;
+    solid.length = 0.2;
+    CHECK(se3d_shape_create_cylinder(s->system, &solid, &shape) == SE3D_OK);
+    hinge.body_i = scene_ground(s);
+    hinge.body_j = shaft;
+    CHECK(se3d_joint_create_revolute(s->system, &hinge, &motor.joint) == SE3D_OK);
+    CHECK(se3d_function_create_expression(s->system, angle, &motor.function) == SE3D_OK);
+    CHECK(se3d_driver_create(s->system, &motor, &driver) == SE3D_OK);
+}
+
+/* Balls pressed between a shaft that is driven and a ring of facets: they go from facet to facet,
+ * half as fast as the shaft's surface. */
+static void a_driven_bearing_gains_nothing(void)
+{
+    enum { BALLS = 5 };
+    const double press = 1e-3, down[3] = {0.0, -9.81, 0.0}, orbit = 10.0 * 0.25 / 0.6;
+    double energy, start = 0.0, balance, gap = 0.0, most = 0.0, at[3], force[3], torque[3];
+    se3d_body balls[BALLS];
+    se3d_work work = {0};
+    se3d_shape ring;
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+    CHECK(se3d_system_set_gravity(s.system, down) == SE3D_OK);
+    se3d_shape_def tube = scene_shape(&s, scene_ground(&s));
+    tube.bottom_radius = tube.top_radius = 0.35;
+    tube.length = 0.2;
+    CHECK(se3d_shape_create_funnel(s.system, &tube, &ring) == SE3D_OK);
+    add_shaft(&s, 0.25, "10*t");
+    for (int k = 0; k < BALLS; ++k) {
+        const double angle = 6.283185307179586 * k / BALLS;
+        const double r[3] = {0.3 * cos(angle), 0.3 * sin(angle), 0.0};
+        balls[k] = scene_ball(&s, 0.05 + press, 0.1, r, scene_zero);
+    }
+    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, 1e-3, 0.0);
+    for (int step = 1; step <= 600 && scene_run(&s, step * 1e-3); ++step) {
+        look(&s, &energy, &balance);
+        CHECK(se3d_system_get_work(s.system, &work) == SE3D_OK);
+        start = step > 100 ? start : balance - work.drivers; /* the shaft starts with a jerk */
+        gap = fmax(gap, fabs(balance - work.drivers - start));
+        CHECK(se3d_body_get_contact_wrench(s.system, balls[2], force, torque) == SE3D_OK);
+        most = step > 100 ? fmax(most, hypot(force[0], force[1])) : 0.0;
+    }
+    CHECK(work.drivers > 1.0);
+    CHECK(gap < 0.02 * work.drivers);
+    CHECK(most < 20.0);
+    CHECK(se3d_body_get_position(s.system, balls[0], at) == SE3D_OK);
+    CHECK_NEAR(hypot(at[0], at[1]), 0.3, 1e-3);
+    CHECK_NEAR(atan2(at[1], at[0]), orbit * 0.6, 0.05);
+    scene_end(&s);
+}
+
 int main(void)
 {
     RUN(energy_never_grows);
     RUN(a_house_of_cards_gains_nothing);
     RUN(steps_too_long_for_a_house_of_cards_gain_hardly_anything);
     RUN(a_high_stack_stays_where_it_is);
+    RUN(a_driven_bearing_gains_nothing);
     return check_finish();
 }
