@@ -29,15 +29,16 @@
 #include <math.h>
 #include <string.h>
 
-#define VECTORS     7 /* of unknowns */
+#define VECTORS     8 /* of unknowns */
+#define KEPT        7 /* numbers of each body in the history */
 #define ROW_VECTORS 2
 #define TURN_MAX    3.0 /* rad, of a body in a step */
 #define HALVINGS    8   /* of a step in which shapes meet too fast */
 
 static size_t history_count(const se3di_assembly *assembly)
 {
-    return 1 + 4 * (size_t)assembly->body_count; /* length of the last step; how long each rests;
-                                                     what constraints took from w at its end */
+    return 1 + KEPT * (size_t)assembly->body_count; /* length of the last step; how long each rests;
+                                                       what constraints took from v, w at its end */
 }
 
 static size_t work_count(const se3di_assembly *assembly)
@@ -48,8 +49,8 @@ static size_t work_count(const se3di_assembly *assembly)
 
 static void share_work(se3di_convex *c, const se3di_assembly *assembly)
 {
-    double **vectors[VECTORS] = {&c->start,    &c->aim,   &c->v,      &c->change,
-                                 &c->gradient, &c->moved, &c->carried};
+    double **vectors[VECTORS] = {&c->start,    &c->aim,   &c->v,       &c->change,
+                                 &c->gradient, &c->moved, &c->carried, &c->chord};
     double *next = c->work;
     for (int k = 0; k < VECTORS; ++k) {
         *vectors[k] = next;
@@ -119,6 +120,18 @@ static void begin(const se3di_convex *c, const se3di_assembly *assembly)
         if (c->asleep[k]) {
             memset(v0, 0, 6 * sizeof *v0);
         }
+    }
+}
+
+/* The chord that ended in a step had a part across the constraints, as the one that begins has:
+ * both together are along them. */
+static void recall_chords(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const double *history = assembly->model->history;
+    const double *chord = history + 1 + assembly->body_count;
+    const int goes_on = !c->drifts && assembly->row_count > 0 && history[0] > 0.0;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        c->chord[k] = goes_on ? c->h / history[0] * chord[k] : 0.0;
     }
 }
 
@@ -238,12 +251,14 @@ static se3d_status project(se3di_equations *equations, double t1)
 static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
 {
     double *chord = assembly->model->history + 1 + assembly->body_count;
-    for (uint32_t k = 0; k < assembly->body_count; ++k, chord += 3) {
+    for (uint32_t k = 0; k < assembly->body_count; ++k, chord += 6) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
+        const double *v = c->v + 6 * (size_t)k;
         if (c->drifts || !c->linked[k]) {
-            memset(chord, 0, 3 * sizeof *chord);
+            memset(chord, 0, 6 * sizeof *chord);
         } else {
-            se3di_sub(c->v + 6 * (size_t)k + 3, assembly->model->frames[assembly->free_body[k]].w,
-                      chord);
+            se3di_sub(v, frame->v, chord);
+            se3di_sub(v + 3, frame->w, chord + 3);
         }
     }
 }
@@ -354,6 +369,7 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     const double t0 = assembly->model->time;
     c->drifts = assembly->model->contacts.count == 0;
     begin(c, assembly);
+    recall_chords(c, assembly);
     if (c->drifts) {
         drift(c, assembly);
     }
@@ -464,7 +480,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 static void rouse(se3di_integration *integration)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
-    memset(assembly->model->history + 1, 0, 4 * (size_t)assembly->body_count * sizeof(double));
+    memset(assembly->model->history + 1, 0, KEPT * (size_t)assembly->body_count * sizeof(double));
 }
 
 /* What contacts do is counted by steps, not by powers. */

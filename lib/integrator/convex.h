@@ -47,10 +47,11 @@ typedef struct se3di_convex_contact {
     double response[2];     /* of the velocity to an impulse: along the normal; at most across it */
     double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
     double wanted;    /* the cap of p_n, */
-    double wanted_before, gap;        /* at the last look; wanted - bound */
-    double before[3];                 /* velocity of the point at the start */
-    double arm[2][3];                 /* from the bodies to the point, ground frame */
-    double held;                      /* energy of its springs at the start of the step */
+    double wanted_before, gap; /* at the last look; wanted - bound */
+    double before[3];          /* velocity of the point at the start, */
+    double chord[3];  /* and what the chord before had there more, across the constraints */
+    double arm[2][3]; /* from the bodies to the point, ground frame */
+    double held;      /* energy of its springs at the start of the step */
     const se3di_body_contact *record; /* of the state that the step begins with */
 } se3di_convex_contact;
 
@@ -82,6 +83,7 @@ typedef struct se3di_convex {
     double *gradient; /* of the cost [unknowns] */
     double *moved;    /* M (v - v*) [unknowns] */
     double *carried;  /* M change [unknowns] */
+    double *chord;    /* of the step before, less `start` [unknowns] */
     double *lambda;   /* impulses of constraints [rows] */
     double *aimed;    /* c [rows] */
     double *push;     /* of the impulses, less that of the records at the end [6 * bodies] */

@@ -243,6 +243,9 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     se3di_convex_set_law(c, model);
     set_drift(c, model, convex->h);
     se3di_convex_slip(c, convex->start, c->before);
+    if (assembly->row_count > 0) {
+        se3di_convex_velocity(c, convex->chord, c->chord);
+    }
     if (record->kind == SE3DI_CONTACT_STEPPED) {
         se3di_scale(0.5 * convex->h, record->roll, c->shift);
     }

@@ -16,11 +16,13 @@
 #include <math.h>
 
 /* What the impulse takes from the bodies, and from what moves surfaces on them: half a step before
- * and half a step on they have what they have at the start on the average. */
+ * and half a step on they have what they have at the start on the average. Of bodies that
+ * constraints hold these are both chords: their parts across the constraints cancel, and the
+ * reactions to the impulse do no work. */
 static double taken_by(const se3di_convex_contact *c)
 {
-    return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->v) -
-                   se3di_dot(c->impulse, c->shift)) +
+    return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->chord) +
+                   se3di_dot(c->impulse, c->v) - se3di_dot(c->impulse, c->shift)) +
            se3di_dot(c->impulse, c->ahead);
 }
 

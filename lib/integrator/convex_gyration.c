@@ -78,14 +78,9 @@ static void middle_of(const double *start, const double *end, double w[3])
     se3di_scale(0.5, w, w);
 }
 
-/* The chord that ended in a step had a part across the constraints, as the one that begins has:
- * both together are along them. */
 void se3di_convex_gyrate_begin(se3di_convex *c, const se3di_assembly *assembly)
 {
-    const double *history = assembly->model->history;
-    const double *chord = history + 1 + assembly->body_count;
-    const int goes_on = !c->drifts && assembly->row_count > 0 && history[0] > 0.0;
-    for (uint32_t k = 0; k < assembly->body_count; ++k, chord += 3) {
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const size_t place = (size_t)c->place[k];
         double *spin = c->spin + 6 * place, J[9], w[3], slope[9];
         if (!c->touched[k] && assembly->row_count == 0) {
@@ -95,9 +90,7 @@ void se3di_convex_gyrate_begin(se3di_convex *c, const se3di_assembly *assembly)
         se3di_copy(c->start + 6 * (size_t)k + 3, spin);
         middle_of(spin, c->aim + 6 * (size_t)k + 3, w);
         moment_of(J, w, c->h, spin + 3, slope);
-        if (goes_on) {
-            se3di_add_scaled(c->h / history[0], chord, spin);
-        }
+        se3di_add(spin, c->chord + 6 * (size_t)k + 3, spin);
     }
 }
 
