@@ -243,7 +243,7 @@ void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shap
                              se3di_shape_contact_size(&model->shapes[shapes[1]]));
     snprintf(text, SE3DI_DEPTH_SIZE,
              "the shapes %.60s and %.60s overlap by %.3g m, at most %g of their size %.3g m is "
-             "allowed; try a stiffer material",
+             "allowed",
              se3di_shape_describe(model, shapes[0]), se3di_shape_describe(model, shapes[1]),
              overlap, model->contact.overlap_limit, size);
 }
@@ -259,8 +259,10 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     const uint32_t shapes[2] = {e->shape_i, e->shape_j};
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, e->at->overlap, text);
-    se3di_error_set(p->error, SE3D_ERR_STEP_SIZE, "t = %g s: %s, or a smaller step if one is given",
-                    p->t, text);
+    se3di_error_set(p->error, SE3D_ERR_STEP_SIZE, "t = %g s: %s; %s", p->t, text,
+                    p->t > model->time
+                        ? "try a stiffer material, or a smaller step if one is given"
+                        : "move them apart, or let groups say that they do not touch");
     if (p->error) {
         p->error->cause = SE3DI_CAUSE_OVERLAP;
     }

@@ -371,7 +371,7 @@ static void blame_depth(const se3di_model *model, const se3di_body_contact *deep
     const uint32_t shapes[2] = {deepest->shape_i, deepest->shape_j};
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, deepest->overlap, text);
-    se3di_error_append(error, "; %s", text);
+    se3di_error_append(error, "; %s; try a stiffer material", text);
 }
 
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error)

@@ -119,6 +119,12 @@ static const char *without_time(const char *message, double now)
     return message;
 }
 
+/* What overlaps at the start is told what to do, which no status knows. */
+static bool has_advice(const char *why)
+{
+    return strstr(why, "; move them apart") != NULL;
+}
+
 static se3d_status fail_analysis(se3di_runner *r, const se3di_analysis_entry *entry,
                                  se3d_status status, double target)
 {
@@ -135,9 +141,13 @@ static se3d_status fail_analysis(se3di_runner *r, const se3di_analysis_entry *en
                  entry->analysis.type, now);
         return se3di_files_fail(r, status, text);
     }
-    snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s. What to try: %s",
-             entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status),
-             advise(status, entry->solver.analysis));
+    const int length =
+        snprintf(text, sizeof text, "the %s analysis failed at t = %.9g s%s: %.500s",
+                 entry->analysis.type, now, way, why[0] ? why : se3d_status_get_text(status));
+    if (!has_advice(why)) {
+        snprintf(text + length, sizeof text - (size_t)length, ". What to try: %s",
+                 advise(status, entry->solver.analysis));
+    }
     return se3di_files_fail(r, status, text);
 }
 
