@@ -442,14 +442,15 @@ static se3d_status take_step(se3di_integration *integration, double t1)
     return se3di_watch_end(equations);
 }
 
-/* What meets too fast for a step, and would overlap too much or pass through, meets in its halves.
- */
+/* What meets too fast for a step, and would overlap too much or pass through, meets in its halves,
+ * and so does what jams so that no velocities are found. */
 static se3d_status take_in_parts(se3di_integration *integration, double t1, int halvings)
 {
     const se3di_model *model = integration->equations->assembly.model;
     const double t0 = model->time, h = t1 - t0, middle = 0.5 * (t0 + t1);
     const se3d_status status = take_step(integration, t1);
-    if (status != SE3D_ERR_STEP_SIZE || halvings == 0 || !(middle > t0 && middle < t1)) {
+    const int may_halve = status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE;
+    if (!may_halve || halvings == 0 || !(middle > t0 && middle < t1)) {
         return status;
     }
     SE3DI_TRY(se3di_turns_check(integration->equations, h, TURN_MAX)); /* these are refused */

@@ -767,7 +767,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
     }
     for (int k = 0; k < ITERATIONS; ++k) {
         SE3DI_TRY(se3di_equations_ask(equations));
-        follow_in_time(c, island, k, k > 0 && assembly->row_count == 0, rest, &f);
+        follow_in_time(c, island, k, k > 0, rest, &f);
         const int with_slopes = k > 0 && rest > IS_NEAR;
         evaluate(c, island, with_slopes);
         const double before = rest;
