@@ -53,6 +53,74 @@ static void expressions_have_these_values(void)
     }
 }
 
+/* With units, of vectors of channels: whatever the units of the file are. */
+static void formulas_of_channels_have_these_values(void)
+{
+    static const char *const units[] = {"", "units: {length: mm, time: min, mass: g}\n"};
+    static const struct {
+        const char *text;
+        double value;
+    } table[] = {
+        {"norm([ball.position.x, ball.position.y, ball.position.z])", 3.7416573867739413},
+        {"norm([ball.velocity.x, 0, 2 m/s])", 3.6055512754639893},
+        {"dot([ball.position.x, ball.position.y, 0 m], [1 m, 2 m, 3])", 5.0},
+        {"dot(p, [ball.position.x, 1 m, 2 m])", 9.0},
+        {"cross([ball.position.x, 0, 0 m], [0, ball.position.y, 0 m]).z", 2.0},
+        {"cross(p, [ball.position.x, 0, 0 m]).y", 3.0},
+        {"unit([ball.velocity.x, 0, 4 m/s]).z", 0.8},
+        {"unit([3 m/s, 0 m/s, ball.velocity.z]).x", 0.6},
+        {"mid(p, [ball.position.z, 0 m, 0]).x", 2.0},
+        {"distance(p, [ball.position.x, 2 m, 8 m])", 5.0},
+        {"angle([ball.velocity.x, 0 m/s, 0], [0, 1, 0])", 1.5707963267948966},
+        {"rotate([ball.position.x, 0 m, 0], [0, 0, 1], 90 deg).y", 1.0},
+        {"rotate([1, 2, 3], [0, 0, 1 m], ball.position.x/(1 m)*90 deg).x", -2.0},
+        {"rotate([1, 2, 3], [0, 0, ball.position.x], 1 m/ball.position.x*90 deg).z", 3.0},
+        {"(2*p - [ball.position.x, 0 m, 0 m]).x", 1.0},
+        {"-[0, ball.position.y, 1 m].y", -2.0},
+        {"[ball.position.x, ball.position.y, 1 m].y/(1 m)", 2.0},
+        {"if(ball.position.z > 2 m, ball.position.x, 5 m)", 1.0},
+        {"if(ball.position.z <= 2000 mm, ball.position.x, 5 m)", 5.0},
+        {"(ball.position.z == 3 m) + (ball.position.z != 3 m) + (ball.position.z >= 3 m)", 2.0},
+        {"(1 m < 2 m)*ball.position.z", 3.0},
+        {"-ball.position.z^2", -9.0},
+        {"+ball.position.z", 3.0},
+        {"(ball.position.z*(1 m))^0 + 1", 2.0},
+        {"ball.position.y^-1*(6 m^2)", 3.0},
+        {"2^(ball.position.z/(1 m))", 8.0},
+        {"(2 m)^3/ball.position.y", 4.0},
+        {"sqrt(ball.position.x^2 + (2 m)^2)", 2.23606797749979},
+        {"max(ball.position.x, 20 mm, 1.5 m)", 1.5},
+        {"mod(ball.position.z, 2 m)", 1.0},
+        {"abs(1 m - ball.position.z)", 2.0},
+        {"hypot(ball.position.z, 4 m)", 5.0},
+        {"sign(1 m - ball.position.z)", -1.0},
+        {"step(ball.position.x, 0 m, 1 N, 2 m, 3 N)", 2.0},
+        {"step(1 m, 0 m, ball.position.x, 2 m, ball.position.z)", 2.0},
+        {"atan2(ball.position.x, 1 m)/(1 deg)", 45.0},
+        {"cos(ball.position.x/(1 m)*60 deg)", 0.5},
+        {"exp(log(ball.position.z/(1 m)))", 3.0},
+        {"tan(pi*ball.position.x/(4 m))", 1.0},
+        {"deg*ball.position.x/(1 m)", 0.017453292519943295},
+        {"3.00000000000000000*(1 m)*ball.position.y/(1 m)", 6.0},
+        {"2.5e0*ball.position.y/(1E+0 m)*(1 m)", 5.0}};
+    for (size_t k = 0; k < 2 * (sizeof table / sizeof *table); ++k) {
+        char text[1500];
+        snprintf(
+            text, sizeof text,
+            "se3d: 1\n%spoints: {p: [1 m, 2 m, 3 m]}\nbodies: [{name: ball, mass: 1, inertia: "
+            "[1, 1, 1], position: p, velocity: [3 m/s, 0 m/s, 4 m/s]}]\noutput: [{file: r.csv, "
+            "channels: [{v: \"%s\"}]}]\n",
+            units[k % 2], table[k / 2].text);
+        se3d_model *model = read_text(text);
+        const double value = model ? value_of(model, 0, "v") : (double)NAN;
+        if (!(fabs(value - table[k / 2].value) < 1e-13)) {
+            fprintf(stderr, "%s%s: %.17g\n", units[k % 2], table[k / 2].text, value);
+        }
+        CHECK_NEAR(value, table[k / 2].value, 1e-13);
+        se3d_model_destroy(model);
+    }
+}
+
 /* In a file in mm numbers without a unit are mm, too, and what comes out is in SI units. */
 static void units_of_the_file_hold(void)
 {
@@ -140,6 +208,7 @@ static void events_of_expressions_are_found(void)
 int main(void)
 {
     RUN(expressions_have_these_values);
+    RUN(formulas_of_channels_have_these_values);
     RUN(units_of_the_file_hold);
     RUN(summaries_are_those_of_the_motion);
     RUN(events_of_expressions_are_found);

@@ -4,10 +4,13 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "check.h"
 #include "io/base/file.h"
 
@@ -180,6 +183,252 @@ static void what_was_left_is_swept_and_nothing_else(void)
     CHECK(!exists(far));
 }
 
+static uint64_t hash_of(const char *text, size_t length)
+{
+    return se3di_hash_bytes(SE3DI_HASH_START, text, length);
+}
+
+static void write_text(const char *name, const char *text)
+{
+    FILE *file = fopen(name, "w");
+    CHECK(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+static int has_text(const char *name, const char *text)
+{
+    char is[64] = "";
+    FILE *file = fopen(name, "r");
+    const size_t length = file ? fread(is, 1, sizeof is - 1, file) : 0;
+    is[length] = '\0';
+    return file && fclose(file) == 0 && strcmp(is, text) == 0;
+}
+
+static void a_file_that_was_begun_goes_on_after_what_is_known_of_it(void)
+{
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && fputs("one,two,three", file) >= 0);
+    se3di_partial_leave(file);
+    CHECK(se3di_partial_continue(path, 8, hash_of("one;two,", 8)) == NULL && errno == ESTALE);
+    CHECK(se3di_partial_continue(path, 14, hash_of("one,two,three", 13)) == NULL);
+    CHECK(errno == ESTALE && has_text(partial, "one,two,three"));
+    file = se3di_partial_continue(path, 8, hash_of("one,two,", 8));
+    CHECK(file && fputs("four", file) >= 0 && se3di_partial_close(file, path));
+    CHECK(has_text(path, "one,two,four") && !exists(partial));
+    /* the one that has its name stays as it is until the copy is complete */
+    file = se3di_partial_continue(path, 4, hash_of("one,", 4));
+    CHECK(file && has_text(path, "one,two,four"));
+    CHECK(file && fputs("five", file) >= 0 && se3di_partial_close(file, path));
+    CHECK(has_text(path, "one,five"));
+    CHECK(unlink(path) == 0);
+    CHECK(se3di_partial_continue(path, 4, hash_of("one,", 4)) == NULL && errno == ESTALE);
+    CHECK(mkfifo(path, 0600) == 0);
+    CHECK(se3di_partial_continue(path, 4, hash_of("one,", 4)) == NULL && errno == ESTALE);
+    CHECK(unlink(path) == 0 && mkdir(partial, 0700) == 0);
+    write_text(path, "one,two");
+    CHECK(se3di_partial_continue(path, 4, hash_of("one,", 4)) == NULL && errno != 0);
+    CHECK(has_text(path, "one,two") && rmdir(partial) == 0 && unlink(path) == 0);
+}
+
+/* Several blocks, the last of which is not full. */
+static void long_beginnings_are_known(void)
+{
+    enum { SIZE = 10000 };
+    static char text[SIZE];
+    memset(text, 'x', sizeof text);
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && fwrite(text, 1, SIZE, file) == SIZE && se3di_partial_close(file, path));
+    text[SIZE - 2] = 'y';
+    CHECK(se3di_partial_continue(path, SIZE - 1, hash_of(text, SIZE - 1)) == NULL);
+    file = se3di_partial_continue(path, SIZE - 2, hash_of(text, SIZE - 2));
+    CHECK(file && ftell(file) == SIZE - 2);
+    se3di_partial_abandon(file, path);
+    CHECK(exists(path) && !exists(partial) && unlink(path) == 0);
+}
+
+static void rows_that_were_written_are_kept(void)
+{
+    FILE *file = se3di_partial_open(path);
+    CHECK(file && fputs("whole row\nhalf a", file) >= 0 && fflush(file) == 0);
+    CHECK(file && se3di_partial_keep(file, path, 10));
+    CHECK(has_text(path, "whole row\n") && unlink(path) == 0);
+    file = se3di_partial_open(path);
+    CHECK(file && fputs("row\nro", file) >= 0 && fflush(file) == 0 && mkdir(path, 0700) == 0);
+    CHECK(file && se3di_partial_keep(file, path, 4)); /* under the temporary name */
+    CHECK(has_text(partial, "row\n") && rmdir(path) == 0);
+    file = fopen(partial, "r"); /* what cannot be cut is not kept */
+    CHECK(file && !se3di_partial_keep(file, path, 2) && !exists(path));
+    se3di_partial_abandon(file, path);
+    CHECK(!exists(partial));
+}
+
+static void a_disk_that_is_full_is_told(void)
+{
+    FILE *full = fopen("/dev/full", "w");
+    if (!full) {
+        return;
+    }
+    touch(partial);
+    errno = 0;
+    CHECK(fputs("x", full) >= 0 && !se3di_file_sync(full) && errno == ENOSPC);
+    CHECK(!se3di_file_cut(full, 0));
+    CHECK(!se3di_partial_close(full, path) && errno != 0);
+    CHECK(!exists(path) && !exists(partial));
+    int ends[2];
+    CHECK(pipe(ends) == 0);
+    FILE *tube = fdopen(ends[1], "w");
+    CHECK(tube && fputs("x", tube) >= 0 && se3di_file_sync(tube)); /* no disk, no mistake */
+    CHECK(tube && !se3di_file_seek(tube, 0) && fclose(tube) == 0 && close(ends[0]) == 0);
+}
+
+/* Room for 4096 characters: what does not fit is refused, not cut. */
+static void names_that_are_too_long_are_told(void)
+{
+    static char name[5000], made[5000];
+    int hold = 0;
+    memset(name, 'n', 4594);
+    CHECK(se3di_partial_open(name) == NULL && errno == ENAMETOOLONG);
+    errno = 0;
+    CHECK(se3di_partial_continue(name, 0, SE3DI_HASH_START) == NULL && errno == ENAMETOOLONG);
+    se3di_file_remove(name);
+    memset(name, 'n', sizeof name - 1);
+    errno = 0;
+    CHECK(!se3di_file_make_folders(name) && errno == ENAMETOOLONG);
+    errno = 0;
+    CHECK(!se3di_file_join(folder, name, made, sizeof made) && errno == ENAMETOOLONG);
+    errno = 0;
+    CHECK(!se3di_temporary_make(folder, made, strlen(folder) + 12) && errno == ENAMETOOLONG);
+    errno = 0;
+    CHECK(!se3di_temporary_hold(folder, made, strlen(folder) + 12, &hold) && errno == ENAMETOOLONG);
+    CHECK(hold == -1);
+    errno = 0;
+    CHECK(!se3di_file_find_folder(folder, made, 5) && errno == ENAMETOOLONG);
+    /* room for the first name, not for that of a folder that is held */
+    CHECK(se3di_temporary_hold(folder, made, strlen(folder) + 13, &hold) && hold == -1);
+    CHECK_CONTAINS(made, "/se3d-");
+    CHECK(exists(made));
+    se3di_temporary_release(made, hold);
+    CHECK(!exists(made));
+}
+
+static void paths_are_joined_and_found(void)
+{
+    char made[400], inner[400], link[300];
+    CHECK(se3di_file_join(folder, "a/b.csv", made, sizeof made));
+    CHECK(strncmp(made, folder, strlen(folder)) == 0 &&
+          strcmp(made + strlen(folder), "/a/b.csv") == 0);
+    CHECK(se3di_file_join(NULL, "b", made, sizeof made) && strcmp(made, "./b") == 0);
+    CHECK(se3di_file_make_folders(made));
+    snprintf(inner, sizeof inner, "%s/x//y/z.csv", folder);
+    CHECK(se3di_file_make_folders(inner) && se3di_file_make_folders(inner));
+    snprintf(inner, sizeof inner, "%s/x/y", folder);
+    CHECK(exists(inner) && rmdir(inner) == 0);
+    snprintf(link, sizeof link, "%s/x/away", folder);
+    CHECK(symlink("/tmp", link) == 0);
+    errno = 0;
+    CHECK(!se3di_file_join(folder, "x/away/b.csv", made, sizeof made) && errno == ELOOP);
+    errno = 0;
+    CHECK(!se3di_file_join(folder, "x/away", made, sizeof made) && errno == ELOOP);
+    CHECK(unlink(link) == 0);
+    touch(link);
+    snprintf(inner, sizeof inner, "%s/b/c.csv", link);
+    errno = 0;
+    CHECK(!se3di_file_make_folders(inner) && errno == ENOTDIR); /* in a file */
+    errno = 0;
+    CHECK(se3di_file_create(link) == NULL && errno == EEXIST);
+    CHECK(unlink(link) == 0);
+    snprintf(inner, sizeof inner, "%s/x", folder);
+    CHECK(se3di_file_find_folder(inner, made, sizeof made));
+    CHECK(made[strlen(made) - 1] == '/' && rmdir(inner) == 0);
+    errno = 0;
+    CHECK(!se3di_file_find_folder(inner, made, sizeof made) && errno == ENOENT);
+    CHECK(se3di_file_find_folder("/", made, sizeof made) && strcmp(made, "/") == 0);
+    CHECK(se3di_file_find_folder("", made, sizeof made) && made[0] == '/' &&
+          made[strlen(made) - 1] == '/');
+    CHECK(se3di_file_is_hdf5("a.h5") && se3di_file_is_hdf5("a.b.hdf5"));
+    CHECK(!se3di_file_is_hdf5("a.csv") && !se3di_file_is_hdf5("h5"));
+    CHECK(!se3di_file_is_same(folder, inner));
+}
+
+static void only_regular_files_are_gone_on_with(void)
+{
+    CHECK(mkfifo(path, 0600) == 0);
+    errno = 0;
+    CHECK(se3di_file_continue(path) == NULL && errno == EINVAL);
+    CHECK(unlink(path) == 0 && symlink("nowhere", path) == 0);
+    errno = 0;
+    CHECK(se3di_file_continue(path) == NULL && errno == ELOOP);
+    CHECK(unlink(path) == 0);
+    const pid_t child = fork();
+    if (child == 0) { /* who ends a little later has ended */
+        FILE *file = se3di_file_continue(path);
+        const struct timespec pause = {0, 100000000};
+        nanosleep(&pause, NULL);
+        _exit(file ? 0 : 1);
+    }
+    while (!exists(path)) {
+    }
+    FILE *file = se3di_file_continue(path);
+    int status = 1;
+    CHECK(file && fclose(file) == 0);
+    CHECK(waitpid(child, &status, 0) == child && status == 0 && unlink(path) == 0);
+}
+
+/* Deep trees and those of other users are left, as are names that only look alike. */
+static void what_is_not_its_own_is_not_taken_away(void)
+{
+    char name[700], like[300], made[300];
+    int hold = -1;
+    for (int depth = 60; depth <= 70; depth += 10) {
+        size_t length = (size_t)snprintf(name, sizeof name, "%s/deep", folder);
+        CHECK(mkdir(name, 0700) == 0);
+        for (int k = 0; k < depth; ++k) {
+            length += (size_t)snprintf(name + length, sizeof name - length, "/d");
+            CHECK(mkdir(name, 0700) == 0);
+        }
+        name[strlen(folder) + 5] = '\0';
+        se3di_temporary_remove(name);
+        CHECK(exists(name) == (depth > 64));
+    }
+    snprintf(like, sizeof like, "%s/shallow", folder);
+    strcat(name, "/d/d/d/d/d/d/d/d/d/d");
+    CHECK(rename(name, like) == 0);
+    se3di_temporary_remove(like);
+    name[strlen(folder) + 5] = '\0';
+    se3di_temporary_remove(name);
+    CHECK(!exists(name) && !exists(like));
+    snprintf(like, sizeof like, "%s/se3d-held-abcdefg", folder);
+    CHECK(mkdir(like, 0700) == 0);
+    CHECK(se3di_temporary_hold(folder, made, sizeof made, &hold));
+    se3di_temporary_release(made, hold);
+    CHECK(exists(like) && !exists(made));
+    if (geteuid() == 0) {
+        CHECK(chown(like, 12345, 12345) == 0);
+        se3di_temporary_remove(like);
+        CHECK(exists(like));
+    }
+    CHECK(rmdir(like) == 0);
+    se3di_temporary_remove(like); /* which is not there */
+}
+
+/* Without descriptors a folder is made, and not held. */
+static void descriptors_that_are_all_taken_are_survived(void)
+{
+    char made[300];
+    int hold = 0;
+    struct rlimit before;
+    CHECK(getrlimit(RLIMIT_NOFILE, &before) == 0);
+    const struct rlimit none = {3, before.rlim_max};
+    CHECK(setrlimit(RLIMIT_NOFILE, &none) == 0);
+    const int is_held = se3di_temporary_hold(folder, made, sizeof made, &hold);
+    const FILE *file = se3di_partial_open(path);
+    const int why = errno;
+    CHECK(setrlimit(RLIMIT_NOFILE, &before) == 0);
+    CHECK(is_held && hold == -1 && exists(made));
+    CHECK(!file && why == EMFILE && !exists(partial));
+    se3di_temporary_release(made, hold);
+    CHECK(!exists(made));
+}
+
 int main(void)
 {
     const char *where = getenv("TMPDIR");
@@ -196,6 +445,15 @@ int main(void)
     RUN(two_paths_of_one_file_are_known);
     RUN(only_regular_files_are_opened_for_reading);
     RUN(what_was_left_is_swept_and_nothing_else);
-    rmdir(folder);
+    RUN(a_file_that_was_begun_goes_on_after_what_is_known_of_it);
+    RUN(long_beginnings_are_known);
+    RUN(rows_that_were_written_are_kept);
+    RUN(a_disk_that_is_full_is_told);
+    RUN(names_that_are_too_long_are_told);
+    RUN(paths_are_joined_and_found);
+    RUN(only_regular_files_are_gone_on_with);
+    RUN(what_is_not_its_own_is_not_taken_away);
+    RUN(descriptors_that_are_all_taken_are_survived);
+    CHECK(rmdir(folder) == 0);
     return check_finish();
 }

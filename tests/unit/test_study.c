@@ -741,6 +741,92 @@ static void hardpoints_are_set_in_place_with_the_bits_of_a_reading(void)
     }
 }
 
+/* A pendulum and what a row adds to it: whatever is made of a, the bits are those of a reading, and
+ * what cannot be set in place is read. */
+static void what_depends_on_a_parameter_is_found(void)
+{
+    static const char head[] =
+        "se3d: 1\nparameters: {a: 1, b: 2, on: 0}\npoints: {p: [a, 0, 1], o: [0, 0, 0]}\n"
+        "bodies:\n- {name: bar, mass: 2, inertia: [1, 1, 1], position: [0.3, 0, 0]}\n%s"
+        "joints:\n- {name: pin, type: revolute, body_i: ground, body_j: bar, at: o, axis: [0, 1, "
+        "0]}\n%s"
+        "analysis: {type: dynamics, duration: 0.02, method: dop853}\n"
+        "study: {parameters: {a: [1, 1.5]}, measures: {m: {final: %s}, k: {max: energy.total}}}\n";
+#define CONTACT "contact: {}\nmaterials: [{name: steel, density: 7800, stiffness: 1e6}]\n"
+#define BALL    "shapes: [{type: sphere, radius: 0.1*a, material: steel}]"
+#define FREE    "- {name: b, mass: 1, inertia: [1, 1, 1], position: [3, 0, 0]"
+#define LEG(x)                                                                                     \
+    "parts: {leg: {parameters: {k: 3, l: k + 1}, points: {e: [0, k, 0]}, bodies: [{name: b, "      \
+    "mass: l, inertia: [1, 1, 1], position: e}], forces: [{name: s, type: tsda, body_i: ground, "  \
+    "body_j: b, at: [0, 0, 1], at_2: e, k: 10*k, l0: 1}]}}\ninstances: [{part: leg, prefix: "      \
+    "p_, " x "}]\n"
+    static const struct {
+        const char *bodies, *more, *measure;
+        int kept;
+    } rows[] = {
+        {FREE ", velocity: [a, 0, 0]}\n", "", "b.position.x", 1},
+        {FREE ", orientation: {axis: [0, 0, 1], angle: 0.1*a}}\n", "", "b.orientation.e3", 1},
+        {FREE ", angular_velocity: [0, a, 0]}\n", "", "b.orientation.e2", 1},
+        {FREE ", when: a > 0}\n", "", "b.position.z", 0},
+        {FREE ", when: on, velocity: [a, 0, 0]}\n", "", "pin.angle", 1},
+        {"- {name: ground, markers: [{name: g, position: [a, 0, 0]}]}\n", "", "ground.g.position.x",
+         0},
+        {"- {name: rod, from: o, to: p, radius: 0.01, density: 1000}\n", "", "rod.position.x", 0},
+        {"- {name: sheet, plate: [o, p, [0, 2, 0]], thickness: 0.01, density: 1000}\n", "",
+         "sheet.position.x", 0},
+        /* shapes are nothing but masses without contact */
+        {FREE ", " BALL "}\n", "materials: [{name: steel, density: 7800}]\n", "b.position.z", 1},
+        {"- {name: b, position: [3, 0, 0], " BALL "}\n",
+         "materials: [{name: steel, density: 7800}]\n", "b.position.z", 1},
+        {FREE ", " BALL "}\n", CONTACT, "b.position.z", 0},
+        {"- {name: b, mass: a, inertia: [1, 1, 1]}\n", CONTACT, "b.position.z", 1},
+        {"- {name: b, mass: 1, inertia: [1, 1, 1], position: [3*a, 0, 0]}\n", CONTACT,
+         "b.position.x", 0},
+        {"", "materials: [{name: steel, density: 1000*a}]\n", "pin.angle", 0},
+        {"", "gravity: [0, 0, -9.81*a]\n", "pin.angle", 0},
+        {"", "states: [{name: s, type: lag, input: a*pin.angle, time_constant: 1}]\n", "s.value",
+         0},
+        /* an element that is left out, of a type that may be another, and a rate */
+        {"", "forces: [{name: f, type: rsda, joint: pin, k: a, when: on}]\n", "pin.angle", 1},
+        {"", "forces: [{name: f, type: rsda, joint: pin, k: a, when: a > 1}]\n", "pin.angle", 0},
+        {"", "forces: [{name: f, type: rsda, joint: pin, k: 1, theta0: a}]\n", "f.torque", 1},
+        {FREE "}\n", "drivers: [{name: d, joint: pin, rate: a}]\n", "pin.angle", 0},
+        {FREE "}\n", "drivers: [{name: d, joint: pin, value: a*t}]\n", "d.effort", 1},
+        /* those that name an element or a body that is read again are read again, too */
+        {FREE "}\n- {name: c, mass: 1, inertia: [1, 1, 1], position: [3, 0, a]}\n",
+         "forces: [{name: f, type: tsda, body_i: b, body_j: c, point_i: [0, 0, 0], point_j: [0, 0, "
+         "0], k: 9, l0: 1}]\n",
+         "f.force", 1},
+        {"- {name: c, mass: 1, inertia: [1, 1, 1], position: [3, 0, a]}\n",
+         "states: [{name: s, type: lag, input: c.position.z, time_constant: 1}]\n", "s.value", 0},
+        {"", "forces: [{name: f, type: torque, body: bar, value: [0, a, 0]}]\n", "f.torque.y", 0},
+        {"", "forces: [{name: f, type: torque, body: bar, value: [0, a, 0]}]\n", "pin.angle", 1},
+        /* parts */
+        {"", LEG("parameters: {k: a}"), "p_b.position.y", 1},
+        {"", LEG("parameters: {k: 2}"), "p_b.position.y", 1},
+        {"", LEG("parameters: {e: p}"), "p_b.position.x", 1},
+        {"", LEG("position: [a, 0, 0]"), "p_b.position.x", 0},
+        {"", LEG("when: a > 0"), "p_b.position.x", 0},
+        {"", LEG("parameters: {k: a}, repeat: 1"), "p_b.position.y", 0},
+        {"", LEG("parameters: {l: b}, repeat: 1"), "p_b.position.y", 1},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        char text[3000];
+        snprintf(text, sizeof text, head, rows[k].bodies, rows[k].more, rows[k].measure);
+        const int before = check_failures;
+        se3d_model *model = read_model(text);
+        compare_samples(model, 2, rows[k].kept);
+        if (check_failures > before) {
+            fprintf(stderr, "row %zu\n%s", k, text);
+        }
+        se3d_model_destroy(model);
+    }
+#undef CONTACT
+#undef BALL
+#undef FREE
+#undef LEG
+}
+
 /* Channels, times, bands and curves of measures may be made of what varies: x = t. A spring that
  * does nothing lets the parameter be set in place otherwise. */
 static void numbers_of_measures_are_those_of_their_sample(void)
@@ -793,6 +879,7 @@ int main(void)
     RUN(requests_are_answered);
     RUN(samples_are_set_in_place_with_the_bits_of_a_reading);
     RUN(hardpoints_are_set_in_place_with_the_bits_of_a_reading);
+    RUN(what_depends_on_a_parameter_is_found);
     RUN(numbers_of_measures_are_those_of_their_sample);
     return check_finish();
 }
