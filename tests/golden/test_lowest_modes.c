@@ -51,7 +51,8 @@ static se3d_body before(const world *w, int k)
 }
 
 /* A hinge at a place of the ground; bodies are in their first poses. */
-static void add_hinge(world *w, se3d_body body_i, int k, const double at[3], const double axis[3])
+static se3d_constraint add_hinge(world *w, se3d_body body_i, int k, const double at[3],
+                                 const double axis[3])
 {
     se3d_joint_def def = se3d_joint_def_default();
     se3d_constraint joint;
@@ -66,6 +67,7 @@ static void add_hinge(world *w, se3d_body body_i, int k, const double at[3], con
         def.axis_i[c] = def.axis_j[c] = axis[c];
     }
     CHECK(se3d_joint_create_revolute(w->system, &def, &joint) == SE3D_OK);
+    return joint;
 }
 
 /* A hinge between each body and the one before, its axis a little different each time. */
@@ -190,6 +192,70 @@ static void damped_modes_are_those_of_the_dense_solver(void)
     compare(&w, 1e-12);
 }
 
+/* Springs and dampers from each body to the next but one: what couples them is not one block each. */
+static void dampers_between_bodies_are_seen(void)
+{
+    world w = begin();
+    add_hinges(&w, 0.3);
+    add_springs(&w, 100.0, 0.0);
+    for (int k = 0; k + 2 < BODIES; ++k) {
+        se3d_tsda_def def = se3d_tsda_def_default();
+        se3d_force damper;
+        def.body_i = w.body[k];
+        def.body_j = w.body[k + 2];
+        def.point_j[1] = 0.5;
+        def.k = 30.0;
+        def.c = k == BODIES / 2 ? 2.0 : 0.0;
+        def.l0 = 2.0;
+        CHECK(se3d_force_create_tsda(w.system, &def, &damper) == SE3D_OK);
+    }
+    compare(&w, 1e-9);
+}
+
+/* A body that turns about its axis wobbles, by gyroscopic terms. */
+static void a_body_that_turns_is_no_case_for_it(void)
+{
+    const double rate[3] = {3.0, 0.0, 0.0};
+    world w = begin();
+    CHECK(se3d_body_set_angular_velocity(w.system, w.body[7], rate) == SE3D_OK);
+    compare(&w, 0.0);
+}
+
+/* Rotors on the hinges tie the masses of bodies together. */
+static void rotors_have_the_modes_of_the_dense_solver(void)
+{
+    world w = begin();
+    for (int k = 0; k < BODIES; ++k) {
+        const double at[3] = {k, 0.0, 0.0}, axis[3] = {0.0, k % 2 ? 0.3 : 0.0, 1.0};
+        se3d_armature_def def = se3d_armature_def_default();
+        se3d_force rotor;
+        def.joint = add_hinge(&w, before(&w, k), k, at, axis);
+        def.inertia = 0.05 + 0.01 * k;
+        CHECK(se3d_force_create_armature(w.system, &def, &rotor) == SE3D_OK);
+    }
+    add_springs(&w, 100.0, 0.0);
+    compare(&w, 1e-9);
+}
+
+/* Loads that turn with their bodies make the stiffness unsymmetric: small ones do next to nothing,
+ * large ones do. */
+static void loads_that_follow_their_bodies_are_seen(void)
+{
+    static const double loads[] = {1e-3, 20.0};
+    for (size_t row = 0; row < sizeof loads / sizeof *loads; ++row) {
+        world w = begin();
+        add_hinges(&w, 0.3);
+        add_springs(&w, 100.0, 0.0);
+        se3d_load_def def = se3d_load_def_default();
+        se3d_force load;
+        def.body = w.body[BODIES - 1];
+        def.in_body_frame = 1;
+        def.value[1] = loads[row];
+        CHECK(se3d_force_create_load(w.system, &def, &load) == SE3D_OK);
+        compare(&w, 0.0);
+    }
+}
+
 /* The count is of the lowest, and there are no matrices. */
 static void what_is_not_asked_for_is_not_there(void)
 {
@@ -254,6 +320,10 @@ int main(void)
     RUN(free_bodies_do_not_vibrate);
     RUN(unstable_modes_are_found_by_their_size);
     RUN(damped_modes_are_those_of_the_dense_solver);
+    RUN(dampers_between_bodies_are_seen);
+    RUN(a_body_that_turns_is_no_case_for_it);
+    RUN(rotors_have_the_modes_of_the_dense_solver);
+    RUN(loads_that_follow_their_bodies_are_seen);
     RUN(what_is_not_asked_for_is_not_there);
     RUN(failed_allocations_leave_nothing);
     return check_finish();
