@@ -63,7 +63,7 @@ opens $brief "$dir/twenty/scene.html" "$dir/twenty/results.csv" b2
 # 10,000 grains, or 1,200 if there is not much time: some come late, some leave early.
 many=1200
 [ -z "${SE3D_LONG:-}" ] || many=10000
-"$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains"
+"$program" run -q "$source/examples/models/pushed_grains.yaml" -o "$dir/grains" --duration 0.1
 opens_grains() {
     expect "$1 grains" 0 "$program" view -q "$dir/grains" -o "$dir/$1.html"
     cp "$dir/grains/grains.csv" "$dir/$1.csv"
@@ -101,7 +101,7 @@ fi
 # Of a suspension every joint is seen, of a hopper a third of the beads.
 for pair in suspension:joints hopper:beads; do
     model=${pair%:*}
-    "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model" --duration 0.2
+    "$program" run -q "$source/examples/models/$model.yaml" -o "$dir/$model" --duration 0.05
     expect "$model" 0 "$program" view -q "$dir/$model"
     opens $brief "$dir/$model/scene.html" "${pair#*:}"
 done

@@ -533,9 +533,12 @@ const run = async () => {
   for (const words of jobs) {
     brief = words[0] === "brief";
     [page, csv, body, picture] = words.slice(brief ? 1 : 0);
+    // A quarter of the points where none are counted or timed, nor shown to anybody: the processor draws them.
+    const coarse = !["joints", "beads", "live", "playground", "shots", "still"].includes(csv) && body !== "grains" && !picture;
     const before = failures;
     await call("Page.navigate", { url: "about:blank" });
     await call("Emulation.clearDeviceMetricsOverride");
+    if (coarse) await call("Emulation.setDeviceMetricsOverride", { width: 800, height: 450, deviceScaleFactor: 0.5, mobile: false });
     problems.length = 0;
     await run();
     if (failures > before) console.error(`that was ${page} ${csv}`);
