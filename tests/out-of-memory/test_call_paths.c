@@ -13,6 +13,8 @@
 
 #include "check.h"
 #include "io/base/pool.h"
+#include "io/document/document.h"
+#include "io/document/layout.h"
 #include "io/fmi/exchange.h"
 #include "io/fmi/package.h"
 #include "io/live/live.h"
@@ -289,6 +291,27 @@ static se3d_status pack(se3d_model *model, const char *path, const se3d_model_op
     return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_IO ? status : SE3D_OK;
 }
 
+/* Its text, as `se3d fmt` does it. */
+static se3d_status lay_out(const char *path, se3d_model_error *error)
+{
+    se3di_iopool pool;
+    char *text = NULL, *made = NULL;
+    size_t length = 0, made_length = 0;
+    FILE *file = fopen(path, "rb");
+    CHECK(file != NULL);
+    se3di_iopool_init(&pool, &allocator);
+    snprintf(error->message, sizeof error->message, "no text");
+    se3d_status status = file ? se3di_document_read(&pool, file, &text, &length) : SE3D_ERR_IO;
+    status = status < 0 ? status
+                        : se3di_layout_make(&pool, path, text, length, &made, &made_length, error);
+    CHECK(status < 0 || strlen(made) == made_length);
+    se3di_iopool_destroy(&pool);
+    if (file) {
+        fclose(file);
+    }
+    return status;
+}
+
 static se3d_status use_model(const char *path, se3d_model_error *error)
 {
     se3d_model *model = NULL;
@@ -296,7 +319,8 @@ static se3d_status use_model(const char *path, se3d_model_error *error)
     se3d_model_options options = se3d_model_options_default();
     options.allocator = &allocator;
     options.mass_optional = 1;
-    se3d_status status = se3d_model_read_file(path, &options, &model, error);
+    se3d_status status = lay_out(path, error);
+    status = status < 0 ? status : se3d_model_read_file(path, &options, &model, error);
     if (status >= 0) {
         snprintf(error->message, sizeof error->message, "no list");
         status = se3d_model_list_channels(model, &listed);

@@ -558,6 +558,104 @@ static void tables_have_a_row_for_each_sample(void)
     remove(path);
 }
 
+/* ---- tables that were begun ------------------------------------------------------------------*/
+
+static se3d_status open_table(se3d_study *study, const char *path, int resume, uint32_t shard,
+                              se3d_study_table **table, se3d_model_error *error)
+{
+    se3d_study_table_def def = se3d_study_table_def_default();
+    def.path = path;
+    def.resume = resume;
+    def.shard = shard;
+    def.shards = 2;
+    return se3d_study_table_open(study, &def, table, error);
+}
+
+static void put_text(const char *path, const char *one, size_t length, const char *other)
+{
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(one, 1, length, file) == length && fputs(other, file) >= 0);
+    CHECK(file && fclose(file) == 0);
+}
+
+/* What stands in a table is gone on with only if it is this study's, sample for sample. */
+static void tables_of_something_else_are_not_gone_on_with(void)
+{
+    static const struct {
+        const char *from, *to, *message;
+    } changes[] = {{"# se3d", "# se4d", "is no table of a study"},
+                   {"study ", "study x", "is of another model, study or version"},
+                   {"shard 1/2", "shard x/2", "is of another model, study or version"},
+                   {"shard 1/2", "shard 1:2", "is of another model, study or version"},
+                   {"shard 1/2", "shard 1/x", "is of another model, study or version"},
+                   {"shard 1/2", "shard 2/2", "is another shard"},
+                   {"shard 1/2", "shard 1/3", "is another shard"},
+                   {", shard 1/2", "", "is another shard"},
+                   {"sample,", "simple,", "is of another model, study or version"},
+                   {"\n0,", "\nx,", "has a line that is no sample of the study"},
+                   {"\n0,", "\n0;", "has a line that is no sample of the study"},
+                   {"\n0,", "\n4000,", "has a line that is no sample of the study"},
+                   {"\n0,", "\n0,0,", "has a line that is no sample of the study"},
+                   {"\n0,", "\n1,", "sample"},
+                   {"\n2,", "\n0,", "sample"},
+                   {",ok\n", ",\"ok\n", "has a line that is no sample of the study"}};
+    char path[800], text[4000], changed[4200];
+    se3d_study_table *table = NULL;
+    se3d_model_error error;
+    opened s =
+        open_study(BLOCK "study: {samples: 4, parameters: {v: \"uniform(1, 2)\"}, measures: {z: "
+                         "{initial: block.position.z}}}\n");
+    snprintf(path, sizeof path, "%s/study_begun.csv", check_scratch());
+    remove(path);
+    CHECK(open_table(s.study, path, 0, 3, &table, &error) == SE3D_ERR_INVALID_ARGUMENT && !table);
+    CHECK(open_table(s.study, path, 0, 1, &table, &error) == SE3D_OK);
+    for (uint64_t k = 0; table && k < 4; k += 2) {
+        const char *row = "";
+        CHECK(!se3d_study_table_has(table, k));
+        CHECK(se3d_study_run_sample(s.study, k, &row) == SE3D_OK);
+        CHECK(se3d_study_table_append(table, row, &error) == SE3D_OK);
+        CHECK(se3d_study_table_has(table, k) && !se3d_study_table_has(table, k + 1));
+        CHECK(se3d_study_table_append(table, row, &error) == SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(error.message, "the row is no new sample of this table");
+        CHECK(se3d_study_table_append(table, "x\n", &error) == SE3D_ERR_INVALID_ARGUMENT);
+    }
+    se3d_study_table_close(table);
+    CHECK(open_table(s.study, path, 0, 1, &table, &error) == SE3D_ERR_STATE && !table);
+    CHECK_CONTAINS(error.message, "is there already: --resume goes on with it");
+    FILE *file = fopen(path, "rb");
+    const size_t length = file ? fread(text, 1, sizeof text - 1, file) : 0;
+    text[length] = '\0';
+    CHECK(file && fclose(file) == 0 && length > 50);
+    for (size_t k = 0; k < sizeof changes / sizeof *changes; ++k) {
+        const char *at = strstr(text, changes[k].from);
+        CHECK(at != NULL);
+        if (at) {
+            snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, changes[k].to,
+                     at + strlen(changes[k].from));
+            put_text(path, changed, strlen(changed), "");
+            CHECK(open_table(s.study, path, 1, 1, &table, &error) == SE3D_ERR_STATE && !table);
+            CHECK_CONTAINS(error.message, changes[k].message);
+        }
+    }
+    /* torn anywhere: what is whole of it counts */
+    for (size_t cut = 0; cut <= length; ++cut) {
+        put_text(path, text, cut, "");
+        const se3d_status status = open_table(s.study, path, 1, 1, &table, &error);
+        CHECK(status == SE3D_OK || (status == SE3D_ERR_STATE && error.message[0]));
+        if (table) {
+            const int first = cut >= (size_t)(strstr(text, "\n2,") + 1 - text);
+            CHECK(se3d_study_table_has(table, 0) == first);
+            CHECK(se3d_study_table_has(table, 2) == (cut == length));
+        }
+        se3d_study_table_close(table);
+        table = NULL;
+    }
+    put_text(path, text, length, "# \n");
+    CHECK(open_table(s.study, path, 1, 1, &table, &error) == SE3D_ERR_STATE && !table);
+    CHECK(remove(path) == 0);
+    close_study(s);
+}
+
 /* ---- requests --------------------------------------------------------------------------------*/
 
 static void requests_are_answered(void)
@@ -876,6 +974,7 @@ int main(void)
     RUN(what_is_sought_is_measured_with_its_derivatives);
     RUN(mistakes_are_refused_with_what_is_allowed);
     RUN(tables_have_a_row_for_each_sample);
+    RUN(tables_of_something_else_are_not_gone_on_with);
     RUN(requests_are_answered);
     RUN(samples_are_set_in_place_with_the_bits_of_a_reading);
     RUN(hardpoints_are_set_in_place_with_the_bits_of_a_reading);

@@ -561,6 +561,13 @@ static char *lay_out(layout *l, size_t *length)
     return l->failed || l->gives_up ? NULL : write_text(l, length);
 }
 
+static se3d_status fail_memory(const char *file, char **out, se3d_model_error *error)
+{
+    *out = NULL;
+    se3di_document_report(error, file, 0, 0, "", "out of memory");
+    return SE3D_ERR_NO_MEMORY;
+}
+
 se3d_status se3di_layout_make(se3di_iopool *pool, const char *file, const char *text, size_t length,
                               char **out, size_t *out_length, se3d_model_error *error)
 {
@@ -577,14 +584,17 @@ se3d_status se3di_layout_make(se3di_iopool *pool, const char *file, const char *
         *out = lay_out(l, out_length);
     }
     if (!l || l->failed || (!*out && !l->gives_up)) {
-        se3di_document_report(error, file, 0, 0, "", "out of memory");
-        return SE3D_ERR_NO_MEMORY;
+        return fail_memory(file, out, error);
     }
-    if (!*out || se3di_document_parse(pool, file, *out, *out_length, &after, error) < 0 ||
-        !is_equal(before, after)) {
+    const se3d_status again =
+        *out ? se3di_document_parse(pool, file, *out, *out_length, &after, error) : SE3D_ERR_MODEL;
+    if (again == SE3D_ERR_NO_MEMORY) {
+        return fail_memory(file, out, error);
+    }
+    if (again < 0 || !is_equal(before, after)) {
         *out = se3di_iopool_copy(pool, text, length);
         *out_length = length;
         error->message[0] = '\0';
     }
-    return *out ? SE3D_OK : SE3D_ERR_NO_MEMORY;
+    return *out ? SE3D_OK : fail_memory(file, out, error);
 }
