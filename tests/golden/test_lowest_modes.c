@@ -192,7 +192,7 @@ static void damped_modes_are_those_of_the_dense_solver(void)
     compare(&w, 1e-12);
 }
 
-/* Springs and dampers from each body to the next but one: what couples them is not one block each. */
+/* Springs and dampers from each body to the next but one. */
 static void dampers_between_bodies_are_seen(void)
 {
     world w = begin();
