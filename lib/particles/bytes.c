@@ -419,7 +419,8 @@ static void code_lists(se3di_coder *c, se3di_particles *set, const lengths *n)
     for (size_t k = 0; k < n->slabs; ++k) {
         code_slab(c, &set->slabs[k]);
     }
-    se3di_code_indices(c, set->first, set->count + 1);
+    uint32_t none = 0; /* before the first particle comes there is no memory for it */
+    se3di_code_indices(c, set->count > 0 ? set->first : &none, set->count + 1);
     se3di_code_indices(c, set->list, n->list);
     for (size_t k = 0; k < n->near; ++k) {
         uint32_t row[4] = {set->near_walls[k].i, set->near_walls[k].wall,

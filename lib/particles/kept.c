@@ -32,12 +32,13 @@ enum { PARTS_SLOW = 12, PARTS = 29 };
 static void list_parts(const se3di_particles *set, part parts[PARTS])
 {
     const size_t carry = set->list_valid ? 0 : set->carry_count;
-    const size_t loads = set->list_valid ? (set->count + 1) * sizeof *set->loads : 0;
+    /* before the first particle comes there is no memory for them */
+    const size_t listed = set->list_valid && set->count > 0 ? set->count + 1 : 0;
     const size_t rolls = set->rolls ? set->block_count * sizeof *set->rolls : 0;
     const size_t old = set->list_valid ? 0 : set->mesh_old_count;
     const part all[] = {
         {set->list, set->list_count * sizeof *set->list},
-        {set->first, set->list_valid ? (set->count + 1) * sizeof *set->first : 0},
+        {set->first, listed * sizeof *set->first},
         {set->near_walls, set->near_count * sizeof *set->near_walls},
         {set->faces, set->face_count * sizeof *set->faces},
         {set->origin, 3 * set->count * sizeof *set->origin},
@@ -51,7 +52,7 @@ static void list_parts(const se3di_particles *set, part parts[PARTS])
         {set->clumps, set->clump_count * sizeof *set->clumps},
         {set->particles, set->count * sizeof *set->particles},
         {set->spins, set->count * sizeof *set->spins},
-        {set->loads, loads},
+        {set->loads, listed * sizeof *set->loads},
         {set->carry, carry * sizeof *set->carry},
         {set->blocks, set->block_count * sizeof *set->blocks},
         {set->rolls, rolls},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Small worlds of particles that together have all that a set can hold: springs of pairs, walls and
  * meshes, rolling, cohesion, periods, sources, sinks, tags, walls that move and that give way, a
- * cell that strains, bonds that break. */
+ * cell that strains, bonds that break, nothing until a source begins. */
 #ifndef SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 #define SE3D_TESTS_SUPPORT_PARTICLE_WORLDS_H
 
@@ -18,11 +18,12 @@ enum {
     PARTICLES_FUNNEL,
     PARTICLES_CELL,
     PARTICLES_BONDS,
+    PARTICLES_LATE,
     PARTICLES_WORLDS
 };
 
 static const char *const particle_world_names[PARTICLES_WORLDS] = {
-    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel", "cell", "bonds"};
+    "heap", "mesh", "period", "body", "two sets", "clumps", "funnel", "cell", "bonds", "late"};
 
 static inline se3d_material particle_material(se3d_system *system, double rolling, double cohesion)
 {
@@ -121,7 +122,7 @@ static inline void particle_passage(se3d_particles *set, double height)
     CHECK(!se3d_particles_add_flow(set, &def, NULL));
 }
 
-static inline void particle_flow(se3d_particles *set, se3d_material material)
+static inline void particle_flow(se3d_particles *set, se3d_material material, double start)
 {
     static const double radii[3] = {0.006, 0.009, 0.011};
     se3d_fill_def fill = particle_fill(material, 0.3, 0.36);
@@ -133,6 +134,7 @@ static inline void particle_flow(se3d_particles *set, se3d_material material)
     fill.seed = 3;
     source.fill = &fill;
     source.rate = 2000.0;
+    source.start = start;
     CHECK(!se3d_particles_add_source(set, &source, NULL));
     sink.normal[2] = 1.0;
     sink.point[2] = 0.01;
@@ -279,6 +281,43 @@ static inline se3d_system *particle_cell(int32_t threads)
     return system;
 }
 
+/* Gravity that may have no value as far as anybody knows: each step can be taken back. */
+static inline void particle_tide(se3d_system *system)
+{
+    se3d_function_def f = se3d_function_def_default();
+    se3d_function gravity[3] = {{0, 0}, {0, 0}, {0, 0}};
+    f.expression = "-9.81*sqrt(1 - t)";
+    CHECK(!se3d_function_create(system, &f, &gravity[2]));
+    CHECK(!se3d_system_set_gravity_function(system, gravity));
+}
+
+/* What a kind has beside a bed of spheres. */
+static inline void particle_more(se3d_system *system, se3d_particles *set, int kind,
+                                 se3d_material stone, se3d_material floor)
+{
+    if (kind == PARTICLES_LATE) {
+        particle_flow(set, stone, 0.03);
+        particle_tide(system);
+    }
+    if (kind == PARTICLES_MESH) {
+        particle_flow(set, stone, 0.0);
+        particle_passage(set, 0.12);
+    }
+    if (kind == PARTICLES_CLUMPS) {
+        particle_clumps(set, stone);
+        particle_passage(set, 0.1);
+    }
+    if (kind == PARTICLES_HEAP) {
+        particle_lid(system, set, floor);
+    }
+    if (kind == PARTICLES_BONDS) {
+        particle_bonds(system, set);
+    }
+    if (kind == PARTICLES_BODY) {
+        particle_bodies(system, floor);
+    }
+}
+
 /* The same model each time, but for the threads. */
 static inline se3d_system *particle_world(int kind, int32_t threads)
 {
@@ -306,24 +345,8 @@ static inline se3d_system *particle_world(int kind, int32_t threads)
     const double low = kind == PARTICLES_MESH ? 0.11 : kind == PARTICLES_FUNNEL ? 0.2 : 0.0;
     const double high = kind == PARTICLES_MESH ? 0.18 : kind == PARTICLES_FUNNEL ? 0.28 : 0.1;
     se3d_fill_def fill = particle_fill(stone, low, high);
-    CHECK(!se3d_particles_fill_lattice(set, &fill, NULL));
-    if (kind == PARTICLES_MESH) {
-        particle_flow(set, stone);
-        particle_passage(set, 0.12);
-    }
-    if (kind == PARTICLES_CLUMPS) {
-        particle_clumps(set, stone);
-        particle_passage(set, 0.1);
-    }
-    if (kind == PARTICLES_HEAP) {
-        particle_lid(system, set, floor);
-    }
-    if (kind == PARTICLES_BONDS) {
-        particle_bonds(system, set);
-    }
-    if (kind == PARTICLES_BODY) {
-        particle_bodies(system, floor);
-    }
+    CHECK(kind == PARTICLES_LATE || !se3d_particles_fill_lattice(set, &fill, NULL));
+    particle_more(system, set, kind, stone, floor);
     if (kind == PARTICLES_TWO_SETS) {
         set = particle_set(system, threads, kind);
         fill.material = floor;
