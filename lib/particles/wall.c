@@ -153,8 +153,10 @@ void se3di_particles_wrap(const se3di_particles *set, double d[3])
     }
     for (int a = 0; a < 3; ++a) {
         if (set->boundary[a] == SE3DI_BOUNDARY_PERIODIC) {
-            double length = set->upper[a] - set->lower[a];
-            d[a] -= length * se3di_nearest(d[a] / length);
+            const double length = set->upper[a] - set->lower[a];
+            if (fabs(d[a]) > 0.49 * length) { /* most pairs are nearer, and stay as they are */
+                d[a] -= length * se3di_nearest(d[a] / length);
+            }
         }
     }
 }
