@@ -303,6 +303,8 @@ typedef struct se3d_particles_tally {
                          everything, falling without end */
     double mass;      /* of those that are there [kg] */
     double energy;    /* kinetic and potential of those [J] */
+    double kinetic;   /* of that the kinetic one, of translation and rotation [J], */
+    double rotation;  /* and of this that of rotation [J] */
 } se3d_particles_tally;
 
 /* As se3d_particles_get_tally, told the size of *tally in bytes. @return as

@@ -56,6 +56,8 @@ se3d_particles_tally se3di_particles_tally(const se3di_particles *set, uint32_t 
             ++tally.count;
             tally.outside += (uint64_t)se3di_particles_is_out(set, k);
             tally.energy += share[0] + share[1] + share[2];
+            tally.kinetic += share[0] + share[1];
+            tally.rotation += share[1];
         }
     }
     return tally;

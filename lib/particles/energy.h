@@ -17,7 +17,7 @@ static inline size_t se3di_particles_next(const se3di_particles *set, size_t *id
 
 /* Of all particles [J]: kinetic ones of translation and rotation, potential one of gravity g. */
 se3d_particles_energy se3di_particles_energy(const se3di_particles *set, const double g[3]);
-/* What there is of a tag; its energy is the sum of the three. */
+/* What there is of a tag; its energy is the sum of the three, its kinetic one of the first two. */
 se3d_particles_tally se3di_particles_tally(const se3di_particles *set, uint32_t tag,
                                            const double g[3]);
 /* Counts since the set was made. */

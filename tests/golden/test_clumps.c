@@ -524,6 +524,7 @@ static void clumps_leave_whole(void)
     CHECK(tally.count == 2);
     CHECK_NEAR(tally.mass, 2.0 * 2000.0 * 4.0 / 3.0 * PI * 1e-6, 1e-15);
     CHECK_NEAR(tally.energy, tally.mass * 9.81 * 0.1, 1e-15);
+    CHECK(tally.kinetic == 0.0 && tally.rotation == 0.0);
     const uint32_t gone = 2; /* the second sphere of the first */
     CHECK(!se3d_particles_remove(b.particles, 1, &gone));
     CHECK(se3d_particles_count(b.particles) == 6 && se3d_particles_count_clumps(b.particles) == 2);

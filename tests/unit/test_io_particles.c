@@ -106,6 +106,28 @@ static void particle_falls_and_bounces_with_its_restitution(void)
     se3d_model_destroy(model);
 }
 
+/* It slides until it rolls with 5/7 of its speed, of which turning is two sevenths. */
+static void kinetic_energy_of_a_ball_that_rolls(void)
+{
+    se3d_status status = SE3D_OK;
+    se3d_model *model = run_model(
+        "se3d: 1\nmaterials: [{name: glass, density: 2500, stiffness: 1e5}]\n"
+        "particles: [{name: ball, material: glass, radius: 0.01, count: 1, velocity: [0.5, 0, 0], "
+        "lower: [-0.011, -0.011, 0], upper: [0.011, 0.011, 0.02]}]\n"
+        "bodies: [{name: ground, shapes: [{type: plane, material: glass}]}]\n"
+        "analysis: {type: dynamics, duration: 0.3}\noutput:\n  - {file: s.csv, every: 0.1, "
+        "channels: "
+        "[particles.kinetic, particles.rotation, ball.kinetic, ball.rotation]}\n",
+        results_folder(), &status);
+    CHECK(status >= 0);
+    const double rolls = 5.0 / 7.0 * 0.5 * 2500.0 * 4.0 / 3.0 * acos(-1.0) * 1e-6 * 0.25;
+    for (size_t k = 0; k < 4; k += 2) {
+        CHECK_NEAR(channel(model, k) / rolls, 1.0, 2e-3);
+        CHECK_NEAR(channel(model, k + 1) / rolls, 2.0 / 7.0, 2e-3);
+    }
+    se3d_model_destroy(model);
+}
+
 /* A piston at 2 m/s throws a particle at rest to (1 + e) 2 m/s, within what the automatic step
  * keeps of the restitution. */
 static void driven_wall_throws_a_particle(void)
@@ -662,6 +684,7 @@ static void clumps_and_regions_are_refused_by_name_and_line(void)
 
 int main(void)
 {
+    RUN(kinetic_energy_of_a_ball_that_rolls);
     RUN(tables_that_were_written_are_read_back);
     RUN(clumps_that_were_written_are_read_back);
     RUN(tables_are_refused_with_line_and_column);

@@ -145,6 +145,8 @@ static const quantity_name contact_names[] = {{"contacts.count", SE3DI_CONTACTS_
 static const quantity_name particle_names[] = {{"particles.count", SE3DI_PARTICLES_COUNT},
                                                {"particles.lost", SE3DI_PARTICLES_LOST},
                                                {"particles.energy", SE3DI_PARTICLES_ENERGY},
+                                               {"particles.kinetic", SE3DI_PARTICLES_KINETIC},
+                                               {"particles.rotation", SE3DI_PARTICLES_ROTATION},
                                                {"particles.left", SE3DI_PARTICLES_LEFT},
                                                {NULL, SE3DI_STEPS}};
 
@@ -178,6 +180,8 @@ static const quantity_name set_names[] = {{"count", SE3DI_SET_COUNT},
                                           {"left", SE3DI_SET_LEFT},
                                           {"mass", SE3DI_SET_MASS},
                                           {"energy", SE3DI_SET_ENERGY},
+                                          {"kinetic", SE3DI_SET_KINETIC},
+                                          {"rotation", SE3DI_SET_ROTATION},
                                           {"inserted", SE3DI_SET_INSERTED},
                                           {"deferred", SE3DI_SET_DEFERRED},
                                           {"waiting", SE3DI_SET_WAITING},
@@ -449,7 +453,8 @@ static bool explain_system(const char *head, const char *name, char *problem, si
     if (strcmp(head, "contacts") == 0 || strcmp(head, "particles") == 0) {
         snprintf(problem, size,
                  "`%.60s.%.60s` is unknown, there are contacts.count, contacts.force_max and, with "
-                 "`particles`, particles.count, particles.lost, particles.energy, particles.left",
+                 "`particles`, particles.count, particles.lost, particles.left, particles.energy, "
+                 "particles.kinetic, particles.rotation",
                  head, name);
         return true;
     }

@@ -109,11 +109,15 @@
     X(PARTICLES_LOST, 1, PARTICLES, 1, JUMPS, 0, 0, 0, 0)                                          \
     X(PARTICLES_ENERGY, 1, PARTICLES, 3, SOLVED, 2, 2, 1, 0)                                       \
     X(PARTICLES_LEFT, 1, PARTICLES, 2, JUMPS, 0, 0, 0, 0)                                          \
+    X(PARTICLES_KINETIC, 1, PARTICLES, 4, SOLVED, 2, 2, 1, 0)                                      \
+    X(PARTICLES_ROTATION, 1, PARTICLES, 5, SOLVED, 2, 2, 1, 0)                                     \
     X(SET_COUNT, 1, TALLY, 0, JUMPS, 0, 0, 0, 0)                                                   \
     X(SET_LOST, 1, TALLY, 1, JUMPS, 0, 0, 0, 0)                                                    \
     X(SET_LEFT, 1, TALLY, 2, JUMPS, 0, 0, 0, 0)                                                    \
     X(SET_MASS, 1, TALLY, 3, JUMPS, 0, 0, 1, 0)                                                    \
     X(SET_ENERGY, 1, TALLY, 4, SOLVED, 2, 2, 1, 0)                                                 \
+    X(SET_KINETIC, 1, TALLY, 5, SOLVED, 2, 2, 1, 0)                                                \
+    X(SET_ROTATION, 1, TALLY, 6, SOLVED, 2, 2, 1, 0)                                               \
     X(SET_INSERTED, 1, SOURCES, 0, JUMPS, 0, 0, 0, 0)                                              \
     X(SET_DEFERRED, 1, SOURCES, 1, JUMPS, 0, 0, 0, 0)                                              \
     X(SET_WAITING, 1, SOURCES, 2, JUMPS, 0, 0, 0, 0)                                               \

@@ -187,7 +187,7 @@ static se3d_status ask_work(const se3di_channel *c, se3di_sample *sample, double
     return status;
 }
 
-static se3d_status ask_particles(const se3di_channel *c, double numbers[4])
+static se3d_status ask_particles(const se3di_channel *c, double numbers[6])
 {
     se3d_particles_stats stats = {.steps = 0};
     se3d_particles_energy energy = {0.0, 0.0, 0.0};
@@ -199,6 +199,8 @@ static se3d_status ask_particles(const se3di_channel *c, double numbers[4])
     numbers[1] = (double)stats.lost;
     numbers[2] = (double)stats.left;
     numbers[3] = energy.translation + energy.rotation + energy.potential;
+    numbers[4] = energy.translation + energy.rotation;
+    numbers[5] = energy.rotation;
     return status;
 }
 

@@ -29,7 +29,7 @@ se3d_status se3di_tagged_ask_sources(const se3di_channel *c, double numbers[3])
     return SE3D_OK;
 }
 
-se3d_status se3di_tagged_ask_tally(const se3di_channel *c, double numbers[5])
+se3d_status se3di_tagged_ask_tally(const se3di_channel *c, double numbers[7])
 {
     se3d_particles_tally tally;
     const se3d_status status = se3d_particles_get_tally(c->particles, c->index, &tally);
@@ -39,6 +39,8 @@ se3d_status se3di_tagged_ask_tally(const se3di_channel *c, double numbers[5])
         numbers[2] = (double)(tally.lost + tally.outside);
         numbers[3] = tally.mass;
         numbers[4] = tally.energy;
+        numbers[5] = tally.kinetic;
+        numbers[6] = tally.rotation;
     }
     return status;
 }

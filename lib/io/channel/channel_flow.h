@@ -6,7 +6,7 @@
 #include "io/channel/channel.h"
 
 /* Answers to the questions of the same names (channel.h). */
-se3d_status se3di_tagged_ask_tally(const se3di_channel *channel, double numbers[5]);
+se3d_status se3di_tagged_ask_tally(const se3di_channel *channel, double numbers[7]);
 se3d_status se3di_tagged_ask_sources(const se3di_channel *channel, double numbers[3]);
 se3d_status se3di_tagged_ask_sink(const se3di_channel *channel, double *count);
 se3d_status se3di_tagged_ask_average(const se3di_channel *channel, double numbers[17]);
