@@ -93,6 +93,15 @@ double se3di_shapes_gap(const se3di_model *model, uint32_t i, uint32_t j, double
     return se3di_narrow_gap(s[0], &at[0], s[1], &at[1], normal);
 }
 
+int se3di_shapes_are_beyond(const se3di_model *model, uint32_t i, uint32_t j, double distance)
+{
+    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
+    se3di_shape_pose at[2];
+    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
+    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
+    return se3di_narrow_is_beyond(s[0], &at[0], s[1], &at[1], distance);
+}
+
 /* Never of one body: the planes of a drum would all be. */
 static int near(const se3di_model *model, uint32_t i, uint32_t j, double margin)
 {

@@ -15,6 +15,9 @@ double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j);
 /* How far apart they are, 0 if they touch, and the direction from i to j of that. */
 double se3di_shapes_gap(const se3di_model *model, uint32_t i, uint32_t j, double normal[3]);
 
+/* Whether they are farther apart than that, if one is a mesh and it is seen at once. */
+int se3di_shapes_are_beyond(const se3di_model *model, uint32_t i, uint32_t j, double distance);
+
 /* Renew the list of pairs if the shapes have moved too far since it was made. On failure it is
  * void, and visits look at all pairs. @return OK, NO_MEMORY */
 se3d_status se3di_broad_update(se3di_model *model);

@@ -184,7 +184,10 @@ static int meet(const pace *p, uint32_t i, uint32_t j, double h, double *gap, do
     se3di_sub(v[1], v[0], v[1]);
     double speed = se3di_norm(v[1]) + turning;
     double bound = se3di_shapes_gap_bound(model, i, j);
-    if (!(bound < h * (speed + p->gravity * h)) || !se3di_shapes_may_touch(model, i, j)) {
+    /* so far that gap > h (speed + sqrt(2 g gap)) */
+    const double far = h * (2.0 * speed + 3.0 * p->gravity * h);
+    if (!(bound < h * (speed + p->gravity * h)) || se3di_shapes_are_beyond(model, i, j, far) ||
+        !se3di_shapes_may_touch(model, i, j)) {
         return 0;
     }
     *gap = se3di_shapes_gap(model, i, j, n);

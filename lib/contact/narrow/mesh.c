@@ -650,7 +650,6 @@ static void begin(meeting *m, const se3di_solid *i, const se3di_solid *mesh,
     find_center(m);
     se3di_mat_mul_transposed(m->solid->at->R, m->mesh->at->R, m->R);
     se3di_solid_to_local(m->solid, m->mesh->at->x, m->x);
-    find_side(m);
 }
 
 typedef struct any_met {
@@ -718,6 +717,7 @@ void se3di_mesh_find(const se3di_solid *i, const se3di_solid *mesh, const se3di_
 {
     meeting m;
     begin(&m, i, mesh, manifold);
+    find_side(&m);
     m.filter = filter;
     find_parts(&m);
 }
@@ -752,11 +752,16 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
 {
     meeting m;
     begin(&m, i, mesh, manifold);
-    if (mesh->shape->rows == 0) { /* a heightfield has no tree */
+    const int has_tree = mesh->shape->rows == 0; /* a heightfield has none */
+    if (has_tree) {
         find_box(&m);
-        if (is_clear(&m) || se3di_narrow_flush(&m)) {
+        if (is_clear(&m)) {
             return;
         }
+    }
+    find_side(&m);
+    if (has_tree && se3di_narrow_flush(&m)) {
+        return;
     }
     if (!m.has_pieces) {
         find_parts(&m);

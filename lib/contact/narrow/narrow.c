@@ -3,10 +3,13 @@
 #include "contact/narrow/narrow.h"
 
 #include "contact/narrow/internal.h"
+#include "contact/shape/mesh.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
+
+#define ROUNDING 1e-9 /* of a distance */
 
 void se3di_narrow_sphere(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
@@ -185,4 +188,26 @@ double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, cons
         se3di_scale(-1.0, normal, normal);
     }
     return fmax(gap, 0.0);
+}
+
+static void note_any(void *ctx, uint32_t triangle)
+{
+    (void)triangle;
+    *(int *)ctx = 1;
+}
+
+int se3di_narrow_is_beyond(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
+                           const se3di_shape_pose *at_j, double distance)
+{
+    ordered two;
+    double local[3];
+    int met = 0;
+    put_in_order(&two, i, at_i, j, at_j);
+    if (group_of(two.second.shape) != SURFACE || group_of(two.first.shape) == SURFACE) {
+        return 0;
+    }
+    const double radius = two.first.shape->bound + distance;
+    se3di_solid_to_local(&two.second, two.first.at->x, local);
+    se3di_mesh_visit(two.second.shape, local, radius * (1.0 + ROUNDING), note_any, &met);
+    return !met;
 }

@@ -40,4 +40,9 @@ void se3di_narrow_find(const se3di_shape *i, const se3di_shape_pose *at_i, const
 double se3di_narrow_gap(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
                         const se3di_shape_pose *at_j, double normal[3]);
 
+/* Whether a mesh is farther than a distance from the sphere about the other one, which takes less
+ * than to find the gap; 0 also of pairs without a mesh. */
+int se3di_narrow_is_beyond(const se3di_shape *i, const se3di_shape_pose *at_i, const se3di_shape *j,
+                           const se3di_shape_pose *at_j, double distance);
+
 #endif
