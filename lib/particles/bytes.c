@@ -502,6 +502,7 @@ static void empty(se3di_particles *set)
     set->bond_count = set->bond_end_count = 0;
     set->block_count = set->slab_count = 0;
     set->list_valid = set->force_valid = set->carry_rolling = 0;
+    set->single = 0;
     set->topology_version = 0;
 }
 

@@ -54,6 +54,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .pairs = set->pairs,
         .walls = &c->wall,
         .materials = (uint32_t)set->stuff_count,
+        .material = SE3DI_NO_INDEX,
         .end = 1,
         .law = (int32_t)set->law,
         .limit = 1e30,

@@ -161,24 +161,43 @@ static double choose_skin(se3di_particles *set, double largest)
     return set->count > 0 ? set->skin_ratio * 2.0 * sum / (double)set->count : 0.0;
 }
 
+/* Notes whether all particles are of one material; returns whether that holds for those here.
+ * most: of the materials and of what they are below the largest number. */
+static int measure_materials(se3di_particles *set, double most[2])
+{
+    const unsigned first = set->count > 0 ? set->spins[0].material : 0;
+    size_t k = 1;
+    while (k < set->count && set->spins[k].material == first) {
+        ++k;
+    }
+    const int same = k >= set->count;
+    set->single = same && set->count > 0 ? first + 1 : 0;
+    most[0] = set->count > 0 ? (double)first : 0.0;
+    most[1] = set->count > 0 ? (double)(UINT16_MAX - first) : 0.0;
+    return same;
+}
+
 /* Box of all centres, largest and mean radius, uniformity, classes in use. */
 static double measure(se3di_particles *set, grid *g)
 {
+    enum { DIFFERS = SE3DI_PARTICLE_CLASSES, STUFF, SIZE = STUFF + 2 };
     const double largest = measure_box(set);
-    double most[SE3DI_PARTICLE_CLASSES + 1] = {0.0};
-    double *differs = &most[SE3DI_PARTICLE_CLASSES];
-    *differs = set->clump_count > 0 ? 1.0 : 0.0;
+    double most[SIZE] = {0.0};
+    double *differs = &most[DIFFERS];
+    const int same = measure_materials(set, &most[STUFF]);
+    *differs = set->clump_count > 0 || !same ? 1.0 : 0.0;
     for (size_t k = 0; k < set->count; ++k) {
         const double radius = set->particles[k].radius;
         double *of_class = &most[class_of(radius, largest)];
         *of_class = fmax(*of_class, radius);
         *differs = radius == largest ? *differs : 1.0;
     }
-    se3di_share_largest(set, SE3DI_PARTICLE_CLASSES + 1, most);
+    se3di_share_largest(set, SIZE, most);
     for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
         g->classes[c].radius = most[c];
     }
-    set->uniform = set->stuff_count == 1 && !(*differs > 0.0);
+    const int several = most[STUFF] + most[STUFF + 1] > UINT16_MAX;
+    set->uniform = !several && !(*differs > 0.0);
     set->skin = choose_skin(set, largest);
     return largest;
 }

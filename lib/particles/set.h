@@ -475,7 +475,8 @@ typedef struct se3di_particles {
     uint32_t *carry_next;
     size_t carry_count, carry_roll_capacity, carry_next_capacity;
     int32_t carry_rolling;       /* carry_roll has been filled */
-    int32_t uniform;             /* one material, one radius */
+    int32_t uniform;             /* all particles are of one material and radius */
+    uint32_t single;             /* 1 + that of all particles; 0: several, or it is not known */
     se3di_mesh_pair *mesh_pairs; /* active, by slab */
     size_t mesh_count, mesh_capacity;
     se3di_mesh_pair *mesh_old; /* their history while list_valid is 0 */
@@ -561,6 +562,7 @@ typedef struct se3di_force_task {
     const se3di_given *given;       /* walls: of every block, instead of the shape; NULL: none */
     const se3di_particles *clumped; /* whose clumps some particles are of; NULL: none */
     uint32_t materials;
+    uint32_t material;   /* of all particles; SE3DI_NO_INDEX: several, or it is not known */
     uint32_t begin, end; /* blocks */
     int32_t law, periodic, uniform, cohesive;
     double h;                            /* what the springs advance by */

@@ -208,6 +208,18 @@ static int has_clumps(const se3di_particles *set)
     return set->clump_count > 0 || (se3di_share_is_spread(set) && set->template_count > 0);
 }
 
+/* Of all particles, if they have one and it is known. */
+static uint32_t material_of_all(const se3di_particles *set)
+{
+    if (set->stuff_count == 1) {
+        return 0;
+    }
+    if (set->uniform && set->count > 0) {
+        return set->spins[0].material;
+    }
+    return set->single > 0 ? set->single - 1 : SE3DI_NO_INDEX;
+}
+
 static se3di_force_task prepare(se3di_particles *set, double h, const se3di_strain *strain)
 {
     se3di_force_task task = {
@@ -219,6 +231,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .pairs = set->pairs,
         .walls = set->walls,
         .materials = (uint32_t)set->stuff_count,
+        .material = material_of_all(set),
         .law = (int32_t)set->law,
         .uniform = set->uniform,
         .cohesive = set->cohesive,
