@@ -175,7 +175,7 @@ static double oblique(int32_t law, int has_plane, uint64_t *seed, size_t parts)
     return missing;
 }
 
-/* Where they slip, too, and although the tangential stiffness of hertz_mindlin follows the overlap:
+/* Also while they slip, and although the tangential stiffness of hertz_mindlin follows the overlap:
  * what is missing is the error of the motion, of the second order. */
 static void oblique_impacts_close_to_second_order(void)
 {
