@@ -235,7 +235,7 @@ se3di_state_scale se3di_explicit_measure_by(const se3di_explicit *m)
 }
 
 /* The same, and neither of the velocities below what rounding makes of the other. */
-static se3di_state_scale measure_both_by(const se3di_explicit *m)
+se3di_state_scale se3di_explicit_measure_both_by(const se3di_explicit *m)
 {
     const se3di_state_scale own = se3di_explicit_measure_by(m);
     const double least = ROUNDING / m->tolerance;
@@ -245,27 +245,13 @@ static se3di_state_scale measure_both_by(const se3di_explicit *m)
     return scale;
 }
 
-static double size_without_work(const se3di_state_scale *scale, const double parts[4])
-{
-    const double r = sqrt(parts[0]) / scale->length + 2.0 * sqrt(parts[1]);
-    const double v = sqrt(parts[2]) / scale->speed + sqrt(parts[3]) / scale->spin;
-    return r + v;
-}
-
 static double size_of(const se3di_state_scale *scale, const double parts[4],
                       const double work[SE3DI_STATE_WORK])
 {
+    const double r = sqrt(parts[0]) / scale->length + 2.0 * sqrt(parts[1]);
+    const double v = sqrt(parts[2]) / scale->speed + sqrt(parts[3]) / scale->spin;
     const double e = se3di_norm(work) / scale->energy;
-    return size_without_work(scale, parts) + WORK_WEIGHT * e;
-}
-
-void se3di_explicit_sizes_of(const se3di_explicit *m, size_t count, double (*parts)[4],
-                             double *sizes)
-{
-    const se3di_state_scale scale = measure_both_by(m);
-    for (size_t k = 0; k < count; ++k) {
-        sizes[k] = size_without_work(&scale, parts[k]);
-    }
+    return r + v + WORK_WEIGHT * e;
 }
 
 double se3di_explicit_size(const se3di_explicit *m, const double *error)
@@ -286,7 +272,7 @@ double se3di_explicit_size(const se3di_explicit *m, const double *error)
             most[c] = se3di_larger(most[c], parts[c]);
         }
     }
-    const se3di_state_scale scale = measure_both_by(m);
+    const se3di_state_scale scale = se3di_explicit_measure_both_by(m);
     return size_of(&scale, most, end) + z;
 }
 
@@ -295,7 +281,7 @@ void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2],
     double parts[2][4], states[2];
     const size_t work = m->count - SE3DI_STATE_WORK;
     if (m->motion->measure) {
-        const se3di_state_scale scale = measure_both_by(m);
+        const se3di_state_scale scale = se3di_explicit_measure_both_by(m);
         m->motion->measure(m->equations, error, m->bodies[0], parts, states);
         for (int k = 0; k < 2; ++k) {
             size[k] = size_of(&scale, parts[k], error[k] + work) + states[k];

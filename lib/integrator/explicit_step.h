@@ -104,6 +104,7 @@ struct se3di_explicit {
     double contraction; /* gauss: of the iterations of this step; 0: unknown */
     double remembered;  /* the least error that the choice of the next step counts with */
     int stages;         /* gauss: of this step */
+    int laid_out;       /* gauss: the stages that lanes are laid out for; 0: none yet */
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
     int stands;         /* the frames are at y_1: a step of this call has ended there */
@@ -124,10 +125,8 @@ void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const d
 double se3di_explicit_size(const se3di_explicit *m, const double *error);
 /* The same of two. */
 void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2], double size[2]);
-/* The same of `count` from the largest squares of their parts (way, half the turn, changes of
- * velocities), without works. */
-void se3di_explicit_sizes_of(const se3di_explicit *m, size_t count, double (*parts)[4],
-                             double *sizes);
+/* What they are relative to in this step. */
+se3di_state_scale se3di_explicit_measure_both_by(const se3di_explicit *m);
 double se3di_explicit_measure(const se3di_explicit *m, const double *error);
 /* Derivative at t at the state y; the model's frames may stay behind. */
 se3d_status se3di_explicit_evaluate(se3di_explicit *m, double t, const double *y,

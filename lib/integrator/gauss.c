@@ -276,7 +276,7 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
                          int *judgement)
 {
     double change = 0.0, before = 0.0, rate = guess_rate(m, h);
-    se3di_gauss_lanes_begin(lanes, m, rule, h, prediction);
+    se3di_gauss_lanes_begin(lanes, m, h, prediction);
     m->contraction = 0.0;
     *judgement = 0;
     for (int k = 0; *judgement == 0; ++k) {
@@ -286,7 +286,7 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
         follow(m, k, change, &before, &rate);
         *judgement = judge(m, k, change, rate);
     }
-    se3di_gauss_lanes_end(lanes, m, rule, get_form(m, 0));
+    se3di_gauss_lanes_end(lanes, m, get_form(m, 0));
     return 1;
 }
 
@@ -294,22 +294,22 @@ static int iterate_lanes(se3di_explicit *m, const se3di_gauss_rule *rule, double
  * iterations contract better at singular positions. */
 static se3d_status find_stages(se3di_explicit *m, double h, int *judgement)
 {
-    se3di_gauss_lanes lanes;
     se3di_gauss_prediction prediction;
     const se3di_gauss_rule *rule = se3di_gauss_find(m->stages);
     m->is_closed = m->is_met = 0;
     find_prediction(m, rule, h, &prediction);
-    if (se3di_gauss_lanes_init(&lanes, m, rule)) {
-        if (iterate_lanes(m, rule, h, &prediction, &lanes, judgement)) {
-            m->is_closed = lanes.has_loops;
+    se3di_gauss_lanes *lanes = se3di_gauss_lanes_find(m, rule);
+    if (lanes) {
+        if (iterate_lanes(m, rule, h, &prediction, lanes, judgement)) {
+            m->is_closed = lanes->has_loops;
             return SE3D_OK;
         }
-        m->is_met = lanes.has_loops && may_be_shorter(m, h);
+        m->is_met = lanes->has_loops && may_be_shorter(m, h);
         *judgement = -1;
         if (m->is_met) {
             return SE3D_OK;
         }
-        if (lanes.has_loops && m->step.integration->settings.order == 0) {
+        if (lanes->has_loops && m->step.integration->settings.order == 0) {
             m->stages = 4;
             rule = se3di_gauss_find(m->stages);
             find_prediction(m, rule, h, &prediction);

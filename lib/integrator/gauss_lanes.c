@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#define OWN      (sizeof(se3di_gauss_lanes) / sizeof(double)) /* work for what finds the rest */
 #define ROUNDING 3e-16
 #define LEAST    1e-4  /* pivot of single states, of a usual one */
 #define NEAREST  1e-4  /* the least part of it, */
@@ -12,7 +13,7 @@
 /* Numbers per stage besides those of the tree: K, and those of a group. */
 static size_t count_numbers(size_t state, size_t stages)
 {
-    return 5 * state + stages + SE3DI_GAUSS_FORMS + 3 + 4 + 1;
+    return 5 * state + 3 * stages + SE3DI_GAUSS_FORMS + 3 + 1 + 1;
 }
 
 size_t se3di_gauss_work_count(const se3di_assembly *assembly)
@@ -22,7 +23,7 @@ size_t se3di_gauss_work_count(const se3di_assembly *assembly)
         return plain;
     }
     const size_t stages = SE3DI_GAUSS_MAX;
-    return plain + SE3DI_LANES_ALIGN / sizeof(double) +
+    return plain + OWN + SE3DI_LANES_ALIGN / sizeof(double) +
            stages * count_numbers(13 * bodies, stages) +
            se3di_lanes_room(bodies, 6 * bodies, bodies, stages);
 }
@@ -85,7 +86,25 @@ static const se3di_lane_core *find_core(int stages)
     return core;
 }
 
-static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m, size_t index, double *at)
+/* What does not change from step to step. */
+static void fill_group(const se3di_gauss_group *own, const se3di_gauss_rule *rule, size_t first,
+                       size_t w, const double gravity[3])
+{
+    const size_t s = (size_t)rule->stages;
+    for (size_t lane = 0; lane < w; ++lane) {
+        const size_t i = first + lane;
+        for (size_t j = 0; j < s; ++j) {
+            own->A[j * w + lane] = rule->A[i * s + j];
+            own->values[j * w + lane] = rule->values[i * s + j];
+        }
+        for (size_t c = 0; c < 3; ++c) {
+            own->gravity[c * w + lane] = gravity[c];
+        }
+    }
+}
+
+static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m,
+                          const se3di_gauss_rule *rule, size_t index, double *at)
 {
     const size_t w = g->width, state = w * (g->positions + g->velocities);
     const se3di_loop_lanes *loops = &m->equations->lanes;
@@ -95,11 +114,14 @@ static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m, size_t 
     own->closed = own->Y + state;
     own->next = own->closed + state;
     own->change = own->next + state;
-    own->weights = own->change + state;
-    own->forms = own->weights + w * g->stages;
+    own->A = own->change + state;
+    own->weights = own->A + w * g->stages;
+    own->values = own->weights + w * g->stages;
+    own->forms = own->values + w * g->stages;
     own->gravity = own->forms + w * SE3DI_GAUSS_FORMS;
-    own->parts = own->gravity + 3 * w;
-    own->verdict = own->parts + 4 * w;
+    own->sizes = own->gravity + 3 * w;
+    own->verdict = own->sizes + w;
+    fill_group(own, rule, index * w, w, m->assembly->model->gravity);
     se3di_lanes_lay_out(&own->lanes, tree, g->core, own->verdict + w);
     se3di_lanes_load(&own->lanes, own->gravity, 0);
     if (g->has_loops) {
@@ -117,21 +139,10 @@ static void take_least(se3di_explicit *m)
     se3di_lane_loops_take_least(&m->equations->lanes.rows, fmin(FARTHEST, fmax(NEAREST, rounding)));
 }
 
-int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule)
+static void lay_out(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
+                    double *at)
 {
-    g->has_loops = se3di_gauss_lanes_take_loops(m);
-    if (!g->has_loops && !is_bare_tree(m)) {
-        return 0;
-    }
-    g->core = find_core(rule->stages);
-    if (g->core->width == 1 && !g->has_loops) {
-        return 0;
-    }
-    if (g->has_loops) {
-        take_least(m);
-    }
     const se3di_tree *tree = m->equations->tree;
-    double *at = m->step.integration->work + se3di_explicit_work_count(m->assembly);
     g->positions = tree->q_count;
     g->velocities = tree->v_count;
     g->stages = (size_t)rule->stages;
@@ -139,34 +150,54 @@ int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_
     g->K = se3di_lanes_align(at);
     at = g->K + g->stages * (g->positions + g->velocities);
     for (size_t k = 0; k < g->stages / g->width; ++k) {
-        at = take_group(g, m, k, at);
+        at = take_group(g, m, rule, k, at);
     }
-    return 1;
+    if (g->has_loops) {
+        take_least(m);
+    }
+}
+
+/* Nothing that they are laid out by changes within a call, but for the stages and whether loops can
+ * be computed so. */
+se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_rule *rule)
+{
+    double *work = m->step.integration->work + se3di_explicit_work_count(m->assembly);
+    se3di_gauss_lanes *g = (se3di_gauss_lanes *)(void *)work;
+    const se3di_lane_core *core = find_core(rule->stages);
+    const int has_loops = se3di_gauss_lanes_take_loops(m);
+    if (!has_loops && (core->width == 1 || !is_bare_tree(m))) {
+        return NULL;
+    }
+    if (m->laid_out != rule->stages || g->has_loops != has_loops) {
+        g->core = core;
+        g->has_loops = has_loops;
+        lay_out(g, m, rule, work + OWN);
+        m->laid_out = rule->stages;
+    }
+    return g;
 }
 
 /* ---- states and derivatives ---- */
 
-void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
-                             const se3di_gauss_rule *rule, double h,
+void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m, double h,
                              const se3di_gauss_prediction *prediction)
 {
     const size_t s = g->stages, w = g->width, terms = (size_t)prediction->forms;
-    for (size_t i = 0; i < s; ++i) {
-        se3di_gauss_group *own = &g->groups[i / w];
-        const size_t lane = i % w;
-        for (size_t j = 0; j < s; ++j) {
-            own->weights[j * w + lane] = h * rule->A[i * s + j];
+    const se3di_state_scale scale = se3di_explicit_measure_both_by(m);
+    g->scale[0] = scale.length;
+    g->scale[1] = scale.speed;
+    g->scale[2] = scale.spin;
+    for (size_t i = 0; i < s / w; ++i) {
+        const se3di_gauss_group *own = &g->groups[i];
+        for (size_t k = 0; k < s * w; ++k) {
+            own->weights[k] = h * own->A[k];
         }
         for (size_t k = 0; k < terms; ++k) {
-            own->forms[k * w + lane] = prediction->weights[k * SE3DI_GAUSS_MAX + i];
+            memcpy(own->forms + k * w, prediction->weights + k * SE3DI_GAUSS_MAX + i * w,
+                   w * sizeof *own->forms);
         }
-        for (size_t c = 0; c < 3; ++c) {
-            own->gravity[c * w + lane] = m->assembly->model->gravity[c];
-        }
-    }
-    for (size_t k = 0; k < s / w; ++k) {
-        g->core->extend(g->positions + g->velocities, m->f1, terms, g->groups[k].forms,
-                        m->forms + m->count, m->count, g->K + k * w, s);
+        g->core->extend(g->positions + g->velocities, m->f1, terms, own->forms, m->forms + m->count,
+                        m->count, g->K + i * w, s);
     }
 }
 
@@ -200,20 +231,15 @@ static void renew(const se3di_gauss_lanes *g, const double *y)
 }
 
 /* As one after the other: the root of the mean square. */
-static double size_of(const se3di_gauss_lanes *g, const se3di_explicit *m,
-                      const se3di_gauss_rule *rule)
+static double size_of(const se3di_gauss_lanes *g, const se3di_gauss_rule *rule)
 {
     const size_t w = g->width;
-    double parts[SE3DI_GAUSS_MAX][4], sizes[SE3DI_GAUSS_MAX], sum = 0.0;
-    for (size_t i = 0; i < g->stages; ++i) {
-        const double *from = g->groups[i / w].parts + i % w;
-        for (size_t k = 0; k < 4; ++k) {
-            parts[i][k] = from[k * w];
+    double sum = 0.0;
+    for (size_t k = 0; k < g->stages / w; ++k) {
+        const double *sizes = g->groups[k].sizes, *b = rule->b + k * w;
+        for (size_t lane = 0; lane < w; ++lane) {
+            sum += b[lane] * sizes[lane] * sizes[lane];
         }
-    }
-    se3di_explicit_sizes_of(m, g->stages, parts, sizes);
-    for (size_t i = 0; i < g->stages; ++i) {
-        sum += rule->b[i] * sizes[i] * sizes[i];
     }
     return sqrt(sum);
 }
@@ -281,27 +307,21 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
             return 0;
         }
         g->core->replace(state, h, own->next, g->stages, g->K + i * g->width, own->change);
-        g->core->measure(&own->lanes, placed, own->change, own->parts);
+        g->core->measure(&own->lanes, placed, own->change, g->scale, own->sizes);
     }
-    *change = size_of(g, m, rule);
+    *change = size_of(g, rule);
     m->equations->counters.evaluations += (uint64_t)rule->stages;
     return 1;
 }
 
-void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m,
-                           const se3di_gauss_rule *rule, double *forms)
+void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m, double *forms)
 {
     const size_t s = g->stages, w = g->width, state = g->positions + g->velocities;
     renew(g, m->y1);
     memset(m->sum, 0, state * sizeof *m->sum);
     for (size_t i = 0; i < s / w; ++i) {
         const se3di_gauss_group *own = &g->groups[i];
-        for (size_t lane = 0; lane < w; ++lane) {
-            for (size_t j = 0; j < s; ++j) {
-                own->weights[j * w + lane] = rule->values[(i * w + lane) * s + j];
-            }
-        }
-        g->core->combine(state, m->sum, s, own->weights, g->K, own->Y);
+        g->core->combine(state, m->sum, s, own->values, g->K, own->Y);
         for (size_t lane = 0; lane < w; ++lane) {
             double *to = forms + (i * w + lane) * m->count;
             for (size_t c = 0; c < state; ++c) {

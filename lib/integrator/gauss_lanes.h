@@ -21,10 +21,12 @@ typedef struct se3di_gauss_group {
     double *closed;  /* the same with their loops closed */
     double *next;    /* derivatives there */
     double *change;  /* times h, of the derivatives */
-    double *weights; /* [stages][w] h a_ij, of stage i in its lane; */
-    double *forms;   /* [SE3DI_GAUSS_FORMS][w] of the prediction, and of the forms of the step */
+    double *A;       /* [stages][w] a_ij, of stage i in its lane; */
+    double *weights; /* h times these */
+    double *values;  /* [stages][w] of the forms of the step, of form i in its lane */
+    double *forms;   /* [SE3DI_GAUSS_FORMS][w] of the prediction */
     double *gravity; /* [3][w] */
-    double *parts;   /* [4][w] */
+    double *sizes;   /* [w] of the changes */
     double *verdict; /* [w] */
 } se3di_gauss_group;
 
@@ -32,7 +34,8 @@ typedef struct se3di_gauss_lanes {
     const se3di_lane_core *core;
     size_t positions, velocities, stages, width;
     int has_loops;
-    double *K; /* [positions + velocities][stages] derivatives of the stages */
+    double scale[3]; /* that changes are measured by in this step: of length, speed, spin */
+    double *K;       /* [positions + velocities][stages] derivatives of the stages */
     se3di_gauss_group groups[SE3DI_GAUSS_MAX];
 } se3di_gauss_lanes;
 
@@ -49,11 +52,11 @@ int se3di_gauss_lanes_suit_loops(const se3di_equations *equations);
 int se3di_gauss_lanes_take_loops(const se3di_explicit *m);
 /* Whether stages are: where they are loops or the open tree are so on every processor. */
 int se3di_gauss_lanes_suit(const se3di_explicit *m);
-/* @return whether the stages of the step can be computed so */
-int se3di_gauss_lanes_init(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule);
+/* @return what the stages of the step are computed by, in the work of the method; NULL: they cannot
+ * be computed so */
+se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_rule *rule);
 /* The derivatives of the stages are those of the prediction. */
-void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m,
-                             const se3di_gauss_rule *rule, double h,
+void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m, double h,
                              const se3di_gauss_prediction *prediction);
 /* Iteration k; *change, relative to the scales, of a step by the derivatives. @return whether all
  * are finite: they are not where rows of loops are not clear of each other */
@@ -61,7 +64,6 @@ int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di
                             int k, double h, double *change);
 /* The forms of the polynomial through the derivatives, those of positions at the velocities of the
  * last iteration: `forms` [stages][m->count]. */
-void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m,
-                           const se3di_gauss_rule *rule, double *forms);
+void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m, double *forms);
 
 #endif

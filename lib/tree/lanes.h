@@ -99,10 +99,11 @@ typedef struct se3di_lane_core {
     /* Rates of positions of which quaternions are not unit ones. */
     void (*find_free_rates)(const se3di_lanes *lanes, const double *q, const double *qdot,
                             double *rates);
-    /* The largest squares over all bodies of what a small change of q and qdot [positions +
-     * velocities], at the state that was placed, is for a body: of the way of its centre of mass,
-     * of half the turn, of the changes of its velocities; parts [4]. */
-    void (*measure)(const se3di_lanes *lanes, const double *q, const double *change, double *parts);
+    /* The size of a small change of q and qdot [positions + velocities] at the state that was
+     * placed: by the largest ways of centres of mass, turns and changes of velocities of all
+     * bodies, relative to a length, a speed and a spin. */
+    void (*measure)(const se3di_lanes *lanes, const double *q, const double *change,
+                    const double scale[3], double *sizes);
     /* change = factor (next - x), x = next: [count] numbers each, those of x `stride` doubles
      * apart. */
     void (*replace)(size_t count, double factor, const double *next, size_t stride, double *x,
