@@ -254,7 +254,8 @@ static double size_of(const se3di_state_scale *scale, const double parts[4],
     return r + v + WORK_WEIGHT * e;
 }
 
-double se3di_explicit_size(const se3di_explicit *m, const double *error)
+/* Body by body. */
+static double size_on_bodies(const se3di_explicit *m, const double *error)
 {
     double most[4] = {0.0, 0.0, 0.0, 0.0}, z = 0.0;
     const double *end = m->motion->spread(m->equations, error, m->bodies[0]);
@@ -289,8 +290,19 @@ void se3di_explicit_sizes(const se3di_explicit *m, const double *const error[2],
         return;
     }
     for (int k = 0; k < 2; ++k) {
-        size[k] = se3di_explicit_size(m, error[k]);
+        size[k] = size_on_bodies(m, error[k]);
     }
+}
+
+double se3di_explicit_size(const se3di_explicit *m, const double *error)
+{
+    const double *const both[2] = {error, error};
+    double sizes[2];
+    if (!m->motion->measure) {
+        return size_on_bodies(m, error);
+    }
+    se3di_explicit_sizes(m, both, sizes);
+    return sizes[0];
 }
 
 double se3di_explicit_measure(const se3di_explicit *m, const double *error)

@@ -145,8 +145,8 @@ static void get(se3di_equations *equations, double *y)
     const se3di_model *model = equations->assembly.model;
     se3di_tree_get(tree, tree->q, tree->qdot);
     normalise(tree, tree->q);
-    se3di_tree_match_turns(tree, tree->q);
-    place_aside(equations);
+    se3di_tree_match_turns(tree, tree->q); /* which places it aside */
+    equations->is_placed = 1;
     keep(equations, y);
     memcpy(y + tree->q_count + tree->v_count, model->work, sizeof model->work);
 }

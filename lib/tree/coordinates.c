@@ -8,6 +8,7 @@
 #include "primitive/turn_counter.h"
 #include "tree/core.h"
 #include "tree/packs.h"
+#include "tree/recursion.h"
 
 #include <math.h>
 #include <string.h>
@@ -652,6 +653,12 @@ void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const
 se3d_status se3di_tree_factor(se3di_tree *tree, const double *effort)
 {
     return tree->core->factor(tree, effort) ? SE3D_OK : SE3D_ERR_SINGULAR;
+}
+
+void se3di_tree_measure(const se3di_tree *tree, const double *const change[2], double *room,
+                        double parts[2][4], double states[2])
+{
+    tree->core->measure(tree, change, room, parts, states);
 }
 
 void se3di_tree_accelerate(se3di_tree *tree, const double *e, double *qddot)
