@@ -37,8 +37,8 @@ se3d_status se3di_drawing_get_poses(const se3d_model *model, double *pose)
 static void widen(const double at[3], double low[3], double high[3])
 {
     for (int i = 0; i < 3; ++i) {
-        low[i] = fmin(low[i], at[i]);
-        high[i] = fmax(high[i], at[i]);
+        low[i] = at[i] < low[i] ? at[i] : low[i];
+        high[i] = at[i] > high[i] ? at[i] : high[i];
     }
 }
 
