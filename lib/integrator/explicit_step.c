@@ -443,7 +443,11 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
     const double *work = y + m->count - SE3DI_STATE_WORK;
     const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
                                            integration->settings.tolerance);
-    m->motion->set(m->equations, y);
+    if (rough > 0.0 && !project) {
+        m->motion->set_frames(m->equations, y);
+    } else {
+        m->motion->set(m->equations, y);
+    }
     if (project) {
         SE3DI_TRY(m->motion->project(m->equations, t, &m->past->scale, fmax(1e-15, rough), 0));
     }

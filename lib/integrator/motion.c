@@ -95,6 +95,7 @@ const se3di_motion se3di_motion_bodies = {
     .get = get,
     .set = set,
     .set_again = set,
+    .set_frames = set,
     .get_rates = pass,
     .evaluate = evaluate,
     .evaluate_at = evaluate_at,

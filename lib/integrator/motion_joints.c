@@ -77,6 +77,14 @@ static void set(se3di_equations *equations, const double *y)
     place(equations);
 }
 
+static void set_frames(se3di_equations *equations, const double *y)
+{
+    se3di_tree *tree = equations->tree;
+    take_state(tree, y);
+    se3di_tree_show(tree, tree->q, tree->qdot, equations->assembly.model->frames);
+    equations->is_placed = 0;
+}
+
 /* Unit length may round to another neighbour twice, so that the whole state is compared. */
 static void set_again(se3di_equations *equations, const double *y)
 {
@@ -714,6 +722,7 @@ const se3di_motion se3di_motion_joints = {
     .get = get,
     .set = set,
     .set_again = set_again,
+    .set_frames = set_frames,
     .get_rates = get_rates,
     .evaluate = evaluate,
     .evaluate_at = evaluate_at,

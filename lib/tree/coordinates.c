@@ -586,6 +586,11 @@ void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3
     tree->core->place(tree, q, qdot, frames);
 }
 
+void se3di_tree_show(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames)
+{
+    tree->core->show(tree, q, qdot, frames);
+}
+
 se3di_force_sums se3di_tree_sums(se3di_tree *tree)
 {
     if (!tree->has_efforts) {

@@ -10,6 +10,8 @@ typedef struct se3di_tree_core {
     /* links, S and biases, and the frames of the bodies; without frames (NULL) links have neither
      * quaternions nor points */
     void (*place)(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
+    /* the frames of the bodies alone; links, S and biases are not those of this state */
+    void (*show)(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
     /* articulated inertias from the leaves to the root: U, D, e; returns 0 if some D is not > 0 */
     int (*factor)(se3di_tree *tree, const double *effort);
     /* accelerations from the root to the leaves */

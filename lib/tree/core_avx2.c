@@ -12,6 +12,7 @@ SE3DI_TARGET_BEGIN(SE3DI_TARGET_AVX2)
 
 #define fma_of(a, b, c) __builtin_fma(a, b, c)
 #define PLACE_PACK      se3di_tree_place_pack_avx2
+#define SHOW_PACK       se3di_tree_show_pack_avx2
 #define FACTOR_PACK     se3di_tree_factor_pack_avx2
 #define BEYOND          se3di_tree_beyond_avx2
 

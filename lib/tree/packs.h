@@ -20,6 +20,9 @@ void se3di_tree_fill_packs(se3di_tree *tree);
 /* As se3di_tree_place, of the nodes of a pack, whose parents have been placed: with AVX2. */
 void se3di_tree_place_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack, const double *q,
                                 const double *qdot, se3di_frame *frames);
+/* As se3di_tree_show, of these. */
+void se3di_tree_show_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack, const double *q,
+                               const double *qdot, se3di_frame *frames);
 /* As the part of core->factor for one node: tree->passed of the nodes of a pack that `factors`, and
  * their U, D, e; that of their children is there. Returns 0 if some D is not > 0. */
 int se3di_tree_factor_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack,

@@ -183,6 +183,31 @@ KERNEL void gather_coordinates(const se3di_tree *tree, const se3di_tree_pack *pa
     }
 }
 
+/* What those beyond them are placed by, if there are any. */
+KERNEL void scatter_bases(const se3di_tree *tree, const se3di_tree_pack *pack,
+                          const link_state *link)
+{
+    const number *from = AS_CONST(number, link);
+    double *to[LANES];
+    int32_t child = -1;
+    UNROLL
+    for (int k = 0; k < LANES; ++k) {
+        to[k] = AS(double, &tree->links[pack->node[k]]);
+        child = tree->nodes[pack->node[k]].child > child ? tree->nodes[pack->node[k]].child : child;
+    }
+    if (child < 0) {
+        return;
+    }
+    UNROLL
+    for (size_t at = 0; at < PLACE(se3di_tree_link, s); at += 4) {
+        scatter_four(from, at, to);
+    }
+    scatter_four(from, PLACE(se3di_tree_link, w) - 1, to);
+    scatter_four(from, PLACE(se3di_tree_link, t), to);
+    scatter_four(from, PLACE(se3di_tree_link, P), to);
+    scatter_four(from, PLACE(se3di_tree_link, v) - 1, to);
+}
+
 /* All but accelerations. */
 KERNEL void scatter_links(const se3di_tree *tree, const se3di_tree_pack *pack,
                           const link_state *link, const int poses)
@@ -256,8 +281,12 @@ KERNEL void place_pack(se3di_tree *tree, const se3di_tree_pack *pack, const doub
         place_joint(&n, at, rate, &b, &link, S);
     }
     complete_link(&n, &b, &link);
-    scatter_links(tree, pack, &link, poses);
-    scatter_freedoms(tree, pack, S);
+    if (poses == FRAMES) {
+        scatter_bases(tree, pack, &link);
+    } else {
+        scatter_links(tree, pack, &link, poses);
+        scatter_freedoms(tree, pack, S);
+    }
     if (poses) {
         body_frame frame;
         place_body(&n, &link, &frame);
@@ -269,10 +298,16 @@ void se3di_tree_place_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack, c
                                 const double *qdot, se3di_frame *frames)
 {
     if (frames) {
-        place_pack(tree, pack, q, qdot, frames, 1);
+        place_pack(tree, pack, q, qdot, frames, POSES);
     } else {
-        place_pack(tree, pack, q, qdot, NULL, 0);
+        place_pack(tree, pack, q, qdot, NULL, LINKS);
     }
+}
+
+void se3di_tree_show_pack_avx2(se3di_tree *tree, const se3di_tree_pack *pack, const double *q,
+                               const double *qdot, se3di_frame *frames)
+{
+    place_pack(tree, pack, q, qdot, frames, FRAMES);
 }
 
 /* ---- articulated inertias ---- */

@@ -216,6 +216,8 @@ void se3di_tree_match_turns(se3di_tree *tree, double *q);
 /* Coordinates -> frames [dense bodies], those of fixed bodies are left alone; links, S and biases
  * follow. `frames` may be the model's. NULL: not wanted; accelerations need none. */
 void se3di_tree_place(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
+/* The same frames alone: links, S and biases are those of no state. */
+void se3di_tree_show(se3di_tree *tree, const double *q, const double *qdot, se3di_frame *frames);
 
 /* With tree->q and tree->qdot those of the model's frames: place them in tree->frames; from now on
  * such coordinates give a body the Euler parameters that it has, not their opposite. */

@@ -713,6 +713,20 @@ static void place_by(const se3di_tree_core *core, case_of *c, int wants_frames,
     memcpy(S, tree->S, 6 * tree->v_count * sizeof *S);
 }
 
+/* Frames without what accelerations need are those that are placed, from links of no state. */
+static void check_shown(const se3di_tree_core *core, case_of *c, const se3di_frame *placed)
+{
+    se3di_tree *tree = &c->tree;
+    se3di_frame frames[TREE_BODIES_MAX + 1];
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        memset(&tree->links[k], 0xff, sizeof *tree->links);
+    }
+    memset(frames, 0, sizeof frames);
+    tree->core = core;
+    se3di_tree_show(tree, c->q, c->qdot, frames);
+    CHECK(memcmp(frames, placed, tree->body_count * sizeof *frames) == 0);
+}
+
 #define FACTORS (6 + 6 + 6 + 4) /* of a freedom: U, V, acceleration of the link; D, R, e, qddot */
 
 /* What a core makes of the state that was placed last and of `wrench`, into a copy. */
@@ -788,11 +802,29 @@ static void nodes_side_by_side_have_the_bits_of_nodes_alone(void)
             CHECK(memcmp(S[0], S[1], 6 * c.tree.v_count * sizeof *S[0]) == 0);
             CHECK(memcmp(frames[0], frames[1], c.tree.body_count * sizeof *frames[0]) == 0);
         }
+        check_shown(se3di_tree_core_portable(), &c, frames[0]);
+        check_shown(best, &c, frames[0]);
         packs += c.tree.pack_count;
         CHECK(c.tree.pack_count <= c.tree.pack_max && c.tree.pack_max == 2);
         end(&c);
     }
     CHECK(!se3di_tree_core_avx2() || packs > 500);
+}
+
+static void frames_alone_have_the_bits_of_frames_with_links(void)
+{
+    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+        case_of c;
+        se3di_tree_link links[TREE_BODIES_MAX];
+        double S[6 * NUMBERS];
+        se3di_frame frames[TREE_BODIES_MAX + 1];
+        begin(&c, seed);
+        const se3di_tree_core *const best = c.tree.core;
+        place_by(best, &c, 1, links, S, frames);
+        check_shown(se3di_tree_core_portable(), &c, frames);
+        check_shown(best, &c, frames);
+        end(&c);
+    }
 }
 
 /* z' = f to the bit, by one coordinate more; the accelerations of the others stay. */
@@ -844,6 +876,7 @@ int main(void)
     RUN(all_instruction_levels_give_the_same_bits);
     RUN(changes_are_measured_at_the_bodies);
     RUN(nodes_side_by_side_have_the_bits_of_nodes_alone);
+    RUN(frames_alone_have_the_bits_of_frames_with_links);
     RUN(inertias_side_by_side_have_the_bits_of_inertias_alone);
     RUN(a_state_is_a_node_of_one_coordinate);
     return check_finish();
