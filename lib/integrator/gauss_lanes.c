@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#define OWN      (sizeof(se3di_gauss_lanes) / sizeof(double)) /* work for what finds the rest */
+/* Work for what finds the rest of it. */
+#define OWN      ((sizeof(se3di_gauss_lanes) + sizeof(double) - 1) / sizeof(double))
 #define ROUNDING 3e-16
 #define LEAST    1e-4  /* pivot of single states, of a usual one */
 #define NEAREST  1e-4  /* the least part of it, */
