@@ -197,6 +197,7 @@ static double measure(se3di_particles *set, grid *g)
         g->classes[c].radius = most[c];
     }
     const int several = most[STUFF] + most[STUFF + 1] > UINT16_MAX;
+    set->single = several ? 0 : set->single; /* those of other ranks come here */
     set->uniform = !several && !(*differs > 0.0);
     set->skin = choose_skin(set, largest);
     return largest;

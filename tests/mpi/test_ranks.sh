@@ -5,7 +5,7 @@
 set -u
 . "${SE3D_SOURCE_DIR:-.}/tests/mpi/support.sh"
 
-for model in column drum hopper; do
+for model in column drum hopper halves; do
     for ranks in ${SE3D_RANKS:-1 2 3 4 7}; do
         share "$ranks" run "$source/tests/mpi/$model.yaml" -o "$dir/$model.$ranks" \
             ${SE3D_DURATION:+--set "analysis.duration=$SE3D_DURATION"}
