@@ -44,6 +44,7 @@ static double taken_by_leap(const se3di_convex *c, const se3di_assembly *assembl
         return 0.0;
     }
     se3di_sub(c->v + 6 * (size_t)k, c->start + 6 * (size_t)k, dv);
+    se3di_sub(dv, c->chord + 6 * (size_t)k, dv);
     return 0.5 * c->h * mass * se3di_dot(c->gravity, dv);
 }
 

@@ -133,8 +133,8 @@ void se3di_convex_gyrate(se3di_convex *c, const se3di_convex_island *island)
 
 double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body)
 {
-    const double *moment = c->spin + 6 * (size_t)c->place[body] + 3;
+    const double *spin = c->spin + 6 * (size_t)c->place[body];
     double w[3];
-    middle_of(c->start + 6 * (size_t)body + 3, c->v + 6 * (size_t)body + 3, w);
-    return se3di_dot(moment, w);
+    middle_of(spin, c->v + 6 * (size_t)body + 3, w);
+    return se3di_dot(spin + 3, w);
 }

@@ -349,6 +349,38 @@ static void place_joint(int k, int count, double radius, double apart, double at
     at[2] = 0.0;
 }
 
+/* While a ball lies on the floor, a pendulum is stepped as what touches: gravity does what it does
+ * along both chords. */
+static void a_pendulum_beside_a_contact_keeps_its_energy(void)
+{
+    const double lies[3] = {3.0, 0.0, 0.1}, y[3] = {0.0, 1.0, 0.0}, J[3] = {0.2, 0.15, 0.1};
+    const double steps[2] = {1e-3, 4e-3}, pin[3] = {0.0, 0.0, 2.0};
+    const double bob[3] = {sin(1.2), 0.0, 2.0 - cos(1.2)};
+    for (int n = 0; n < 2; ++n) {
+        double first, start, energy, balance, gap = 0.0, grown = 0.0;
+        se3d_joint_def hinge = se3d_joint_def_default();
+        se3d_constraint made;
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.3, 1e5);
+        scene_floor(&s, 0.0);
+        scene_ball(&s, 0.1, 1.0, lies, scene_zero);
+        hinge.body_i = scene_ground(&s);
+        hinge.body_j = scene_body(&s, 1.0, J, bob, scene_zero);
+        scene_turn(&s, hinge.body_j, y, -1.2);
+        CHECK(se3d_joint_def_set_frame(s.system, &hinge, pin, y, NULL) == SE3D_OK);
+        CHECK(se3d_joint_create_revolute(s.system, &hinge, &made) == SE3D_OK);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, steps[n], 0.0);
+        look(&s, &first, &start);
+        for (int k = 1; k <= 100 && scene_run(&s, 0.2 * k); ++k) {
+            look(&s, &energy, &balance);
+            gap = fmax(gap, fabs(balance - start));
+            grown = fmax(grown, fabs(energy - first));
+        }
+        CHECK(gap < 1e-3);
+        CHECK(grown < 0.1);
+        scene_end(&s);
+    }
+}
+
 /* Links turn on each other as they come to a wheel and leave it. */
 static void a_driven_belt_gains_nothing(void)
 {
@@ -398,5 +430,6 @@ int main(void)
     RUN(a_high_stack_stays_where_it_is);
     RUN(a_driven_bearing_gains_nothing);
     RUN(a_driven_belt_gains_nothing);
+    RUN(a_pendulum_beside_a_contact_keeps_its_energy);
     return check_finish();
 }
