@@ -449,7 +449,8 @@ static se3d_status take_in_parts(se3di_integration *integration, double t1, int 
     const se3di_model *model = integration->equations->assembly.model;
     const double t0 = model->time, h = t1 - t0, middle = 0.5 * (t0 + t1);
     const se3d_status status = take_step(integration, t1);
-    const int may_halve = status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE;
+    const int may_halve = (status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE) &&
+                          !(model->time > t0); /* it may be an event that was not found */
     if (!may_halve || halvings == 0 || !(middle > t0 && middle < t1)) {
         return status;
     }

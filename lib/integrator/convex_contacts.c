@@ -442,7 +442,7 @@ static void record_contact(const se3di_convex *convex, const se3di_convex_contac
     double least = 1.0;
     for (; next < end && !se3di_convex_is_before(c->record, next); ++next) {
         const double distance = distance_of(c, model, next);
-        if (is_same(c->record, next)) {
+        if (next->kind == SE3DI_CONTACT_NEW && is_same(c->record, next)) {
             record_one(convex, c, model, next);
             return;
         }
