@@ -12,6 +12,7 @@
 #include "support/surfaces.h"
 
 #define SAME  1e-9
+#define BULGE 6e-5 /* of the radius of a rim: what its four points may be less deep than it */
 #define CLEAR 1e-8
 #define KINDS 5
 
@@ -107,6 +108,11 @@ static int are_along(const se3di_shape *i, const se3di_shape_pose *at, const se3
     return se3di_norm(across) < 1e-2;
 }
 
+static double rim_of(const se3di_shape *shape)
+{
+    return se3di_shape_is(shape, SE3DI_SHAPE_HAS_RIMS) ? shape->radius : 0.0;
+}
+
 /* `convex`: j, or the convex solid whose surface it is. Along any direction the overlap bounds the
  * least one: one that is less than that found here is
  * right if it is that along its own normal. Normals may differ where these are equal to rounding.
@@ -129,9 +135,7 @@ static void compare(const se3di_shape *i, const se3di_shape_pose *at, const se3d
         se3di_sub(p->normal, n, turn);
         off = fabs(p->overlap - wanted);
     }
-    const se3di_solid one_is = {i, at}, two_is = {j, of};
-    const double same_depth =
-        SAME + se3di_cap_bulge(&one_is, n, wanted) + se3di_cap_bulge(&two_is, back, wanted);
+    const double same_depth = SAME + BULGE * (rim_of(i) + rim_of(j));
     const double beyond = j->kind == SE3DI_SHAPE_MESH ? 0.0 : beyond_of(i, at, j, of, &m);
     const double lean = se3di_norm(turn);
     const int less = p && along < wanted - 1e-12 && fabs(p->overlap - along) < same_depth;

@@ -244,9 +244,7 @@ static int is_shown_by(const ways *all, const way *w, const se3di_contact_point 
 static void show(ways *all, int k)
 {
     const way *w = &all->list[k];
-    const se3di_solid own = {w->own, &w->at};
-    const double slack = EXACT * all->size;
-    const double depth = w->depth - se3di_cap_bulge(&own, w->n, w->depth);
+    const double slack = EXACT * all->size, depth = w->depth;
     se3di_contact_point *deepest = NULL;
     for (uint32_t c = 0; c < all->point_count; ++c) {
         se3di_contact_point *at = &all->points[c];
