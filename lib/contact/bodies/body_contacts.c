@@ -260,7 +260,7 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, e->at->overlap, text);
     se3di_error_set(p->error, SE3D_ERR_STEP_SIZE, "t = %g s: %s; %s", p->t, text,
-                    p->t > model->time
+                    p->t > model->time || e->memory
                         ? "try a stiffer material, or a smaller step if one is given"
                         : "move them apart, or let groups say that they do not touch");
     if (p->error) {
