@@ -23,6 +23,8 @@ sys.exit(not eval(sys.argv[2]))' "$dir/out" "$truth"
 
 json run 0 'd["status"] == "done" and d["files"]' run "$model" -o results --json
 json check 0 'd["freedoms"] == 0' check "$model" --json
+json 'check of particles' 0 'd["particles"][0]["count"] > 10 and d["particles"][0]["step"] == d["particles"][0]["automatic_step"] > 0 and d["steps"] > 100 and d["seconds"] > 0 and d["first_steps"] == ""' \
+    check "$models/chute.yaml" --json
 json channels 0 'len(d["channels"]) > 10' channels "$model" --json
 json evaluate 0 'd["status"] == "done" and d["equations"][0]["equation"] == "cd_x" and d["equations"][-1]["bodies"][0]["phi_pi"] is None' evaluate "$model" --json
 json explain 0 'd["found"][0]["keys"][0]["key"] == "mass"' explain body.mass --json

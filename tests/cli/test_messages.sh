@@ -238,6 +238,32 @@ for method in auto convex verlet radau; do
     says 'ball and floor overlap by 0.05 m, at most 0.2 of their size 0.1 m is allowed; move them apart'
     holds 'no step is blamed' [ "$(grep -c 'What to try' "$dir/err")" = 0 ]
 done
+# What particles will take is told before their run, and what their first steps meet.
+cat >"$dir/sand.yaml" <<'END'
+se3d: 1
+gravity: [0, 0, -9.81]
+contact: {law: hertz_mindlin}
+materials: [{name: sand, young: 1e7, density: 2500}]
+particles:
+  - {material: sand, radius: [0.002, 0.003], packing: lattice, count: 40, lower: [0, 0, 0], upper: [0.05, 0.05, 0.05]}
+bodies: [{name: ground, shapes: [{type: plane, material: sand}]}]
+analysis:
+  - {type: dynamics, duration: 0.5}
+  - {type: dynamics, duration: 1.5}
+output: [{file: s.csv, every: 0.1, channels: [particles.count]}]
+END
+expect 'particles that will run' 0 "$program" check "$dir/sand.yaml"
+prints 'particles: 40 particles of radius 0.002'
+prints ' s, 2.5 % of the time of a Rayleigh wave'
+prints 'steps to the end, about '
+expect 'at half of the step' 0 "$program" check "$dir/sand.yaml" --set contact.step=1e-6
+prints '; steps of 1e-06 s, '
+prints '2e+06 steps to the end, about '
+sed 's/lower: \[0, 0, 0\]/lower: [0, 0, -0.003]/' "$dir/sand.yaml" >"$dir/sunk.yaml"
+expect 'particles that begin within a wall' 0 "$program" check "$dir/sunk.yaml"
+prints 'the first steps fail: '
+expect 'no particles' 0 "$program" check "$dir/soft.yaml"
+holds 'nothing is told of particles' [ "$(grep -c 'particle' "$dir/out")" = 0 ]
 # One that rests almost as deep is no reason for what fails elsewhere, at the time that is told.
 cat >"$dir/pole.yaml" <<'END'
 se3d: 1

@@ -1,12 +1,137 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* se3d check MODEL: bodies, equations, freedoms, redundant and inconsistent constraints. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "options.h"
 #include "outcome.h"
+#include "preview.h"
 #include "text.h"
 #include "warnings.h"
+
+static void put_bytes(uint64_t bytes)
+{
+    static const char *const units[] = {"kB", "MB", "GB"};
+    double size = 1e-3 * (double)bytes;
+    int k = 0;
+    for (; k < 2 && size >= 999.5; ++k) {
+        size *= 1e-3;
+    }
+    printf("%.3g %s", size, units[k]);
+}
+
+/* "2.5 minutes" */
+static void put_time(double seconds)
+{
+    const int unit = seconds < 100.0 ? 0 : seconds < 6000.0 ? 1 : seconds < 3.6e5 ? 2 : 3;
+    static const struct {
+        double length;
+        const char *name;
+    } units[] = {{1.0, "s"}, {60.0, "minutes"}, {3600.0, "hours"}, {86400.0, "days"}};
+    printf("%.2g %s", seconds / units[unit].length, units[unit].name);
+}
+
+/* The longest step that is safe, as a part of what contacts take. */
+static void print_step(const preview *g, int is_hertz)
+{
+    if (!(g->step > 0.0)) {
+        puts("; its step follows from what comes");
+        return;
+    }
+    printf("; steps of %.3g s", g->step);
+    if (!(g->automatic > 0.0)) {
+        puts("");
+    } else if (is_hertz) {
+        printf(", %.3g %% of the time of a Rayleigh wave\n", 2.5 * g->step / g->automatic);
+    } else {
+        printf(", 1/%.3g of the time of a contact\n", 50.0 * g->automatic / g->step);
+    }
+}
+
+static void print_particles(const se3d_model *model)
+{
+    se3d_system *system = se3d_model_get_system(model);
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    const size_t count = se3d_system_count_particles(system);
+    (void)se3d_system_get_contact(system, &contact);
+    for (size_t k = 0; k < count; ++k) {
+        preview g;
+        if (!preview_look(model, k, &g)) {
+            continue;
+        }
+        text_put_plain(stdout, g.name[0] ? g.name : "particles");
+        fputs(": ", stdout);
+        put_count(g.count, "particle", "particles", "");
+        if (g.count > 0) {
+            printf(" of radius %.4g", g.radius_min);
+            if (g.radius_max > g.radius_min) {
+                printf(" to %.4g", g.radius_max);
+            }
+            fputs(" m, ", stdout);
+        }
+        if (g.clumps > 0) {
+            put_count(g.clumps, "clump", "clumps", ", ");
+        }
+        if (g.count > 0) {
+            put_bytes(g.bytes);
+        }
+        print_step(&g, contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN);
+    }
+    if (count > 0) {
+        preview_pace pace;
+        preview_try(model, &pace);
+        if (pace.is_known) {
+            printf("%.3g steps to the end, about ", pace.steps);
+            put_time(pace.seconds);
+            puts(" at the pace of the first ones");
+        } else if (pace.message[0]) {
+            fputs("the first steps fail: ", stdout);
+            text_put_plain(stdout, pace.message);
+            putchar('\n');
+        }
+    }
+}
+
+static void print_json_particles(const se3d_model *model)
+{
+    const size_t count = se3d_system_count_particles(se3d_model_get_system(model));
+    preview_pace pace = {0};
+    fputs("\"particles\": [", stdout);
+    for (size_t k = 0; k < count; ++k) {
+        preview g;
+        if (!preview_look(model, k, &g)) {
+            continue;
+        }
+        fputs(k > 0 ? ", {\"name\": " : "{\"name\": ", stdout);
+        json_put_text(g.name);
+        printf(", \"count\": %" PRIu64 ", \"clumps\": %" PRIu64 ", \"bytes\": %" PRIu64, g.count,
+               g.clumps, g.bytes);
+        const struct {
+            const char *name;
+            double value;
+        } numbers[] = {{"radius_min", g.radius_min},
+                       {"radius_max", g.radius_max},
+                       {"step", g.step},
+                       {"automatic_step", g.automatic}};
+        for (size_t n = 0; n < sizeof numbers / sizeof *numbers; ++n) {
+            printf(", \"%s\": ", numbers[n].name);
+            json_put_number(numbers[n].value);
+        }
+        putchar('}');
+    }
+    fputs("], ", stdout);
+    if (count > 0) {
+        preview_try(model, &pace);
+        fputs("\"steps\": ", stdout);
+        json_put_number(pace.is_known ? pace.steps : (double)NAN);
+        fputs(", \"seconds\": ", stdout);
+        json_put_number(pace.is_known ? pace.seconds : (double)NAN);
+        fputs(", \"first_steps\": ", stdout);
+        json_put_text(pace.message);
+        fputs(", ", stdout);
+    }
+}
 
 static void print_text(const se3d_model *model, const se3d_check_summary *s,
                        const se3d_check *check)
@@ -30,9 +155,11 @@ static void print_text(const se3d_model *model, const se3d_check_summary *s,
             printf("- %s\n", text);
         }
     }
+    print_particles(model);
 }
 
-static void print_json(const warnings *warned, const se3d_check_summary *s, const se3d_check *check)
+static void print_json(const warnings *warned, const se3d_model *model, const se3d_check_summary *s,
+                       const se3d_check *check)
 {
     char strict[WARNING_SIZE];
     const char *why = warnings_get_verdict(warned, strict);
@@ -53,6 +180,7 @@ static void print_json(const warnings *warned, const se3d_check_summary *s, cons
         }
     }
     fputs("], ", stdout);
+    print_json_particles(model);
     warnings_put_json(warned);
     fputs("}\n", stdout);
 }
@@ -70,7 +198,7 @@ static int check_model(const warnings *warned, se3d_model *model)
         return EXIT_FAILED;
     }
     if (o->json) {
-        print_json(warned, &summary, check);
+        print_json(warned, model, &summary, check);
     } else if (!o->quiet) {
         print_text(model, &summary, check);
     }
@@ -105,11 +233,15 @@ const command_entry check_entry = {
     .operands = "MODEL",
     .files = "yaml yml json",
     .summary = "count equations and freedoms, name redundant constraints",
-    .text = "Reads a model and says how many bodies, equations and degrees of freedom it "
-            "has at its present pose, and names redundant and inconsistent constraints "
-            "and bodies that nothing holds. Warns of what is probably a mistake: parameters and "
-            "points that nothing uses, bodies that fall, shapes that touch nothing, masses far "
-            "apart, and bodies that the assembly moves by more than their size.",
+    .text =
+        "Reads a model and says how many bodies, equations and degrees of freedom it "
+        "has at its present pose, and names redundant and inconsistent constraints "
+        "and bodies that nothing holds. Warns of what is probably a mistake: parameters and "
+        "points that nothing uses, bodies that fall, shapes that touch nothing, masses far "
+        "apart, and bodies that the assembly moves by more than their size. Of particles it says "
+        "how many there are, their step beside the time of a contact, and, from the first "
+        "steps, which it takes for a quarter of a second, how many there will be and how long "
+        "they take.",
     .options =
         (const command_option[]){COMMAND_OPTION_SET,
                                  COMMAND_OPTION_STRICT,
