@@ -279,12 +279,8 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
         for (int e = 0; e < 2; ++e) {
             if (contact->free[e] >= 0) {
                 const uint32_t body = assembly->free_body[contact->free[e]];
-                const double share = (e ? 1.0 : -1.0) / c->h;
-                double torque[3], turned[3];
-                se3di_cross(contact->arm[e], contact->impulse, torque);
-                se3di_mul_transposed(model->frames[body].A, torque, turned);
-                se3di_add_scaled(share, contact->impulse, c->push + 6 * (size_t)body);
-                se3di_add_scaled(share, turned, c->push + 6 * (size_t)body + 3);
+                se3di_contact_push(&model->frames[body], contact->arm[e], (e ? 1.0 : -1.0) / c->h,
+                                   contact->impulse, c->push + 6 * (size_t)body);
             }
         }
     }

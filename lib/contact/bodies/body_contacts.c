@@ -129,18 +129,25 @@ static int are_stepped(const se3di_model *model)
            model->history_tag != 0;
 }
 
+void se3di_contact_push(const se3di_frame *frame, const double arm[3], double share,
+                        const double force[3], double wrench[6])
+{
+    double torque[3], turned[3];
+    se3di_cross(arm, force, torque);
+    se3di_mul_transposed(frame->A, torque, turned);
+    se3di_add_scaled(share, force, wrench);
+    se3di_add_scaled(share, turned, wrench + 3);
+}
+
 static void add_stepped_wrench(const se3di_model *model, const se3di_body_contact *c,
                                double *wrench)
 {
     for (int k = 0; k < 2; ++k) {
         const uint32_t body = model->shapes[k ? c->shape_j : c->shape_i].body;
         const se3di_frame *frame = &model->frames[body];
-        double *on = wrench + 6 * (size_t)body, arm[3], torque[3], turned[3];
+        double arm[3];
         se3di_sub(c->point, frame->r, arm);
-        se3di_cross(arm, c->force, torque);
-        se3di_mul_transposed(frame->A, torque, turned);
-        se3di_add_scaled(k ? 1.0 : -1.0, c->force, on);
-        se3di_add_scaled(k ? 1.0 : -1.0, turned, on + 3);
+        se3di_contact_push(frame, arm, k ? 1.0 : -1.0, c->force, wrench + 6 * (size_t)body);
     }
 }
 

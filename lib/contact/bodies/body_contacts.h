@@ -30,6 +30,10 @@ void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shap
 
 /* Add the wrenches of all contacts, [bodies * 6] as those of force elements. */
 void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench);
+/* Add `share` of a force (ground frame) at `arm` from the centre of mass to the wrench of a
+ * body. */
+void se3di_contact_push(const se3di_frame *frame, const double arm[3], double share,
+                        const double force[3], double wrench[6]);
 /* How stiff one that is remembered is along its normal [N/m]; of a user's law, of which the force
  * alone is known, that over the overlap. */
 double se3di_contact_stiffness(const se3di_model *model, const se3di_body_contact *contact);
