@@ -270,7 +270,9 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
     const se3di_model *model = assembly->model;
     const size_t count = 6 * (size_t)assembly->dense_count;
     memset(c->push, 0, count * sizeof *c->push);
-    se3di_contacts_add_wrenches(model, t1, c->push);
+    if (model->contacts.count > 0) { /* else all pairs would be looked at once more */
+        se3di_contacts_add_wrenches(model, t1, c->push);
+    }
     for (size_t k = 0; k < count; ++k) {
         c->push[k] = 0.0 - c->push[k];
     }
