@@ -84,21 +84,25 @@ double se3di_shapes_gap_bound(const se3di_model *model, uint32_t i, uint32_t j)
     return gap_bound(model, i, x, j, y);
 }
 
+/* Find the pose of a shape. @return the shape */
+static const se3di_shape *place(const se3di_model *model, uint32_t shape, se3di_shape_pose *at)
+{
+    const se3di_shape *s = &model->shapes[shape];
+    se3di_shape_place(s, &model->frames[s->body], at);
+    return s;
+}
+
 double se3di_shapes_gap(const se3di_model *model, uint32_t i, uint32_t j, double normal[3])
 {
-    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
     se3di_shape_pose at[2];
-    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
-    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
+    const se3di_shape *const s[2] = {place(model, i, &at[0]), place(model, j, &at[1])};
     return se3di_narrow_gap(s[0], &at[0], s[1], &at[1], normal);
 }
 
 int se3di_shapes_are_beyond(const se3di_model *model, uint32_t i, uint32_t j, double distance)
 {
-    const se3di_shape *s[2] = {&model->shapes[i], &model->shapes[j]};
     se3di_shape_pose at[2];
-    se3di_shape_place(s[0], &model->frames[s[0]->body], &at[0]);
-    se3di_shape_place(s[1], &model->frames[s[1]->body], &at[1]);
+    const se3di_shape *const s[2] = {place(model, i, &at[0]), place(model, j, &at[1])};
     return se3di_narrow_is_beyond(s[0], &at[0], s[1], &at[1], distance);
 }
 
