@@ -51,8 +51,8 @@ static void find_with_frames(work *w)
 static void find_reactions(work *w)
 {
     find_with_frames(w);
-    w->tree.core->transmit(&w->tree, w->tree.wrench, w->joint);
-    se3di_tree_multipliers(&w->tree, w->joint, NULL, w->lambda);
+    w->tree.core->transmit(&w->tree, w->tree.wrench, 0, w->joint);
+    se3di_tree_multipliers(&w->tree, w->joint, NULL, 0, w->lambda);
 }
 
 static double *take(size_t count)

@@ -311,33 +311,41 @@ static int is_loaded(const se3di_equations *equations)
            (equations->has_loops && !equations->takes_rows);
 }
 
-/* Multipliers of all rows, from those of the loops and what joints transmit. */
-static void transmit(se3di_equations *equations, double *l)
+/* Multipliers of all rows, from those of the loops and what joints transmit; driven: of loops and
+ * drivers, which is all that powers need. */
+static void transmit(se3di_equations *equations, int driven, double *l)
 {
     const se3di_tree *tree = equations->tree;
-    double *joint = equations->joint_moves, *wrench = joint + 6 * (size_t)tree->count;
+    const size_t wrenches = 6 * (size_t)tree->count;
+    double *joint = equations->joint_moves, *wrench = joint + wrenches;
     const double *acting = tree->acts ? tree->wrench : NULL;
     if (equations->has_loops) {
         const double *lambda = equations->loops.lambda;
         memcpy(l, lambda, equations->assembly.row_count * sizeof *lambda);
-        memset(wrench, 0, 6 * (size_t)tree->count * sizeof *wrench);
         if (acting) {
-            memcpy(wrench, acting, 6 * (size_t)tree->count * sizeof *wrench);
+            memcpy(wrench, acting, wrenches * sizeof *wrench);
+        } else {
+            memset(wrench, 0, wrenches * sizeof *wrench);
         }
-        se3di_tree_loops_add_wrenches(&equations->loops, lambda, wrench);
+        se3di_tree_loops_add_wrenches(&equations->loops, lambda, driven, wrench);
         acting = wrench;
     }
-    tree->core->transmit(tree, acting, joint);
-    se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), l);
+    if (tree->given_count > 0 || !driven) {
+        tree->core->transmit(tree, acting, driven, joint);
+        se3di_tree_multipliers(tree, joint, se3di_tree_effort(tree), driven, l);
+    }
 }
 
-/* The same into equations->l, if drivers have a power. */
+/* The same into equations->l, if drivers have a power: of all rows if elements remember, or
+ * users have constraints. */
 static const double *find_multipliers(se3di_equations *equations)
 {
-    if (equations->assembly.timed_count == 0 && equations->assembly.user_count == 0) {
+    const se3di_assembly *assembly = &equations->assembly;
+    if (assembly->timed_count == 0 && assembly->user_count == 0) {
         return NULL;
     }
-    transmit(equations, equations->l);
+    const int driven = assembly->user_count == 0 && !se3di_forces_have_memory(assembly->model);
+    transmit(equations, driven, equations->l);
     return equations->l;
 }
 
@@ -654,7 +662,7 @@ static int report(se3di_equations *equations)
         return 0;
     }
     se3di_tree_get_accelerations(equations->tree, model->frames, model->acceleration);
-    transmit(equations, model->lambda);
+    transmit(equations, 0, model->lambda);
     return 1;
 }
 

@@ -17,8 +17,9 @@ typedef struct se3di_tree_core {
     /* accelerations from the root to the leaves */
     void (*accelerate)(se3di_tree *tree, const double *e, double *qddot);
     /* [nodes * 6] moment about P and force that the joint of each node exerts on it, at the
-     * accelerations of the links; `external` [nodes * 6] (NULL: nothing) acts on it */
-    void (*transmit)(const se3di_tree *tree, const double *external, double *joint);
+     * accelerations of the links; `external` [nodes * 6] (NULL: nothing) acts on it. driven: only
+     * of the nodes that are */
+    void (*transmit)(const se3di_tree *tree, const double *external, int driven, double *joint);
     /* se3di_tree_measure */
     void (*measure)(const se3di_tree *tree, const double *const change[2], double *room,
                     double parts[2][4], double states[2]);

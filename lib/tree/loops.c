@@ -774,37 +774,65 @@ se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, d
     return status;
 }
 
-void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, double *wrench)
+/* The parts of a loop, from `head` where it is turned: its first three multipliers. */
+static void add_loop_wrenches(const se3di_tree_loops *loops, uint32_t loop, const double *l,
+                              const double *head, int driven, double *wrench)
 {
     const se3di_assembly *a = loops->assembly;
     const se3di_tree *tree = loops->tree;
-    if (loops->is_aside) {
-        se3di_tree_loops_eval_rows(loops);
+    const uint32_t constraint = loops->constraints[loop];
+    const int32_t turned = head ? 3 : 0;
+    for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+        const uint32_t body = a->free_body[a->joint_body[k]];
+        const int32_t node = tree->node_of[body];
+        double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, K[6];
+        if (driven && !tree->nodes[node].is_driven) {
+            continue;
+        }
+        for (int32_t r = 0; r < loops->rows[loop]; ++r) {
+            const double own = r < turned ? head[r] : l[r];
+            for (size_t i = 0; i < 6; ++i) {
+                sum[i] += own * a->C[a->block_offset[k] + 6 * (size_t)r + i];
+            }
+        }
+        row_to_link(&tree->links[node], tree->model->frames[body].A, sum, K);
+        for (size_t i = 0; i < 6; ++i) {
+            wrench[6 * (size_t)node + i] -= K[i];
+        }
     }
+}
+
+static int touches_driven(const se3di_tree_loops *loops, uint32_t loop)
+{
+    const se3di_assembly *a = loops->assembly;
+    const uint32_t constraint = loops->constraints[loop];
+    int touches = 0;
+    for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
+        const int32_t node = loops->tree->node_of[a->free_body[a->joint_body[k]]];
+        touches |= loops->tree->nodes[node].is_driven;
+    }
+    return touches;
+}
+
+void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, int driven,
+                                   double *wrench)
+{
     for (uint32_t loop = 0; loop < loops->count; ++loop) {
         const uint32_t constraint = loops->constraints[loop];
-        const double *l = lambda + tree->model->constraints[constraint].row_begin;
-        const int32_t turned = loops->turns[loop].is_turned ? 3 : 0;
+        const double *l = lambda + loops->tree->model->constraints[constraint].row_begin;
+        const int is_turned = loops->turns[loop].is_turned != 0;
         double head[3];
-        if (turned > 0) {
+        if (driven && !touches_driven(loops, loop)) {
+            continue;
+        }
+        if (loops->is_aside) {
+            se3di_tree_loops_eval_rows(loops);
+        }
+        if (is_turned) {
             se3di_copy(l, head);
             se3di_tree_loops_turn(loops, loop, head, 1);
         }
-        for (int32_t k = a->joint_begin[constraint]; k < a->joint_begin[constraint + 1]; ++k) {
-            const uint32_t body = a->free_body[a->joint_body[k]];
-            const int32_t node = tree->node_of[body];
-            double sum[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}, K[6];
-            for (int32_t r = 0; r < loops->rows[loop]; ++r) {
-                const double own = r < turned ? head[r] : l[r];
-                for (size_t i = 0; i < 6; ++i) {
-                    sum[i] += own * a->C[a->block_offset[k] + 6 * (size_t)r + i];
-                }
-            }
-            row_to_link(&tree->links[node], tree->model->frames[body].A, sum, K);
-            for (size_t i = 0; i < 6; ++i) {
-                wrench[6 * (size_t)node + i] -= K[i];
-            }
-        }
+        add_loop_wrenches(loops, loop, l, is_turned ? head : NULL, driven, wrench);
     }
 }
 

@@ -141,8 +141,9 @@ double se3di_tree_loops_eval_rate_gap(const se3di_tree_loops *loops, double leng
  * coordinates stay. By the last factorisation. @return as se3di_kkt_solve */
 se3d_status se3di_tree_loops_correct(se3di_tree_loops *loops, const double *c, double *dq);
 /* Add what the loops do with `lambda` [rows of the model] to wrenches [nodes * 6] about P; the
- * model's frames are where the last factors were made. */
-void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, double *wrench);
+ * model's frames are where the last factors were made. driven: only to driven nodes. */
+void se3di_tree_loops_add_wrenches(se3di_tree_loops *loops, const double *lambda, int driven,
+                                   double *wrench);
 /* Add a row of a loop, rows evaluated, to the Jacobian's [velocities]. */
 void se3di_tree_loops_row(const se3di_tree_loops *loops, uint32_t loop, size_t row, double *G);
 /* Turned rows, at the model's frames: the sums of products of a loop's plain rows in one pose more,

@@ -136,25 +136,31 @@ static void write_joint(int32_t type, const exertion *x, double *l)
     }
 }
 
+/* Of the constraint of a joint. */
+static void write_multipliers(const se3di_tree *tree, const se3di_tree_node *n, const double *f,
+                              double *lambda)
+{
+    double *l = lambda + tree->model->constraints[n->constraint].row_begin;
+    exertion x;
+    if (!n->is_reversed && n->type == SE3DI_TREE_REVOLUTE) {
+        write_revolute(tree, n, f, l);
+    } else if (!n->is_reversed && n->type == SE3DI_TREE_SPHERICAL) {
+        (void)write_force(f + 3, l);
+    } else {
+        measure(tree, n, f, &x);
+        write_joint(n->type, &x, l);
+    }
+}
+
 void se3di_tree_multipliers(const se3di_tree *tree, const double *joint, const double *effort,
-                            double *lambda)
+                            int driven, double *lambda)
 {
     const se3di_model *model = tree->model;
     for (uint32_t k = 0; k < tree->count; ++k) {
         const se3di_tree_node *n = &tree->nodes[k];
         const double *f = joint + 6 * (size_t)k;
-        exertion x;
-        if (n->constraint < 0) {
-            continue;
-        }
-        double *l = lambda + model->constraints[n->constraint].row_begin;
-        if (!n->is_reversed && n->type == SE3DI_TREE_REVOLUTE) {
-            write_revolute(tree, n, f, l);
-        } else if (!n->is_reversed && n->type == SE3DI_TREE_SPHERICAL) {
-            (void)write_force(f + 3, l);
-        } else {
-            measure(tree, n, f, &x);
-            write_joint(n->type, &x, l);
+        if (n->constraint >= 0 && !driven) {
+            write_multipliers(tree, n, f, lambda);
         }
         if (n->driver >= 0) {
             const uint32_t row = model->constraints[n->driver].row_begin;

@@ -300,7 +300,7 @@ void se3di_tree_project(se3di_tree *tree, const double *wrench, double *out)
 
 void se3di_tree_efforts(const se3di_tree *tree, const double *qddot, double *joint, double *effort)
 {
-    tree->core->transmit(tree, tree->acts ? tree->wrench : NULL, joint);
+    tree->core->transmit(tree, tree->acts ? tree->wrench : NULL, 0, joint);
     along_freedoms(tree, joint, effort);
     for (uint32_t v = 0; v < tree->v_count; ++v) {
         effort[v] += tree->armature[v] * qddot[v];

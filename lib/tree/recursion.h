@@ -39,9 +39,9 @@ void se3di_tree_efforts(const se3di_tree *tree, const double *qddot, double *joi
 
 /* Multipliers of the joints on the tree and of drivers of its coordinates, into `lambda` [rows of
  * the model], from what the joints exert. `effort` (NULL: none): the part along the freedoms that
- * is neither theirs nor an armature's. */
+ * is neither theirs nor an armature's. driven: only of the drivers, from driven nodes. */
 void se3di_tree_multipliers(const se3di_tree *tree, const double *joint, const double *effort,
-                            double *lambda);
+                            int driven, double *lambda);
 
 /* A point of a body, ground frame. */
 void se3di_tree_point(const se3di_tree *tree, uint32_t body, const double local[3],

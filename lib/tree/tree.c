@@ -310,6 +310,15 @@ static void find_drivers(se3di_tree *tree)
     }
 }
 
+/* Parents come before their children. */
+static void find_driven(se3di_tree *tree)
+{
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        se3di_tree_node *n = &tree->nodes[k];
+        n->is_driven = n->driver >= 0 || (n->parent >= 0 && tree->nodes[n->parent].is_driven);
+    }
+}
+
 /* The coordinates of the tree that efforts act on. */
 static void find_efforts(se3di_tree *tree)
 {
@@ -398,6 +407,7 @@ static se3d_status build(se3di_tree *tree)
         span_armatures(&b);
         number(&b);
         find_drivers(tree);
+        find_driven(tree);
         find_efforts(tree);
     }
     se3di_arrays_free(allocator, arrays, BUILDER_ARRAYS);

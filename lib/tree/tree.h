@@ -75,6 +75,8 @@ typedef struct se3di_tree_node {
     int32_t branch;    /* where children other than the next node add up, -1: there are none */
     int32_t child;     /* the last one, -1: none; children in turn by `before`, to the first one */
     int32_t before;    /* the child of the same parent before this one, -1: none */
+    int32_t is_driven; /* it, or a node between it and the ground, has a driver */
+    int32_t reserved;
     double zero;       /* the triads coincide at this angle */
     double sigma;      /* axis_i . axis_j of a revolute: 1 or -1 */
     double lead, base; /* screw: displacement = base + lead angle */
