@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The two evaluators of bytecode.
+/* The evaluators of bytecode: of values, alone or of several points side by side, and of jets.
  *
  * A jet carries a value and derivatives through every operation by the chain rule:
  *
@@ -16,6 +16,131 @@
 #include "se3d/expression.h"
 
 #include <math.h>
+
+/* A condition that is NaN takes no branch: the result becomes NaN. */
+static inline uint32_t branch(double condition, uint32_t jump, double *poison)
+{
+    if (isnan(condition)) {
+        *poison = condition;
+    }
+    return condition == 0.0 ? jump : 0;
+}
+
+/* ---- values ---------------------------------------------------------------------------------*/
+
+/* x, x0, h0, x1, h1 */
+static inline double step_value(double x, double x0, double h0, double x1, double h1)
+{
+    double d[3];
+    const double u = se3di_over(x - x0, x1 - x0);
+    if (!isfinite(u)) {
+        return (double)NAN;
+    }
+    if (u <= 0.0) {
+        return h0;
+    }
+    if (u >= 1.0) {
+        return h1;
+    }
+    se3di_function_smooth_step(u, d);
+    return h0 + (h1 - h0) * d[0];
+}
+
+static inline double unary_value(const se3di_instruction *in, double u)
+{
+    double d[3];
+    se3di_functions[in->function].unary(u, d);
+    return d[0];
+}
+
+static inline double power_value(const se3di_instruction *in, double u)
+{
+    double d[3];
+    se3di_function_power(u, in->value, d);
+    return d[0];
+}
+
+static inline double binary_value(const se3di_instruction *in, double a, double b)
+{
+    se3di_partials d;
+    se3di_functions[in->function].binary(a, b, &d);
+    return d.f;
+}
+
+/* top = (what `next`, an expression in k, says of each point); `pops` operands less. */
+#define EACH(pops, next)                                                                           \
+    top -= (size_t)(pops)*points;                                                                  \
+    for (size_t k = 0; k < points; ++k) {                                                          \
+        top[k] = (next);                                                                           \
+    }                                                                                              \
+    break
+#define OPERAND(number) top[(size_t)(number)*points + k]
+
+/* Of `points` points: x [variables][points]. @return 0: a jump may part them */
+static inline __attribute__((always_inline)) int eval_values(const se3di_instruction *code,
+                                                             size_t count, const double *x,
+                                                             const size_t points, double *values)
+{
+    double stack[(SE3DI_PROGRAM_STACK + 1) * SE3DI_PROGRAM_POINTS]; /* values begin at the second */
+    double *top = stack, poison = 0.0;
+    for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
+        switch ((se3di_op)in->op) { /* unreached: no other operation is compiled */
+        case SE3DI_OP_CONSTANT:
+            EACH(-1, in->value);
+        case SE3DI_OP_VARIABLE:
+            EACH(-1, x[in->function * points + k]);
+        case SE3DI_OP_ADD:
+            EACH(1, OPERAND(0) + OPERAND(1));
+        case SE3DI_OP_SUBTRACT:
+            EACH(1, OPERAND(0) - OPERAND(1));
+        case SE3DI_OP_MULTIPLY:
+            EACH(1, OPERAND(0) * OPERAND(1));
+        case SE3DI_OP_DIVIDE:
+            EACH(1, se3di_over(OPERAND(0), OPERAND(1)));
+        case SE3DI_OP_SHIFT:
+            EACH(0, OPERAND(0) + in->value);
+        case SE3DI_OP_SCALE:
+            EACH(0, OPERAND(0) * in->value);
+        case SE3DI_OP_POWER:
+            EACH(0, power_value(in, OPERAND(0)));
+        case SE3DI_OP_UNARY:
+            EACH(0, unary_value(in, OPERAND(0)));
+        case SE3DI_OP_BINARY:
+        case SE3DI_OP_SELECT:
+            EACH(1, binary_value(in, OPERAND(0), OPERAND(1)));
+        case SE3DI_OP_STEP:
+            EACH(4, step_value(OPERAND(0), OPERAND(1), OPERAND(2), OPERAND(3), OPERAND(4)));
+        case SE3DI_OP_JUMP:
+            in += in->jump;
+            break;
+        case SE3DI_OP_JUMP_IF_ZERO:
+            if (points > 1) {
+                return 0;
+            }
+            in += branch(*top--, in->jump, &poison);
+            break;
+        }
+    }
+    for (size_t k = 0; k < points; ++k) {
+        values[k] = top[k] + poison;
+    }
+    return 1;
+}
+
+void se3di_program_eval_points(const se3di_instruction *code, size_t count, const double *x,
+                               size_t variable_count, double values[SE3DI_PROGRAM_POINTS])
+{
+    if (eval_values(code, count, x, SE3DI_PROGRAM_POINTS, values)) {
+        return;
+    }
+    for (size_t point = 0; point < SE3DI_PROGRAM_POINTS; ++point) {
+        double at[SE3D_EXPRESSION_VARIABLE_MAX];
+        for (size_t k = 0; k < variable_count; ++k) {
+            at[k] = x[k * SE3DI_PROGRAM_POINTS + point];
+        }
+        (void)eval_values(code, count, at, 1, values + point);
+    }
+}
 
 /* ---- value, first and second derivative along a direction of the variables --------------------*/
 
@@ -127,15 +252,6 @@ static void jet_select(jet *a, const se3di_instruction *in)
         a[0] = a[1];
     }
     a[0].f = d.f; /* NaN if either is */
-}
-
-/* A condition that is NaN takes no branch: the result becomes NaN. */
-static inline uint32_t branch(double condition, uint32_t jump, double *poison)
-{
-    if (isnan(condition)) {
-        *poison = condition;
-    }
-    return condition == 0.0 ? jump : 0;
 }
 
 static inline void eval_along(const se3di_instruction *code, size_t count, const double *x, way w,
@@ -306,9 +422,8 @@ static inline void slope_push(slope *top, double f, unsigned mask, size_t n)
     }
 }
 
-static inline __attribute__((always_inline)) void eval_slopes(const se3di_instruction *code,
-                                                              size_t count, const double *x,
-                                                              const size_t n, double *result)
+static void eval_slopes(const se3di_instruction *code, size_t count, const double *x,
+                        const size_t n, double *result)
 {
     slope stack[SE3DI_PROGRAM_STACK + 1]; /* values begin at stack[1] */
     slope *top = stack;
@@ -383,8 +498,8 @@ static inline __attribute__((always_inline)) void eval_slopes(const se3di_instru
 void se3di_program_eval(const se3di_instruction *code, size_t count, const double *x, size_t n,
                         double *result)
 {
-    if (n == 0) { /* without loops over variables */
-        eval_slopes(code, count, x, 0, result);
+    if (n == 0) {
+        (void)eval_values(code, count, x, 1, result);
     } else {
         eval_slopes(code, count, x, n, result);
     }

@@ -188,6 +188,20 @@ se3d_status se3d_expression_eval(const se3d_expression *expression, const double
     return isfinite(*value) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
+_Static_assert(SE3DI_EXPRESSION_POINTS == SE3DI_PROGRAM_POINTS, "they are the same");
+
+se3d_status se3di_expression_eval_points(const se3d_expression *expression, const double *x,
+                                         double values[SE3DI_EXPRESSION_POINTS])
+{
+    const size_t n = expression->variable_count;
+    if (!all_finite(x, n * SE3DI_EXPRESSION_POINTS)) {
+        fill_nan(values, SE3DI_EXPRESSION_POINTS);
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    se3di_program_eval_points(expression->code, expression->code_count, x, n, values);
+    return all_finite(values, SE3DI_EXPRESSION_POINTS) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
+}
+
 se3d_status se3d_expression_eval_time(const se3d_expression *expression, const double *x,
                                       double jet[3])
 {

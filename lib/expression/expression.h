@@ -13,6 +13,12 @@ se3d_status se3di_expression_clone(const se3d_expression *expression,
 /* Number of variables it was compiled for. */
 size_t se3di_expression_variable_count(const se3d_expression *expression);
 
+/* Values at points side by side, x [variables][SE3DI_EXPRESSION_POINTS], the same bits as of each.
+ * @return OK, INVALID_ARGUMENT, NOT_FINITE: of some point, as of se3d_expression_eval() */
+#define SE3DI_EXPRESSION_POINTS 8
+se3d_status se3di_expression_eval_points(const se3d_expression *expression, const double *x,
+                                         double values[SE3DI_EXPRESSION_POINTS]);
+
 /* f and its first and second derivative along a direction: its components of the variables whose
  * bits are in the mask, 0 of the others. What is not finite stays so. */
 void se3di_expression_eval_along(const se3d_expression *expression, const double *x,

@@ -26,6 +26,7 @@
 #define REACH   0.95 /* of a disc, over its radius */
 #define SAMPLES 25   /* places that are tried along a disc, */
 #define CUTS    48   /* and steps between the best and its neighbours */
+#define ROOM    (SAMPLES + SE3DI_EXPRESSION_POINTS)
 #define TIGHT   1e-13
 #define NOISE   1e-6 /* of the slope of a disc where a smooth road carries it */
 #define EDGE    1e-7 /* to both sides of an edge, over the radius */
@@ -138,13 +139,22 @@ se3d_status se3di_road_eval(const se3di_model *model, const se3di_road *road, co
     return bend_callback(function, at, out);
 }
 
+/* The expression of its height; NULL: that comes otherwise. */
+static const se3d_expression *get_formula(const se3di_model *model, const se3di_road *road)
+{
+    const int is_one =
+        road->kind == SE3DI_ROAD_FUNCTION && is_plain(&model->functions[road->function]);
+    return is_one ? model->functions[road->function].expression : NULL;
+}
+
 /* The height alone. */
 static se3d_status eval_height(const se3di_model *model, const se3di_road *road, const double at[3],
                                double *h)
 {
     height out;
-    if (road->kind == SE3DI_ROAD_FUNCTION && is_plain(&model->functions[road->function])) {
-        return se3d_expression_eval(model->functions[road->function].expression, at, h);
+    const se3d_expression *formula = get_formula(model, road);
+    if (formula) {
+        return se3d_expression_eval(formula, at, h);
     }
     SE3DI_TRY(se3di_road_eval(model, road, at, 0, &out));
     *h = out.h;
@@ -263,11 +273,24 @@ typedef struct disc {
     se3d_status status;
 } disc;
 
+static void note(disc *d, se3d_status status)
+{
+    d->status = d->status < 0 ? d->status : status;
+}
+
+/* Time and place of a point of it. */
+static void find_place(const disc *d, double s, double at[3])
+{
+    at[0] = d->time;
+    at[1] = d->at[0] + s * d->ahead[0];
+    at[2] = d->at[1] + s * d->ahead[1];
+}
+
 static void look(disc *d, double s, height *out)
 {
-    const double at[3] = {d->time, d->at[0] + s * d->ahead[0], d->at[1] + s * d->ahead[1]};
-    const se3d_status status = se3di_road_eval(d->model, d->road, at, 0, out);
-    d->status = d->status < 0 ? d->status : status;
+    double at[3];
+    find_place(d, s, at);
+    note(d, se3di_road_eval(d->model, d->road, at, 0, out));
 }
 
 static double drop(const disc *d, double s)
@@ -278,34 +301,68 @@ static double drop(const disc *d, double s)
 /* How high a point of the disc has to be to stand on the road. */
 static double lift(disc *d, double s)
 {
-    const double at[3] = {d->time, d->at[0] + s * d->ahead[0], d->at[1] + s * d->ahead[1]};
-    double h = 0.0;
-    const se3d_status status = eval_height(d->model, d->road, at, &h);
-    d->status = d->status < 0 ? d->status : status;
+    double at[3], h = 0.0;
+    find_place(d, s, at);
+    note(d, eval_height(d->model, d->road, at, &h));
     return h - drop(d, s);
 }
 
-/* d lift / ds */
-static double climb(disc *d, double s)
+/* The same at all samples, from behind to ahead: of a formula several points at a time. */
+static void lift_samples(disc *d, double step, double value[ROOM])
 {
-    height out;
-    look(d, s, &out);
-    return out.x * d->ahead[0] + out.y * d->ahead[1] - s / sqrt(d->radius * d->radius - s * s);
+    const int middle = SAMPLES / 2;
+    const se3d_expression *formula = get_formula(d->model, d->road);
+    for (int k = 0; k < SAMPLES && !formula; ++k) {
+        value[k] = lift(d, (k - middle) * step);
+    }
+    for (int begin = 0; begin < SAMPLES && formula; begin += SE3DI_EXPRESSION_POINTS) {
+        double at[3], all[3][SE3DI_EXPRESSION_POINTS];
+        for (int k = 0; k < SE3DI_EXPRESSION_POINTS; ++k) {
+            find_place(d, ((begin + k) % SAMPLES - middle) * step, at);
+            for (int c = 0; c < 3; ++c) {
+                all[c][k] = at[c];
+            }
+        }
+        note(d, se3di_expression_eval_points(formula, all[0], value + begin));
+    }
+    for (int k = 0; k < SAMPLES && formula; ++k) {
+        value[k] -= drop(d, (k - middle) * step);
+    }
 }
 
-/* The best of samples, from the middle on; value [SAMPLES] from behind to ahead. */
-static double sample(disc *d, double step, double value[SAMPLES], double *best)
+/* d lift / ds; *curve: its own derivative, NaN if it is not known. */
+static double climb(disc *d, double s, double *curve)
+{
+    const se3d_expression *formula = get_formula(d->model, d->road);
+    const double ahead[3] = {0.0, d->ahead[0], d->ahead[1]};
+    const double square = d->radius * d->radius - s * s, root = sqrt(square);
+    double at[3], jet[3];
+    height out;
+    if (!formula) {
+        look(d, s, &out);
+        *curve = (double)NAN;
+        return out.x * d->ahead[0] + out.y * d->ahead[1] - s / root;
+    }
+    find_place(d, s, at);
+    se3di_expression_eval_along(formula, at, ahead, 6u, jet);
+    note(d, isfinite(jet[0]) && isfinite(jet[1]) ? SE3D_OK : SE3D_ERR_NOT_FINITE);
+    *curve = jet[2] - d->radius * d->radius / (square * root);
+    return jet[1] - s / root;
+}
+
+/* The best of samples, from the middle on. */
+static double sample(disc *d, double step, double value[ROOM], double *best)
 {
     const int middle = SAMPLES / 2;
     double s = 0.0;
-    *best = value[middle] = lift(d, 0.0);
+    lift_samples(d, step, value);
+    *best = value[middle];
     for (int k = 1; k <= middle; ++k) {
         for (int side = -1; side < 2; side += 2) {
-            const double other = side * k * step, found = lift(d, other);
-            value[middle + side * k] = found;
+            const double found = value[middle + side * k];
             if (found > *best) {
                 *best = found;
-                s = other;
+                s = side * k * step;
             }
         }
     }
@@ -313,13 +370,23 @@ static double sample(disc *d, double step, double value[SAMPLES], double *best)
 }
 
 /* The place where the slope goes through 0 or jumps over it, between low, where it rises, and high,
- * where it falls. */
+ * where it falls: by Newton's steps while they stay between and halve, else by secants. */
 static double find_top(disc *d, double low, double high, double rise, double fall)
 {
-    double s = 0.5 * (low + high);
+    double s = 0.5 * (low + high), step = high - low, newton = (double)NAN;
     for (int k = 0; k < CUTS && high - low > TIGHT * d->radius; ++k) {
-        s = k % 3 == 2 ? 0.5 * (low + high) : (low * fall - high * rise) / (fall - rise);
-        const double slope = climb(d, s);
+        const double secant =
+            k % 3 == 2 ? 0.5 * (low + high) : (low * fall - high * rise) / (fall - rise);
+        const int takes = newton > low && newton < high && fabs(newton - s) < 0.5 * fabs(step);
+        const double next = takes ? newton : secant;
+        double curve;
+        step = next - s;
+        s = next;
+        if (takes && fabs(step) < TIGHT * d->radius) {
+            return s;
+        }
+        const double slope = climb(d, s, &curve);
+        newton = s - slope / curve;
         if (slope > 0.0) {
             low = s;
             rise = slope;
@@ -369,12 +436,13 @@ static double refine(disc *d, double step, double s, double *best)
 {
     const double reach = REACH * d->radius;
     const double low = fmax(-reach, s - step), high = fmin(reach, s + step);
-    const double here = climb(d, s);
+    double curve;
+    const double here = climb(d, s, &curve);
     if (!(fabs(here) > 0.0)) {
         return s;
     }
-    const double rise = here > 0.0 ? here : climb(d, low);
-    const double fall = here < 0.0 ? here : climb(d, high);
+    const double rise = here > 0.0 ? here : climb(d, low, &curve);
+    const double fall = here < 0.0 ? here : climb(d, high, &curve);
     if (rise > 0.0 && fall < 0.0) {
         const double top = find_top(d, here > 0.0 ? s : low, here < 0.0 ? s : high, rise, fall);
         const double value = lift(d, top);
@@ -391,7 +459,7 @@ static double refine(disc *d, double step, double s, double *best)
 static double find_support(disc *d, double *best)
 {
     const double step = 2.0 * REACH * d->radius / (SAMPLES - 1);
-    double value[SAMPLES];
+    double value[ROOM];
     double s = refine(d, step, sample(d, step, value, best), best);
     for (int k = 0; k + 1 < SAMPLES; ++k) {
         const double low = (k - SAMPLES / 2) * step, high = low + step;

@@ -2,7 +2,7 @@
 /* Random expression trees: values against the same tree computed in C, exact derivatives against
  * central differences, whose error must fall with the second power of the step. */
 #include "check.h"
-#include "se3d/expression.h"
+#include "expression/expression.h"
 
 #include <stdlib.h>
 
@@ -163,6 +163,23 @@ static double value_at(const se3d_expression *e, const double *x, int k, double 
     return f;
 }
 
+/* Points side by side have the bits that each has alone. */
+static void check_points(const se3d_expression *e, const double *x)
+{
+    double at[VARIABLES][SE3DI_EXPRESSION_POINTS], values[SE3DI_EXPRESSION_POINTS];
+    for (int k = 0; k < SE3DI_EXPRESSION_POINTS; ++k) {
+        for (int i = 0; i < VARIABLES; ++i) {
+            at[i][k] = x[i] + (i == k % VARIABLES ? 0.01 * k : 0.0);
+        }
+    }
+    CHECK(se3di_expression_eval_points(e, at[0], values) == SE3D_OK);
+    for (int k = 0; k < SE3DI_EXPRESSION_POINTS; ++k) {
+        CHECK(values[k] == value_at(e, x, k % VARIABLES, 0.01 * k));
+    }
+    at[1][3] = HUGE_VAL;
+    CHECK(se3di_expression_eval_points(e, at[0], values) == SE3D_ERR_INVALID_ARGUMENT);
+}
+
 static double rate_at(const se3d_expression *e, const double *x, double step)
 {
     double moved[VARIABLES], jet[3];
@@ -201,6 +218,7 @@ static void check_tree(const se3d_expression *e, const random_tree *tree, order_
     CHECK(se3d_expression_eval_gradient(e, x, &f, gradient) == SE3D_OK);
     CHECK(f == jet[0] && f == value_at(e, x, 0, 0.0)); /* the same bits from all three */
     CHECK_NEAR(gradient[0], jet[1], 1e-12 * (1.0 + fabs(jet[1])));
+    check_points(e, x);
     for (int k = 0; k < VARIABLES; ++k) {
         d[k][0] = (value_at(e, x, k, h) - value_at(e, x, k, -h)) / (2 * h);
         d[k][1] = (value_at(e, x, k, h / 2) - value_at(e, x, k, -h / 2)) / h;
