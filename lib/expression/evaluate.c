@@ -16,6 +16,7 @@
 #include "se3d/expression.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A condition that is NaN takes no branch: the result becomes NaN. */
 static inline uint32_t branch(double condition, uint32_t jump, double *poison)
@@ -67,6 +68,30 @@ static inline double binary_value(const se3di_instruction *in, double a, double 
     return d.f;
 }
 
+/* Where all points agree functions are evaluated once. */
+static inline int are_same(const double *values, size_t points)
+{
+    return points > 1 && memcmp(values, values + 1, (points - 1) * sizeof *values) == 0;
+}
+
+static inline void fill(double *values, size_t points, double value)
+{
+    for (size_t k = 0; k < points; ++k) {
+        values[k] = value;
+    }
+}
+
+static inline void unary_values(const se3di_instruction *in, double *u, size_t points)
+{
+    const int same = are_same(u, points);
+    for (size_t k = 0; k < (same ? 1 : points); ++k) {
+        u[k] = unary_value(in, u[k]);
+    }
+    if (same) {
+        fill(u, points, u[0]);
+    }
+}
+
 /* top = (what `next`, an expression in k, says of each point); `pops` operands less. */
 #define EACH(pops, next)                                                                           \
     top -= (size_t)(pops)*points;                                                                  \
@@ -104,7 +129,8 @@ static inline __attribute__((always_inline)) int eval_values(const se3di_instruc
         case SE3DI_OP_POWER:
             EACH(0, power_value(in, OPERAND(0)));
         case SE3DI_OP_UNARY:
-            EACH(0, unary_value(in, OPERAND(0)));
+            unary_values(in, top, points);
+            break;
         case SE3DI_OP_BINARY:
         case SE3DI_OP_SELECT:
             EACH(1, binary_value(in, OPERAND(0), OPERAND(1)));

@@ -149,6 +149,16 @@ size_t se3di_expression_variable_count(const se3d_expression *expression)
     return expression->variable_count;
 }
 
+int se3di_expression_reads(const se3d_expression *expression, unsigned mask)
+{
+    int reads = 0;
+    for (size_t k = 0; k < expression->code_count; ++k) {
+        const se3di_instruction *in = &expression->code[k];
+        reads |= in->op == SE3DI_OP_VARIABLE && (mask >> in->function & 1u);
+    }
+    return reads;
+}
+
 static void fill_nan(double *values, size_t count)
 {
     for (size_t k = 0; k < count; ++k) {

@@ -10,6 +10,9 @@
 se3d_status se3di_expression_clone(const se3d_expression *expression,
                                    const se3d_allocator *allocator, se3d_expression **out);
 
+/* Whether it reads some variable whose bit is in the mask. */
+int se3di_expression_reads(const se3d_expression *expression, unsigned mask);
+
 /* Number of variables it was compiled for. */
 size_t se3di_expression_variable_count(const se3d_expression *expression);
 

@@ -22,14 +22,16 @@
 #include <math.h>
 #include <string.h>
 
-#define STEP    1e-5 /* of differences of a callback's slopes [m], [s] */
-#define REACH   0.95 /* of a disc, over its radius */
-#define SAMPLES 25   /* places that are tried along a disc, */
-#define CUTS    48   /* and steps between the best and its neighbours */
-#define ROOM    (SAMPLES + SE3DI_EXPRESSION_POINTS)
-#define TIGHT   1e-13
-#define NOISE   1e-6 /* of the slope of a disc where a smooth road carries it */
-#define EDGE    1e-7 /* to both sides of an edge, over the radius */
+#define STEP     1e-5 /* of differences of a callback's slopes [m], [s] */
+#define REACH    0.95 /* of a disc, over its radius */
+#define SAMPLES  25   /* places that are tried along a disc, */
+#define CUTS     48   /* and steps between the best and its neighbours */
+#define IN_PLANE 6u   /* bits of x and y among the variables t, x, y */
+#define ROOM     (SAMPLES + SE3DI_EXPRESSION_POINTS)
+#define TIGHT    1e-13
+#define SMOOTH   1e-4 /* of what the disc drops by between samples: what a cubic may be off by */
+#define NOISE    1e-6 /* of the slope of a disc where a smooth road carries it */
+#define EDGE     1e-7 /* to both sides of an edge, over the radius */
 
 typedef se3di_dual dual;
 typedef se3di_road_height height;
@@ -344,7 +346,7 @@ static double climb(disc *d, double s, double *curve)
         return out.x * d->ahead[0] + out.y * d->ahead[1] - s / root;
     }
     find_place(d, s, at);
-    se3di_expression_eval_along(formula, at, ahead, 6u, jet);
+    se3di_expression_eval_along(formula, at, ahead, IN_PLANE, jet);
     note(d, isfinite(jet[0]) && isfinite(jet[1]) ? SE3D_OK : SE3D_ERR_NOT_FINITE);
     *curve = jet[2] - d->radius * d->radius / (square * root);
     return jet[1] - s / root;
@@ -454,6 +456,28 @@ static double refine(disc *d, double step, double s, double *best)
     return find_brink(d, low, high, s, best);
 }
 
+/* Whether the lift between two samples is that of the cubic with their slopes, and so without a
+ * wall; then its best place, if that is between them, replaces what is lower. */
+static int takes_smooth(disc *d, const double end[2], const double value[2], double *s,
+                        double *best)
+{
+    double curve;
+    const double step = end[1] - end[0], middle = 0.5 * (end[0] + end[1]);
+    const double slope[2] = {climb(d, end[0], &curve), climb(d, end[1], &curve)};
+    const double cubic = 0.5 * (value[0] + value[1]) + 0.125 * step * (slope[0] - slope[1]);
+    if (!(fabs(lift(d, middle) - cubic) < SMOOTH * step * step / d->radius)) {
+        return 0;
+    }
+    const int is_known = *s > end[0] && *s < end[1];
+    if (!is_known && slope[0] > 0.0 && slope[1] < 0.0) {
+        const double top = find_top(d, end[0], end[1], slope[0], slope[1]);
+        const double found = lift(d, top);
+        *s = found > *best ? top : *s;
+        *best = fmax(*best, found);
+    }
+    return 1;
+}
+
 /* The place s that the disc stands on, and how high it does. Between two samples the road may be as
  * high as the higher one up to the place of the other: a wall. */
 static double find_support(disc *d, double *best)
@@ -462,11 +486,12 @@ static double find_support(disc *d, double *best)
     double value[ROOM];
     double s = refine(d, step, sample(d, step, value, best), best);
     for (int k = 0; k + 1 < SAMPLES; ++k) {
-        const double low = (k - SAMPLES / 2) * step, high = low + step;
-        const double drops[2] = {drop(d, low), drop(d, high)};
+        const double low = (k - SAMPLES / 2) * step, end[2] = {low, low + step};
+        const double drops[2] = {drop(d, end[0]), drop(d, end[1])};
         const double top = fmax(value[k] + drops[0], value[k + 1] + drops[1]);
-        if (top - fmin(drops[0], drops[1]) > *best + TIGHT * d->radius) {
-            s = find_brink(d, low, high, s, best);
+        if (top - fmin(drops[0], drops[1]) > *best + TIGHT * d->radius &&
+            !takes_smooth(d, end, value + k, &s, best)) {
+            s = find_brink(d, end[0], end[1], s, best);
         }
     }
     return s;
@@ -561,7 +586,9 @@ static se3d_status find_disc_plane(const se3di_model *model, const se3di_road *r
 se3d_status se3di_road_find_plane(const se3di_model *model, const se3di_road *road,
                                   const se3di_road_wheel *wheel, se3di_road_plane *plane)
 {
+    const se3d_expression *formula = get_formula(model, road);
+    const int is_level = formula && !se3di_expression_reads(formula, IN_PLANE);
     memset(plane, 0, sizeof *plane);
-    return wheel->length > 0.0 ? find_disc_plane(model, road, wheel, plane)
-                               : find_point_plane(model, road, wheel, plane);
+    return wheel->length > 0.0 && !is_level ? find_disc_plane(model, road, wheel, plane)
+                                            : find_point_plane(model, road, wheel, plane);
 }
