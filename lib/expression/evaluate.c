@@ -68,7 +68,7 @@ static inline double binary_value(const se3di_instruction *in, double a, double 
     return d.f;
 }
 
-/* Where all points agree functions are evaluated once. */
+/* Functions are evaluated once if all points agree. */
 static inline int are_same(const double *values, size_t points)
 {
     return points > 1 && memcmp(values, values + 1, (points - 1) * sizeof *values) == 0;

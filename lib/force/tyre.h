@@ -99,6 +99,11 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
 se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyre, double t,
                                 se3di_effect *effect, double rate[2]);
 
+/* Its deflection [m] (< 0: it is above the road) and the rate [m/s] at the present state. @return
+ * as se3di_force_eval */
+se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
+                                       double deflection[2]);
+
 /* What it tells at the present state, se3d_tyre_value from `first` to before `end`; the others may
  * be left out. @return as se3di_force_eval */
 se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, size_t first,

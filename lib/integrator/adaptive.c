@@ -63,6 +63,7 @@ static se3d_status try_steps(se3di_adaptive *step, double next)
     se3di_equations *equations = step->integration->equations;
     const double begin = step->at->time;
     const double least = methods->least * fmax(1e-3, fabs(begin));
+    step->resumed = 0.0;
     for (step->tries = 1;; ++step->tries) {
         const double h = se3di_step_length(begin, step->t, next);
         double error;
@@ -104,6 +105,7 @@ static se3d_status advance(se3di_adaptive *step, double t_end)
         return status;
     }
     step->at->rejected = 0.0;
+    step->at->next = fmax(step->at->next, step->resumed);
     if (is_cut && step->tries == 1) {
         step->at->next = fmax(paced, step->at->next);
     }

@@ -35,10 +35,12 @@ struct se3di_adaptive {
     se3di_integration *integration;
     se3di_adaptive_history *at;
     double
-        fraction;  /* of the step that was tried, that a turn of friction asks for; 0: none does */
-    double t;      /* the end of the step that is tried: time + h but for rounding */
-    int32_t tries; /* of this step, from 1 */
-    int32_t ends;  /* it may not go past the end of the run */
+        fraction;   /* of the step that was tried, that a turn of friction asks for; 0: none does */
+    double resumed; /* the length that the next step takes up after one that a change of contact has
+                       cut short; 0: none has */
+    double t;       /* the end of the step that is tried: time + h but for rounding */
+    int32_t tries;  /* of this step, from 1 */
+    int32_t ends;   /* it may not go past the end of the run */
 };
 
 /* Whether a step has failed because a callback reports a failure at a time beyond t_end, where it

@@ -8,6 +8,7 @@
 #include "contact/bodies/pace.h"
 #include "integrator/motion.h"
 #include "integrator/step_list.h"
+#include "integrator/tyre_steps.h"
 #include "math/elementary.h"
 #include "math/larger.h"
 #include "math/over.h"
@@ -16,7 +17,11 @@
 #include <math.h>
 #include <string.h>
 
+_Static_assert(2 * SE3DI_TYRE_NOTES <= SE3DI_FORCE_STATES,
+               "memory has room for notes of both ends");
+
 #define FORCED_MAX 3
+#define TYRE_TRIES 4     /* of a step that look for changes of tyres */
 #define LEAST_STEP 3e-14 /* of the time */
 #define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step; */
@@ -295,10 +300,33 @@ static double pace(se3di_adaptive *step, double h)
     return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
 }
 
+/* A step that is too long may be so because tyres leave their roads or meet them within it. */
+static void seek_tyres(se3di_explicit *m, double h)
+{
+    const se3di_model *model = m->assembly->model;
+    double *begin = m->memory, *end = begin + SE3DI_TYRE_NOTES * model->force_slots.count;
+    const double t = m->past->at.time;
+    if (m->step.tries > TYRE_TRIES || !se3di_tyres_are_there(model)) {
+        return;
+    }
+    m->motion->set_frames(m->equations, m->y1);
+    const se3d_status status = se3di_tyres_note(model, t, begin);
+    m->methods->arrive(m, h);
+    m->motion->set_frames(m->equations, m->y);
+    const int is_known = status >= 0 && se3di_tyres_note(model, t + h, end) >= 0;
+    const double part = is_known ? se3di_tyres_find_part(model, h, begin, end) : 0.0;
+    m->step.fraction = part > 0.0 ? part : m->step.fraction;
+    m->step.resumed = part > 0.0 ? fmax(m->step.resumed, h) : 0.0;
+}
+
 static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 {
-    SE3DI_TRY(attempt(get_explicit(step), h, error));
-    return *error <= 1.0 ? prepare(get_explicit(step), h, error) : SE3D_OK;
+    se3di_explicit *m = get_explicit(step);
+    SE3DI_TRY(attempt(m, h, error));
+    if (*error > 1.0 && isfinite(*error)) {
+        seek_tyres(m, h);
+    }
+    return *error <= 1.0 ? prepare(m, h, error) : SE3D_OK;
 }
 
 /* The step h has met the tolerance: what follows for the next ones. */
