@@ -658,7 +658,7 @@ se3d_status se3di_events_run(se3di_events *events, double t_end)
     events->reached = t;
     while (t < t_end) {
         if (!(history[SE3DI_HISTORY_TIME] > t)) {
-            if (run->integration.settings.leaves_stiff && method->is_held(&run->integration)) {
+            if (se3di_integration_must_leave(&run->integration)) {
                 return method->run(&run->integration, t);
             }
             SE3DI_TRY(method->advance(&run->integration, t_end));

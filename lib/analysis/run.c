@@ -364,12 +364,10 @@ static se3d_status run_fixed_steps(se3di_run *run, double t_end)
     return SE3D_OK;
 }
 
-/* auto: the explicit method is held to short steps by stability. */
+/* auto: the method is held to short steps by stability, or by what touches. */
 static int must_switch(const se3di_run *run)
 {
-    const se3di_integration *integration = &run->integration;
-    return integration->settings.leaves_stiff && integration->method->is_held && has_history(run) &&
-           integration->method->is_held(integration);
+    return has_history(run) && se3di_integration_must_leave(&run->integration);
 }
 
 /* From the present state by a method for stiff motions, or for many bodies at each other; by the

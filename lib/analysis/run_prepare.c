@@ -14,6 +14,7 @@
 #include "integrator/explicit_point.h"
 #include "integrator/explicit_step.h"
 #include "integrator/gauss_lanes.h"
+#include "integrator/radau.h"
 #include "nonlinear/against.h"
 #include "primitive/user.h"
 
@@ -178,11 +179,18 @@ static int32_t may_crowd(const se3di_run *run)
     return se3di_crowd_has_mesh(model) ? SE3DI_CROWD_ROUGH : SE3DI_CROWD_SLOW;
 }
 
+/* The method under way was left for what touches. */
+static int is_left(const se3di_model *model)
+{
+    return is_history_of(model, SE3D_METHOD_RADAU)
+               ? se3di_radau_leaves_crowd(model)
+               : is_history_of(model, SE3D_METHOD_DOP853) && se3di_explicit_leaves_crowd(model);
+}
+
 /* Contacts have held steps short, and nothing else needs them so short. */
 static int is_slow(const se3di_run *run)
 {
-    return is_history_of(run->model, SE3D_METHOD_DOP853) &&
-           se3di_explicit_leaves_crowd(run->model) &&
+    return is_left(run->model) &&
            se3di_crowd_bears(run->model, fmax(run->integration.settings.step, STEP_SLOW));
 }
 
@@ -190,11 +198,8 @@ int se3di_run_is_crowded(const se3di_run *run)
 {
     const se3di_model *model = run->model;
     const int32_t crowd = may_crowd(run);
-    if (crowd == SE3DI_CROWD_NONE || is_history_of(model, SE3D_METHOD_RADAU)) {
-        return 0;
-    }
-    if (is_history_of(model, SE3D_METHOD_CONVEX)) {
-        return 1;
+    if (crowd == SE3DI_CROWD_NONE || is_history_of(model, SE3D_METHOD_CONVEX)) {
+        return crowd != SE3DI_CROWD_NONE;
     }
     return crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(model) : is_slow(run);
 }
@@ -386,7 +391,8 @@ se3d_status se3di_run_build(se3di_run *run)
 /* From the present state. */
 static se3d_status enter_crowd(se3di_run *run)
 {
-    if (is_history_of(run->model, SE3D_METHOD_DOP853)) {
+    if (is_history_of(run->model, SE3D_METHOD_DOP853) ||
+        is_history_of(run->model, SE3D_METHOD_RADAU)) {
         run->left = run->integration.method;
         run->left_at = run->model->time;
     }
@@ -418,7 +424,10 @@ se3d_status se3di_run_prepare(se3di_run *run)
         SE3DI_TRY(enter_crowd(run));
     }
     run->integration.settings.leaves_crowd =
-        run->integration.method->tag == SE3D_METHOD_DOP853 ? may_crowd(run) : SE3DI_CROWD_NONE;
+        run->integration.method->tag == SE3D_METHOD_DOP853 ||
+                run->integration.method->tag == SE3D_METHOD_RADAU
+            ? may_crowd(run)
+            : SE3DI_CROWD_NONE;
     se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
     if (run->values_version != run->model->values_version) {
         se3di_assembly_take_values(&run->equations.assembly);

@@ -7,10 +7,8 @@
 
 #include <math.h>
 
-#define COUNTED 256.0 /* steps */
-#define SHORT   5e-5  /* s, shorter than this on the average: convex makes one of 20 or more */
-#define TINY    2e-6  /* s, a step that no touch of its own needs: contacts come and go */
-#define TINIES  20.0  /* such steps in a row tell, and need not wait for the others */
+#define PATIENCE 256.0 /* steps, shorter on the average than */
+#define BRIEF    5e-5  /* s: convex makes one of 20 or more */
 
 int se3di_explicit_is_held(const se3di_integration *integration)
 {
@@ -18,31 +16,14 @@ int se3di_explicit_is_held(const se3di_integration *integration)
     return held >= SE3DI_HELD_MIN || (integration->settings.leaves_crowd && held < 0.0);
 }
 
-/* The last COUNTED steps were short, or on a mesh the last TINIES tiny, and something touches at
- * their end. */
-static int is_slow(const se3di_explicit *m, int32_t crowd)
-{
-    se3di_explicit_past *past = m->past;
-    const double t = past->at.time;
-    past->counted += 1.0;
-    past->tiny = t - past->at.begin < TINY ? past->tiny + 1.0 : 0.0;
-    if (past->counted < COUNTED) {
-        return crowd == SE3DI_CROWD_ROUGH && past->tiny >= TINIES &&
-               se3di_bodies_touch(m->assembly->model);
-    }
-    const int is_slow =
-        t - past->counts < SHORT * COUNTED && se3di_bodies_touch(m->assembly->model);
-    past->counted = 0.0;
-    past->counts = t;
-    return is_slow;
-}
-
 void se3di_explicit_watch_crowd(se3di_explicit *m)
 {
     const int32_t crowd = m->step.integration->settings.leaves_crowd;
     if (crowd != SE3DI_CROWD_NONE) {
+        const double step[2] = {m->past->at.begin, m->past->at.time};
+        static const se3di_crowd_pace pace = {.steps = PATIENCE, .brief = BRIEF};
         const int meets =
-            crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(m->assembly->model) : is_slow(m, crowd);
+            se3di_crowd_watch_step(&m->past->watch, m->assembly->model, crowd, step, &pace);
         m->past->held = meets ? -1.0 : fmax(m->past->held, 0.0);
     }
 }

@@ -544,7 +544,9 @@ se3d_status se3di_explicit_start(se3di_integration *integration, double h)
     memset(m.y0, 0, (SE3DI_EXPLICIT_FORMS + 1) * m.count * sizeof *m.y0);
     m.past->scale.length = se3di_state_length(m.assembly->model);
     m.past->at.error = 1e-2;
-    m.past->counts = m.methods->is_watched ? 0.0 : m.assembly->model->time;
+    if (!m.methods->is_watched) {
+        m.past->watch.since = m.assembly->model->time;
+    }
     m.past->redundant = (double)m.assembly->row_count;
     double potential, springs;
     const se3di_model *model = m.assembly->model;

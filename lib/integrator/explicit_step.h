@@ -11,6 +11,7 @@
 #define SE3DI_EXPLICIT_STEP_H
 
 #include "integrator/adaptive.h"
+#include "integrator/crowd_watch.h"
 #include "integrator/motion.h"
 #include "integrator/sums.h"
 
@@ -31,16 +32,12 @@ typedef struct se3di_explicit_past {
     double free;         /* signs against it since */
     double since;        /* steps since the last look */
     union {
-        double stages;  /* gauss: of the last step, which the next one continues; 0: none */
-        double counted; /* Runge-Kutta: steps */
-    };
-    union {
-        double contraction; /* gauss: of the iterations of the last step */
-        double counts;      /* Runge-Kutta: since when */
-    };
-    union {
-        double lost; /* gauss: 1: rows were dependent at its end that are not all along */
-        double tiny; /* Runge-Kutta: steps in a row that were much too short */
+        struct {
+            double stages;      /* gauss: of the last step, which the next one continues; 0: none */
+            double contraction; /* of the iterations of the last step */
+            double lost;        /* 1: rows were dependent at its end that are not all along */
+        };
+        se3di_crowd_watch watch; /* Runge-Kutta */
     };
     double length;   /* Runge-Kutta: of the last step, as its stages were made */
     double unscaled; /* 1: steps without error control have not grown the scale */

@@ -21,6 +21,13 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
     return method >= 0 && method < count ? methods[method] : NULL;
 }
 
+int se3di_integration_must_leave(const se3di_integration *integration)
+{
+    const se3di_integrator_settings *settings = &integration->settings;
+    return (settings->leaves_stiff || settings->leaves_crowd) && integration->method->is_held &&
+           integration->method->is_held(integration);
+}
+
 double se3di_integration_get_tolerance(const se3di_integration *integration,
                                        const se3di_model *model)
 {

@@ -158,6 +158,9 @@ SE3DI_METHOD_LIST(SE3DI_METHOD_DECLARE)
 double se3di_integration_get_tolerance(const se3di_integration *integration,
                                        const se3di_model *model);
 
+/* auto: the method is held short, by stability or by what touches, and others are to be taken. */
+int se3di_integration_must_leave(const se3di_integration *integration);
+
 /* By se3d_method, AUTO: the one with which a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);
 

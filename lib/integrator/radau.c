@@ -11,6 +11,7 @@
  * has the derivatives of the stages and of the start of the step.  docs/theory/radau.md */
 #include "integrator/radau.h"
 #include "integrator/adaptive.h"
+#include "integrator/crowd_watch.h"
 #include "integrator/memory.h"
 
 #include "assembly/energy.h"
@@ -40,6 +41,9 @@
 /* Of the tolerance: the estimate at the kink of a force, where the result is no better than it. */
 #define AT_KINK 0.3
 
+#define PATIENCE 1024.0 /* steps, shorter on the average than */
+#define BRIEF    2e-5   /* s for each body that touches: some three times as long as they compute */
+
 #define UNTRUSTED 0.7 /* of a step whose iteration did not converge: from there on they are tried */
 #define TRUST     1.02 /* again, longer and longer with every step */
 
@@ -53,10 +57,12 @@ typedef struct radau_header {
     double
         trusted;  /* the longest step in which the iteration is expected to converge [s], 0: any */
     double since; /* steps since one did not */
+    se3di_crowd_watch watch;
+    double leaves; /* 1: to be left for what touches */
 } radau_header;
 
 #define RADAU_HEADER (sizeof(radau_header) / sizeof(double))
-_Static_assert(sizeof(radau_header) == 15 * sizeof(double),
+_Static_assert(sizeof(radau_header) == 19 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct history {
@@ -488,6 +494,16 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
     return SE3D_OK;
 }
 
+static void watch_crowd(controlled_step *s)
+{
+    radau_header *header = s->past.header;
+    const double step[2] = {header->at.begin, header->at.time};
+    static const se3di_crowd_pace pace = {.steps = PATIENCE, .brief_each = BRIEF};
+    header->leaves =
+        se3di_crowd_watch_step(&header->watch, s->m.assembly->model,
+                               s->step.integration->settings.leaves_crowd, step, &pace);
+}
+
 static se3d_status take(se3di_adaptive *step, double h, double error)
 {
     controlled_step *s = get_step(step);
@@ -496,6 +512,7 @@ static se3d_status take(se3di_adaptive *step, double h, double error)
     SE3DI_TRY(accept(&s->m, &s->past, step->t));
     step->at->next = next;
     step->at->error = fmax(error, 1e-2);
+    watch_crowd(s);
     return SE3D_OK;
 }
 
@@ -547,6 +564,7 @@ static se3d_status adopt(se3di_integration *integration)
     se3di_forces_stay(assembly->model);
     memset(assembly->model->history, 0, history_count(assembly) * sizeof(double));
     past.header->at.next = next;
+    past.header->watch.since = assembly->model->time;
     se3di_state_get(assembly, past.y1);
     se3di_assembly_get_acceleration(assembly, equations->x);
     SE3DI_TRY(se3di_state_derivative(assembly, assembly->model->time, equations->x,
@@ -571,7 +589,9 @@ static se3d_status start(se3di_integration *integration, double h)
 static se3d_status renew(se3di_integration *integration)
 {
     const history past = get_history(&integration->equations->assembly);
+    const se3di_crowd_watch watch = past.header->watch;
     SE3DI_TRY(adopt(integration));
+    past.header->watch = watch;
     past.header->at.renewed = 1.0;
     return SE3D_OK;
 }
@@ -668,14 +688,27 @@ static void interpolate(const se3di_integration *integration, double t, double *
     }
 }
 
+int se3di_radau_leaves_crowd(const se3di_model *model)
+{
+    return ((const radau_header *)(const void *)model->history)->leaves > 0.0;
+}
+
+/* By contacts of which each is followed. */
+static int is_held(const se3di_integration *integration)
+{
+    return integration->settings.leaves_crowd &&
+           se3di_radau_leaves_crowd(integration->equations->assembly.model);
+}
+
 static se3d_status run(se3di_integration *integration, double t_end)
 {
     const history past = get_history(&integration->equations->assembly);
     se3d_status status = SE3D_OK;
-    while (past.header->at.time < t_end && status >= 0 && !integration->at_kink) {
+    while (past.header->at.time < t_end && status >= 0 && !integration->at_kink &&
+           !is_held(integration)) {
         status = advance(integration, t_end);
     }
-    return status < 0 ? status : publish(integration, t_end);
+    return status < 0 ? status : publish(integration, fmin(t_end, past.header->at.time));
 }
 
 const se3di_integrator se3di_integrator_radau = {
@@ -689,6 +722,7 @@ const se3di_integrator se3di_integrator_radau = {
     .run = run,
     .advance = advance,
     .interpolate = interpolate,
+    .is_held = is_held,
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 1u << 5,

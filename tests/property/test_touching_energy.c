@@ -175,7 +175,7 @@ static void steps_too_long_for_a_house_of_cards_gain_hardly_anything(void)
 }
 
 /* A heavy ball on a chain of links, drawn aside by 60 degrees. */
-static void add_wrecking_ball(scene *s)
+static se3d_body add_wrecking_ball(scene *s)
 {
     enum { LINKS = 8 };
     const double J[3] = {1e-3, 1e-3, 1e-4}, y[3] = {0.0, 1.0, 0.0}, z[3] = {0.0, 0.0, 1.0};
@@ -195,6 +195,18 @@ static void add_wrecking_ball(scene *s)
         CHECK(se3d_joint_create_spherical(s->system, &pin, &made) == SE3D_OK);
         before = pin.body_j;
     }
+    return before;
+}
+
+/* In rows of four, in its way. */
+static void add_bricks(scene *s, int count)
+{
+    const double size[3] = {0.15, 0.3, 0.2};
+    for (int k = 0; k < count; ++k) {
+        const double shift = k / 4 % 2 ? 0.15 : 0.0;
+        const double r[3] = {0.35, 0.3 * (k % 4 - 1.5) + shift, 0.1 + 0.2 * (k / 4)};
+        scene_box(s, size, 16.2, r, scene_zero);
+    }
 }
 
 /* Between the ball and the floor bricks jam; with constraints the velocities of a step are found
@@ -206,17 +218,12 @@ static void a_wrecking_ball_gives_no_more_than_it_has(void)
         double step, stiffness, friction, row;
     } runs[6] = {{4e-3, 4e6, 0.3, 0.02}, {5e-3, 1e6, 0.3, 0.02}, {4e-3, 1e6, 0.5, 0.04},
                  {5e-3, 1e6, 0.3, 0.06}, {4e-3, 1e6, 0.6, 0.06}, {5e-3, 1e6, 0.6, 0.06}};
-    const double size[3] = {0.15, 0.3, 0.2};
     for (int n = 0; n < 6; ++n) {
         double before, energy, growth = 0.0, first, balance;
         scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, runs[n].friction, 0.2, runs[n].stiffness);
         scene_floor(&s, 0.0);
         add_wrecking_ball(&s);
-        for (int k = 0; k < 20; ++k) {
-            const double shift = k / 4 % 2 ? 0.15 : 0.0;
-            const double r[3] = {0.35, 0.3 * (k % 4 - 1.5) + shift, 0.1 + 0.2 * (k / 4)};
-            scene_box(&s, size, 16.2, r, scene_zero);
-        }
+        add_bricks(&s, 20);
         scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, runs[n].step, 0.0);
         look(&s, &first, &balance);
         before = first;
@@ -228,6 +235,36 @@ static void a_wrecking_ball_gives_no_more_than_it_has(void)
         CHECK(growth < 0.05 * first);
         CHECK(before < 0.7 * first);
         scene_end(&s);
+    }
+}
+
+/* Until the ball hits, auto controls errors: the chain moves as without bricks. What comes then is
+ * stiff, and radau takes over; it would be 3 times slower than what happens, for 2 s. */
+static void auto_leaves_a_slow_radau_for_convex(void)
+{
+    double r[2][3], time = 0.0, before, energy, balance;
+    const char *left = "";
+    for (int k = 0; k < 2; ++k) {
+        const char *method = "";
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, 1e6);
+        const se3d_body ball = add_wrecking_ball(&s);
+        scene_floor(&s, 0.0);
+        add_bricks(&s, 8 * k);
+        scene_solve(&s, SE3D_METHOD_AUTO, SE3D_FORMULATION_AUTO, 0.0, 0.0);
+        look(&s, &before, &balance);
+        scene_run(&s, 0.68);
+        CHECK(se3d_body_get_position(s.system, ball, r[k]) == SE3D_OK);
+        CHECK(k == 0 || scene_run(&s, 0.8));
+        CHECK(se3d_solver_get_switch(s.solver, &time, &left) == SE3D_OK);
+        CHECK(se3d_solver_get_method(s.solver, &method) == SE3D_OK);
+        CHECK(k == 0 || (strcmp(method, "convex") == 0 && strcmp(left, "radau") == 0));
+        CHECK(k == 0 || (time > 0.7 && time < 0.8));
+        look(&s, &energy, &balance);
+        CHECK(energy < before + 1e-5 * fabs(before));
+        scene_end(&s);
+    }
+    for (int e = 0; e < 3; ++e) {
+        CHECK_NEAR(r[0][e], r[1][e], 1e-7);
     }
 }
 
@@ -427,6 +464,7 @@ int main(void)
     RUN(a_house_of_cards_gains_nothing);
     RUN(steps_too_long_for_a_house_of_cards_gain_hardly_anything);
     RUN(a_wrecking_ball_gives_no_more_than_it_has);
+    RUN(auto_leaves_a_slow_radau_for_convex);
     RUN(a_high_stack_stays_where_it_is);
     RUN(a_driven_bearing_gains_nothing);
     RUN(a_driven_belt_gains_nothing);

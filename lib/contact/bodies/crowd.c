@@ -7,10 +7,11 @@
 #include <math.h>
 
 #define NEAR 0.1 /* of the smaller shape's size */
+#define MOST 64  /* bodies that are told apart */
 
 typedef struct crowd {
     const se3di_model *model;
-    uint32_t bodies[SE3DI_CROWD]; /* free ones, each once */
+    uint32_t bodies[MOST]; /* free ones, each once */
     size_t count;
 } crowd;
 
@@ -20,7 +21,7 @@ static void add(crowd *c, uint32_t body)
     while (k < c->count && c->bodies[k] != body) {
         ++k;
     }
-    if (k == c->count && c->count < SE3DI_CROWD && !c->model->bodies[body].fixed) {
+    if (k == c->count && c->count < MOST && !c->model->bodies[body].fixed) {
         c->bodies[c->count++] = body;
     }
 }
@@ -45,12 +46,29 @@ int se3di_bodies_crowd(const se3di_model *model)
     return c.count >= SE3DI_CROWD;
 }
 
+static int are_balls(const se3di_model *model, const se3di_body_contact *contact)
+{
+    return model->shapes[contact->shape_i].kind == SE3DI_SHAPE_SPHERE &&
+           model->shapes[contact->shape_j].kind == SE3DI_SHAPE_SPHERE;
+}
+
+size_t se3di_bodies_touching(const se3di_model *model)
+{
+    crowd c = {.model = model};
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *contact = &model->contacts.list[k];
+        if (!are_balls(model, contact)) {
+            add(&c, model->shapes[contact->shape_i].body);
+            add(&c, model->shapes[contact->shape_j].body);
+        }
+    }
+    return c.count;
+}
+
 int se3di_bodies_touch(const se3di_model *model)
 {
     for (size_t k = 0; k < model->contacts.count; ++k) {
-        const se3di_body_contact *contact = &model->contacts.list[k];
-        if (model->shapes[contact->shape_i].kind != SE3DI_SHAPE_SPHERE ||
-            model->shapes[contact->shape_j].kind != SE3DI_SHAPE_SPHERE) {
+        if (!are_balls(model, &model->contacts.list[k])) {
             return 1;
         }
     }

@@ -19,6 +19,9 @@ enum {
 /* So many free bodies touch something, or are a small part of their size from doing so while bounds
  * overlap: those of balls do only if they touch. */
 int se3di_bodies_crowd(const se3di_model *model);
+/* The free bodies that touch something at the accepted state, but for balls that touch balls, up to
+ * 64. */
+size_t se3di_bodies_touching(const se3di_model *model);
 /* Anything touches at the accepted state; balls that touch balls do not count, as they may pass
  * impacts on to each other (Newton's cradle). */
 int se3di_bodies_touch(const se3di_model *model);

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+#include "integrator/crowd_watch.h"
+
+#include "contact/bodies/crowd.h"
+
+#include <math.h>
+
+#define TINY   2e-6 /* s, a step that no touch of its own needs: contacts come and go */
+#define TINIES 20.0 /* such steps in a row tell, and need not wait for the others */
+
+/* The last steps were short, or on a mesh the last TINIES tiny, and something touches at
+ * their end. */
+static int is_slow(se3di_crowd_watch *watch, const se3di_model *model, int32_t crowd,
+                   const double step[2], const se3di_crowd_pace *pace)
+{
+    const double t = step[1];
+    watch->counted += 1.0;
+    watch->tiny = t - step[0] < TINY ? watch->tiny + 1.0 : 0.0;
+    if (watch->counted < pace->steps) {
+        return crowd == SE3DI_CROWD_ROUGH && watch->tiny >= TINIES && se3di_bodies_touch(model);
+    }
+    const double bodies = (double)se3di_bodies_touching(model);
+    const double brief = bodies > 0.0 ? fmax(pace->brief, pace->brief_each * bodies) : 0.0;
+    const int is_slow = t - watch->since < brief * pace->steps;
+    watch->counted = 0.0;
+    watch->since = t;
+    return is_slow;
+}
+
+int se3di_crowd_watch_step(se3di_crowd_watch *watch, const se3di_model *model, int32_t crowd,
+                           const double step[2], const se3di_crowd_pace *pace)
+{
+    return crowd == SE3DI_CROWD_NEAR   ? se3di_bodies_crowd(model)
+           : crowd == SE3DI_CROWD_NONE ? 0
+                                       : is_slow(watch, model, crowd, step, pace);
+}
