@@ -52,7 +52,8 @@ typedef struct se3di_body_contacts {
     size_t pair_count, pair_capacity;
     double *reference; /* [3 * shapes] */
     uint32_t *order;   /* [shapes] by their lower ends along an axis */
-    size_t reference_capacity, order_capacity;
+    double *swept;     /* [4 * shapes] in that order: centre, bound; while the list is made */
+    size_t reference_capacity, order_capacity, swept_capacity;
     double margin;
     double time, next_time; /* of the states of `list` and `next` */
     uint64_t version;       /* 0: none */

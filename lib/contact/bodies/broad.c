@@ -11,7 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-#define MARGIN 0.3 /* of the smallest bound */
+#define MARGIN  0.3          /* of the smallest bound */
+#define CLEARLY (1.0 + 1e-9) /* of a square: beyond any rounding */
 
 static void center_of(const se3di_model *model, uint32_t shape, double x[3])
 {
@@ -170,17 +171,11 @@ se3d_status se3di_broad_visit(const se3di_model *model, se3di_pair_visitor visit
     return SE3D_OK;
 }
 
-/* The lower end of a shape along x, with the margin. */
+/* The lower end of a shape along x. */
 static double lower_end(const se3di_model *model, uint32_t shape)
 {
     const se3di_shape *s = &model->shapes[shape];
     return is_plane(s) ? -HUGE_VAL : model->contacts.reference[3 * (size_t)shape] - s->bound;
-}
-
-static double upper_end(const se3di_model *model, uint32_t shape)
-{
-    const se3di_shape *s = &model->shapes[shape];
-    return is_plane(s) ? HUGE_VAL : model->contacts.reference[3 * (size_t)shape] + s->bound;
 }
 
 /* Nearly sorted from the last time. */
@@ -250,15 +245,43 @@ static se3d_status add_pair(se3di_model *model, uint32_t a, uint32_t b)
     return SE3D_OK;
 }
 
+/* What the sweep reads of each shape, one after the other. */
+static void line_up(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    for (size_t k = 0; k < model->shape_slots.count; ++k) {
+        const se3di_shape *s = &model->shapes[c->order[k]];
+        double *at = c->swept + 4 * k;
+        se3di_copy(c->reference + 3 * (size_t)c->order[k], at);
+        at[3] = s->bound;
+        if (is_plane(s)) { /* as wide as anything */
+            at[0] = 0.0;
+            at[3] = HUGE_VAL;
+        }
+    }
+}
+
+/* Clearly farther apart than `margin`. */
+static int are_apart(const double *a, const double *b, double margin)
+{
+    const double reach = a[3] + b[3] + margin;
+    double d[3];
+    se3di_sub(b, a, d);
+    return se3di_dot(d, d) > CLEARLY * (reach * reach);
+}
+
 static se3d_status sweep(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
     uint32_t shapes = (uint32_t)model->shape_slots.count;
     c->pair_count = 0;
+    line_up(model);
     for (uint32_t k = 0; k < shapes; ++k) {
-        double high = upper_end(model, c->order[k]) + c->margin;
-        for (uint32_t m = k + 1; m < shapes && !(lower_end(model, c->order[m]) > high); ++m) {
-            if (were_near(model, c->order[k], c->order[m], c->margin) &&
+        const double *a = c->swept + 4 * (size_t)k, *b = a + 4;
+        const double high = a[0] + a[3] + c->margin;
+        for (uint32_t m = k + 1; m < shapes && !(b[0] - b[3] > high); ++m, b += 4) {
+            if (!are_apart(a, b, c->margin) &&
+                were_near(model, c->order[k], c->order[m], c->margin) &&
                 se3di_shapes_may_touch(model, c->order[k], c->order[m])) {
                 SE3DI_TRY(add_pair(model, c->order[k], c->order[m]));
             }
@@ -271,17 +294,14 @@ static se3d_status sweep(se3di_model *model)
 static se3d_status reserve(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
-    size_t shapes = model->shape_slots.count;
-    void *reference = c->reference;
-    void *order = c->order;
-    se3d_status status = se3di_array_reserve(&model->allocator, &reference, &c->reference_capacity,
-                                             shapes, 3 * sizeof *c->reference);
-    c->reference = reference;
-    SE3DI_TRY(status);
-    status = se3di_array_reserve(&model->allocator, &order, &c->order_capacity, shapes,
-                                 sizeof *c->order);
-    c->order = order;
-    return status;
+    const se3d_allocator *allocator = &model->allocator;
+    const size_t shapes = model->shape_slots.count;
+    SE3DI_TRY(se3di_array_reserve_at(allocator, &c->reference, &c->reference_capacity, shapes,
+                                     3 * sizeof *c->reference));
+    SE3DI_TRY(
+        se3di_array_reserve_at(allocator, &c->order, &c->order_capacity, shapes, sizeof *c->order));
+    return se3di_array_reserve_at(allocator, &c->swept, &c->swept_capacity, shapes,
+                                  4 * sizeof *c->swept);
 }
 
 se3d_status se3di_broad_update(se3di_model *model)
