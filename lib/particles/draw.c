@@ -3,6 +3,7 @@
 
 #include "particles/draw.h"
 
+#include <float.h>
 #include <math.h>
 
 double se3di_random_draw(uint64_t *state)
@@ -47,10 +48,16 @@ void se3di_region_draw(const se3di_region *region, double radius, uint64_t *stat
     }
 }
 
+double se3di_region_slack(double border, double size)
+{
+    return 1e-9 * size + 8.0 * DBL_EPSILON * fabs(border);
+}
+
 int se3di_region_holds(const se3di_region *region, const double x[3], double radius)
 {
     double square = 0.0;
     double reach = HUGE_VAL;
+    double slack = 0.0;
     if (region->kind == SE3D_FILL_REGION_BOX) {
         return 1;
     }
@@ -59,7 +66,8 @@ int se3di_region_holds(const se3di_region *region, const double x[3], double rad
         if (region->kind == SE3D_FILL_REGION_SPHERE || a != region->axis) {
             square += d * d;
             reach = fmin(reach, 0.5 * (region->upper[a] - region->lower[a]));
+            slack = fmax(slack, se3di_region_slack(region->lower[a], radius));
         }
     }
-    return sqrt(square) + radius <= reach * (1.0 + 1e-12);
+    return sqrt(square) + radius <= reach * (1.0 + 1e-12) + slack;
 }

@@ -6,10 +6,12 @@
 #include "particles/set.h"
 
 /* Uniform in [0, 1); a radius; a point such that a sphere of that
- * radius is within the box of a region; whether the region holds it. */
+ * radius is within the box of a region; what rounding may take of a length beside a
+ * border; whether the region holds it. */
 double se3di_random_draw(uint64_t *state);
 double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
 void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
+double se3di_region_slack(double border, double size);
 int se3di_region_holds(const se3di_region *region, const double x[3], double radius);
 
 #endif

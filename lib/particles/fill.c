@@ -51,13 +51,14 @@ static double lattice_init(lattice *l, const se3d_fill_def *def)
     const double least = def->radius_max + def->jitter;
     l->spacing = def->spacing > 0.0 ? def->spacing : 2.2 * def->radius_max;
     for (int a = 0; a < 3; ++a) {
-        const double width = def->upper[a] - def->lower[a], slack = 1e-9 * l->spacing;
+        const double width = def->upper[a] - def->lower[a];
+        const double slack = se3di_region_slack(def->lower[a], l->spacing);
         l->margin[a] = fmax(0.5 * l->spacing, least);
         if (width < 2.0 * l->margin[a] - slack && width >= 2.0 * least - slack) {
             l->margin[a] = 0.5 * width;
         }
         const double room = width - 2.0 * l->margin[a];
-        double n = room < -slack ? 0.0 : floor(room / l->spacing + 1e-9) + 1.0;
+        double n = room < -slack ? 0.0 : floor((room + slack) / l->spacing) + 1.0;
         l->n[a] = n < 2e9 ? (size_t)n : (size_t)2e9;
         total *= n;
     }

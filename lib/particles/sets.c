@@ -72,11 +72,11 @@ static se3d_status report_overlap(const se3di_particles *set, se3di_error *error
     }
     return se3di_error_set(
         error, SE3D_ERR_STEP_SIZE,
-        "particle %u%s%.80s and %s overlap by %g of the smaller radius at time %g s (allowed: "
-        "%g); %s",
+        "particle %u%s%.80s and %s overlap by %g of the smaller radius at time %g s "
+        "(overlap_limit: %g); %s",
         set->failed, of, name, with, set->failed_amount, set->failed_time, set->overlap_limit,
-        set->failed_placed ? "they were placed with this overlap"
-                           : "try a smaller step or a stiffer material");
+        set->failed_placed ? "they were placed with this overlap; move them apart"
+                           : "try a stiffer material or, where a step is given, a smaller one");
 }
 
 /* Record why a step of particles failed; returns `status`. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Regions filled with particles: definitions, checked. */
+#include "particles/draw.h"
 #include "particles/fill.h"
 #include "system/particles.h"
 
@@ -62,8 +63,9 @@ se3d_status se3di_check_region(se3d_particles *p, const double lower[3], const d
                              " = %d, must be 0, 1 or 2", axis);
     }
     for (int a = 0; a < 3; ++a) {
+        const double least = lower[a] + size - se3di_region_slack(lower[a], size);
         SE3DI_TRY(se3di_check_range(p->system, "lower", lower[a], -1e30, 1e30));
-        SE3DI_TRY(se3di_check_range(p->system, "upper", upper[a], lower[a] + size, 1e30));
+        SE3DI_TRY(se3di_check_range(p->system, "upper", upper[a], least, 1e30));
     }
     return SE3D_OK;
 }

@@ -236,9 +236,37 @@ static void narrow_regions_hold_one_layer(void)
     }
 }
 
+/* A box, cylinder or sphere as large as a particle holds it, whatever its borders round to. */
+static void a_region_of_one_diameter_holds_one(void)
+{
+    static const double lowers[4] = {0.1, 0.7, -12.3, 1000.1};
+    for (int k = 0; k < 4 * 3 * 2; ++k) {
+        const double lower = lowers[k % 4];
+        size_t added = 1;
+        open_bed(&b);
+        b.fill.radius_min = b.fill.radius_max = 0.1;
+        b.fill.region = k / 4 % 3;
+        b.fill.count = 1;
+        for (int a = 0; a < 3; ++a) {
+            b.fill.lower[a] = lower;
+            b.fill.upper[a] = lower + 0.2;
+        }
+        b.fill.upper[2] = k == 0 ? 0.3 : b.fill.upper[2]; /* .3 - .1 < .2 */
+        CHECK((k / 12 ? se3d_particles_fill_random(b.bed.particles, &b.fill)
+                      : se3d_particles_fill_lattice(b.bed.particles, &b.fill, &added)) == SE3D_OK);
+        read_bed(&b);
+        CHECK(added == 1 && b.count == 1);
+        CHECK_NEAR(b.r[2], lower + 0.1, 1e-9);
+        b.fill.upper[1] -= 1e-6;
+        CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+        bed_close(&b.bed);
+    }
+}
+
 int main(void)
 {
     RUN(places_across_a_periodic_border_are_taken_once);
+    RUN(a_region_of_one_diameter_holds_one);
     RUN(a_lattice_of_too_many_particles_is_refused);
     RUN(regions_hold_every_part_of_their_particles);
     RUN(radii_of_a_table_come_as_often_as_asked_for);

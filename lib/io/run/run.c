@@ -119,10 +119,10 @@ static const char *without_time(const char *message, double now)
     return message;
 }
 
-/* What overlaps at the start is told what to do, which no status knows. */
+/* What overlaps is told what to do, which no status knows. */
 static bool has_advice(const char *why)
 {
-    return strstr(why, "; move them apart") != NULL;
+    return strstr(why, "; move them apart") || strstr(why, "; try a stiffer material");
 }
 
 static se3d_status fail_analysis(se3di_runner *r, const se3di_analysis_entry *entry,
