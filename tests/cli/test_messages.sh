@@ -255,7 +255,10 @@ END
 expect 'particles that will run' 0 "$program" check "$dir/sand.yaml"
 prints 'particles: 40 particles of radius 0.002'
 prints ' s, 2.5 % of the time of a Rayleigh wave'
+prints 'impacts below 3.16 m/s stay within the overlap_limit, 0.2 of the radius'
 prints 'steps to the end, about '
+expect 'adhesion that grains cannot hold' 0 "$program" check "$dir/sand.yaml" --set materials.sand.adhesion=1000
+prints 'their attraction alone may press them in by more than the overlap_limit, 0.2 of the radius'
 expect 'at half of the step' 0 "$program" check "$dir/sand.yaml" --set contact.step=1e-6
 prints '; steps of 1e-06 s, '
 prints '2e+06 steps to the end, about '
@@ -264,6 +267,29 @@ expect 'particles that begin within a wall' 0 "$program" check "$dir/sunk.yaml"
 prints 'the first steps fail: '
 expect 'no particles' 0 "$program" check "$dir/soft.yaml"
 holds 'nothing is told of particles' [ "$(grep -c 'particle' "$dir/out")" = 0 ]
+# The speed that is told is the one that an impact without loss stands, with each law and with adhesion.
+for law in hooke hertz_mindlin; do
+    cat >"$dir/hit.yaml" <<END
+se3d: 1
+gravity: [0, 0, 0]
+parameters: {v: 1, sticky: 0}
+contact: {law: $law}
+materials: [{name: sand, young: 1e7, stiffness: 1e4, density: 2500, restitution: 1, adhesion: sticky}]
+particles:
+  - {material: sand, radius: 0.002, lower: [0, 0, 0.001], upper: [0.004, 0.004, 0.005], velocity: [0, 0, -v]}
+bodies: [{name: ground, shapes: [{type: plane, material: sand}]}]
+analysis: {type: dynamics, duration: 2.5e-3/v}
+output: [{file: s.csv, channels: [particles.count]}]
+END
+    for sticky in 0 10; do
+        expect "stands a speed, $law" 0 "$program" check "$dir/hit.yaml" --set sticky=$sticky
+        told=$(sed -n 's,^impacts below \(.*\) m/s.*,\1,p' "$dir/out")
+        expect "slower, $law" 0 "$program" run "$dir/hit.yaml" -o "$dir/o" --set sticky=$sticky --set "v=$told*0.99"
+        expect "faster, $law" 1 "$program" run "$dir/hit.yaml" -o "$dir/o" --set sticky=$sticky --set "v=$told*1.01"
+        says '(overlap_limit: 0.2); try a stiffer material'
+        holds 'one advice' [ "$(grep -c 'What to try' "$dir/err")" = 0 ]
+    done
+done
 # One that rests almost as deep is no reason for what fails elsewhere, at the time that is told.
 cat >"$dir/pole.yaml" <<'END'
 se3d: 1

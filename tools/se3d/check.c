@@ -49,6 +49,19 @@ static void print_step(const preview *g, int is_hertz)
     }
 }
 
+/* How fast particles may hit. */
+static void print_held(const preview *g)
+{
+    if (!(g->held.speed > 0.0)) {
+        printf("their attraction alone may press them in by more than the overlap_limit, %g of the "
+               "radius: give more stiffness or less adhesion\n",
+               g->held.limit);
+    } else if (isfinite(g->held.speed)) {
+        printf("impacts below %.3g m/s stay within the overlap_limit, %g of the radius\n",
+               g->held.speed, g->held.limit);
+    }
+}
+
 static void print_particles(const se3d_model *model)
 {
     se3d_system *system = se3d_model_get_system(model);
@@ -77,6 +90,7 @@ static void print_particles(const se3d_model *model)
             put_bytes(g.bytes);
         }
         print_step(&g, contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN);
+        print_held(&g);
     }
     if (count > 0) {
         preview_pace pace;
@@ -113,7 +127,8 @@ static void print_json_particles(const se3d_model *model)
         } numbers[] = {{"radius_min", g.radius_min},
                        {"radius_max", g.radius_max},
                        {"step", g.step},
-                       {"automatic_step", g.automatic}};
+                       {"automatic_step", g.automatic},
+                       {"speed_limit", g.held.speed}};
         for (size_t n = 0; n < sizeof numbers / sizeof *numbers; ++n) {
             printf(", \"%s\": ", numbers[n].name);
             json_put_number(numbers[n].value);

@@ -71,6 +71,9 @@ int preview_look(const se3d_model *model, size_t index, preview *out)
     out->bytes = stats.bytes;
     (void)se3d_particles_get_step(set, &out->step);
     out->automatic = automatic_step(system, set);
+    if (!soft_look(system, set, &out->held)) {
+        out->held.speed = HUGE_VAL;
+    }
     return 1;
 }
 

@@ -6,6 +6,8 @@
 #include <se3d/io.h>
 #include <se3d/particles.h>
 
+#include "soft.h"
+
 /* One set of particles. */
 typedef struct preview {
     const char *name; /* "" without one */
@@ -13,6 +15,7 @@ typedef struct preview {
     double radius_min, radius_max; /* [m] */
     double step;                   /* [s]; 0: not known yet, as nothing is there */
     double automatic;              /* the step that it would choose [s] */
+    soft held;                     /* how fast they may hit; infinite: not known */
 } preview;
 
 /* The first dynamics analysis of the model. */
