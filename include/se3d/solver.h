@@ -236,8 +236,9 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance);
 
-/* Get the length of equal steps of a run: the one that was given, or the one that rattle and verlet
- * have chosen, which clones and snapshots of the system go on with.
+/* Get the length of equal steps of a run: the one that was given, with verlet a shorter one of
+ * contacts or particles, or the one that rattle and verlet have chosen, which clones and snapshots
+ * of the system go on with.
  * @param[out] step  [s]; 0: the method adapts its steps, or none was chosen yet, or the system is
  *                   gone
  * @return OK, NULL.

@@ -12,6 +12,7 @@
 #include "math/steps.h"
 #include "math/vec3.h"
 #include "model/state.h"
+#include "particles/sets.h"
 
 #include <math.h>
 #include <string.h>
@@ -55,11 +56,28 @@ static double tolerance_of(const se3di_integration *integration)
     return se3di_integration_get_tolerance(integration, integration->equations->assembly.model);
 }
 
+/* Of steps of which 0 is none. */
+static double shorter(double a, double b)
+{
+    return a > 0.0 && !(b > 0.0 && b < a) ? a : b;
+}
+
+double se3di_equal_steps_given(const se3di_integration *integration, const se3di_model *model)
+{
+    const se3di_integrator *method = integration->method;
+    const double step =
+        method->fixes_step || method->chooses_step ? integration->settings.step : 0.0;
+    return method->tag == SE3D_METHOD_VERLET
+               ? shorter(shorter(step, model->contact.step), se3di_sets_step(model))
+               : step;
+}
+
 double se3di_equal_steps_get(const se3di_integration *integration, const se3di_model *model)
 {
     const se3di_integrator *method = integration->method;
-    if (integration->settings.step > 0.0 && (method->fixes_step || method->chooses_step)) {
-        return integration->settings.step;
+    const double given = se3di_equal_steps_given(integration, model);
+    if (given > 0.0) {
+        return given;
     }
     return are_chosen(integration, model) && model->history_tag / SE3DI_HISTORY_TAGS == method->tag
                ? model->history[SE3DI_EQUAL_STEP]

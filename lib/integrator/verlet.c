@@ -230,11 +230,9 @@ static se3d_status step(se3di_integration *integration, double h)
 static se3d_status run(se3di_integration *integration, double t_end)
 {
     se3di_model *model = integration->equations->assembly.model;
-    double h = integration->settings.step > 0.0 ? integration->settings.step
-                                                : integration->settings.step_most;
-    double wanted = se3di_sets_step(model);
-    h = model->contact.step > 0.0 ? fmin(h, model->contact.step) : h;
-    h = wanted > 0.0 ? fmin(h, wanted) : h;
+    const double given = se3di_equal_steps_given(integration, model);
+    double h = integration->settings.step > 0.0 ? given : integration->settings.step_most;
+    h = given > 0.0 ? fmin(h, given) : h;
     double count = se3di_steps_count(t_end - model->time, h, t_end);
     if (count > SE3DI_STEPS_MOST) {
         return se3di_error_set(integration->equations->error, SE3D_ERR_STEP_COUNT,

@@ -55,6 +55,36 @@ static int measure_sizes(const se3d_particles *set, preview *out)
     return 1;
 }
 
+/* The first dynamics analysis; `all`: how long all of them are. @return the number of analyses if
+ * there is none */
+static size_t find_dynamics(const se3d_model *model, double *duration, double *all)
+{
+    const size_t count = se3d_model_count_analyses(model);
+    size_t at = count;
+    *all = *duration = 0.0;
+    for (size_t k = 0; k < count; ++k) {
+        se3d_model_analysis analysis;
+        if (!SE3D_FAILED(se3d_model_get_analysis(model, k, &analysis)) &&
+            strcmp(analysis.type, "dynamics") == 0) {
+            *duration = at == count ? analysis.duration : *duration;
+            *all += analysis.duration;
+            at = at == count ? k : at;
+        }
+    }
+    return at;
+}
+
+/* What the first dynamics analysis makes of the step of a set. */
+static double step_in_use(const se3d_model *model, double step)
+{
+    double duration, all;
+    se3d_solver_def def = se3d_solver_def_default();
+    const size_t at = find_dynamics(model, &duration, &all);
+    const int given = at < se3d_model_count_analyses(model) &&
+                      !SE3D_FAILED(se3d_model_get_solver(model, at, &def)) && def.step > 0.0;
+    return given ? fmin(step, def.step) : step;
+}
+
 int preview_look(const se3d_model *model, size_t index, preview *out)
 {
     se3d_system *system = se3d_model_get_system(model);
@@ -70,6 +100,7 @@ int preview_look(const se3d_model *model, size_t index, preview *out)
     out->clumps = stats.clumps;
     out->bytes = stats.bytes;
     (void)se3d_particles_get_step(set, &out->step);
+    out->step = step_in_use(model, out->step);
     out->automatic = automatic_step(system, set);
     if (!soft_look(system, set, &out->held)) {
         out->held.speed = HUGE_VAL;
@@ -162,25 +193,6 @@ static void time_steps(se3d_system *system, se3d_solver *solver, double length, 
         out->step = sum->time / (double)sum->steps;
         out->seconds = sum->seconds / (double)sum->steps;
     }
-}
-
-/* The first dynamics analysis; `all`: how long all of them are. @return the number of analyses if
- * there is none */
-static size_t find_dynamics(const se3d_model *model, double *duration, double *all)
-{
-    const size_t count = se3d_model_count_analyses(model);
-    size_t at = count;
-    *all = *duration = 0.0;
-    for (size_t k = 0; k < count; ++k) {
-        se3d_model_analysis analysis;
-        if (!SE3D_FAILED(se3d_model_get_analysis(model, k, &analysis)) &&
-            strcmp(analysis.type, "dynamics") == 0) {
-            *duration = at == count ? analysis.duration : *duration;
-            *all += analysis.duration;
-            at = at == count ? k : at;
-        }
-    }
-    return at;
 }
 
 void preview_try(const se3d_model *model, preview_pace *out)

@@ -2,6 +2,7 @@
 #include "io/run/run_record.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const char *se3di_run_copy_text(se3di_runner *r, const char *text)
@@ -44,6 +45,19 @@ static void record_start(se3di_runner *r, se3d_run_analysis *done)
     done->deflected = name_of_body(r, change.deflected);
 }
 
+/* A given step that particles are too stiff for has been shortened. */
+static void warn_of_step(const se3di_runner *r, const se3di_analysis_entry *entry, double step)
+{
+    char text[200];
+    if (r->model->log && r->model->particles && step > 0.0 && step < 0.999 * entry->solver.step) {
+        snprintf(text, sizeof text,
+                 "steps of %.3g s in place of %.3g s, which contacts of particles do not allow; "
+                 "only the `step` of `contact` sets longer ones",
+                 step, entry->solver.step);
+        r->model->log(r->model->log_ctx, SE3D_LOG_WARNING, SE3D_LOG_STEP, text);
+    }
+}
+
 void se3di_run_record(se3di_runner *r, const se3di_analysis_entry *entry, double cpu_time,
                       se3d_run_analysis *done)
 {
@@ -61,6 +75,7 @@ void se3di_run_record(se3di_runner *r, const se3di_analysis_entry *entry, double
             se3d_solver_get_switch(r->solver, &done->left_at, &left);
             se3d_solver_get_tolerance(r->solver, &done->reached);
             se3d_solver_get_step(r->solver, &done->step);
+            warn_of_step(r, entry, done->step);
             const double asked = entry->solver.tolerance > 0.0 ? entry->solver.tolerance : 1e-6;
             done->tolerance = done->reached > 0.0 ? asked : 0.0;
         }
