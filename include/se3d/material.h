@@ -21,12 +21,18 @@ typedef struct se3d_material_def {
     double rolling_friction;   /* >= 0: resisting moment over R* Fn */
     double torsional_friction; /* >= 0: the same about the normal */
     double stiffness;          /* [N/m] > 0, required for hooke: of two spheres of this material */
-    double tangential_ratio;   /* kt/kn >= 0, default 2/7 */
+    double tangential_ratio;   /* hooke: kt/kn, 0 .. 10, default 2/7 */
     double young;              /* [Pa] > 0, required for hertz_mindlin */
     double poisson;            /* 0 .. 0.5, default 0.3 */
     double cohesion;           /* >= 0 [J/m^3]: attraction per area of contact, 2 pi R* overlap */
     double adhesion;  /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
     const char *name; /* copied; NULL or unique among materials */
+    /* What follows is the law's own where it is 0, and not there at all below 0. */
+    double damping_ratio;          /* [1] of critical damping, in place of restitution */
+    double tangential_ratio_hertz; /* [1] <= 10, hertz_mindlin: kt/kn; 3 (1 - nu)/(2 - nu) */
+    double tangential_damping;     /* [1] <= 10, over that along the normal */
+    double rolling_ratio;          /* [1] <= 100, stiffness of rolling and torsion over kt; 1 */
+    double rolling_damping;        /* [1] <= 10, over sqrt(m* stiffness of rolling); 1.2 */
 } se3d_material_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */

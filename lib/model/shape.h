@@ -20,7 +20,9 @@ typedef struct se3di_material {
     double rolling_friction, torsional_friction; /* times R*: the arm of the resisting moment */
     double stiffness, tangential_ratio;          /* hooke: kn of two spheres of it, kt/kn */
     double cohesion, adhesion;                   /* [J/m^3], [J/m^2] */
-    uint32_t users;                              /* shapes and sets of particles */
+    double damping_ratio; /* 0: by restitution; these: 0 by the law, < 0 none */
+    double tangential_ratio_hertz, tangential_damping, rolling_ratio, rolling_damping;
+    uint32_t users; /* shapes and sets of particles */
     uint32_t reserved;
 } se3di_material;
 
@@ -39,18 +41,18 @@ typedef struct se3di_override {
  *
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
  *
- * dr: damping of rolling and torsion, like dt. Attraction, taken from Fn after friction has seen
+ * kr, dr: of rolling and torsion, like kt and dt. Attraction, taken from Fn after friction has seen
  * it:
  *
  *     R* cohesion delta + 2 sqrt(R* pull_off kn s delta) */
 typedef struct se3di_pair {
     double kn, kt, dn, dt;
     double friction, rolling, torsion, dr;
-    double cohesion, pull_off;
+    double cohesion, pull_off, kr;
     double restitution;
 } se3di_pair;
 
-#define SE3DI_PAIR_SIZE 10 /* doubles in an se3di_pair */
+#define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need */
 
 typedef struct se3di_contact_settings {
     int32_t law; /* se3di_contact_law */

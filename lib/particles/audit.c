@@ -72,15 +72,15 @@ static void add_contact(const se3di_particles *set, const se3di_pair *pair, doub
 {
     const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
     const double s = hertz ? sqrt(radius * overlap) : 1.0;
-    const double kn = s * pair->kn, kt = s * pair->kt;
+    const double kn = s * pair->kn, kt = s * pair->kt, kr = s * pair->kr;
     const double pull = sqrt(radius * pair->pull_off * kn * overlap) * overlap;
     elastic[0] += (hertz ? 0.4 : 0.5) * kn * overlap * overlap -
                   0.5 * radius * pair->cohesion * overlap * overlap -
                   (hertz ? 8.0 / 7.0 : 4.0 / 3.0) * pull;
     elastic[1] += 0.5 * kt * se3di_dot(xi, xi);
     if (rho) {
-        elastic[2] += 0.5 * kt * se3di_dot(rho, rho);
-        elastic[3] += 0.5 * kt * rho[3] * rho[3];
+        elastic[2] += 0.5 * kr * se3di_dot(rho, rho);
+        elastic[3] += 0.5 * kr * rho[3] * rho[3];
     }
 }
 

@@ -106,6 +106,51 @@ se3d_status se3d_system_get_contact(const se3d_system *system, se3d_contact_sett
     return se3di_sized_give(settings, size, &full, sizeof full);
 }
 
+static se3di_material read_material(const se3d_material_def *def)
+{
+    return (se3di_material){.density = def->density,
+                            .young = def->young,
+                            .poisson = def->poisson,
+                            .friction = def->friction,
+                            .restitution = def->restitution,
+                            .rolling_friction = def->rolling_friction,
+                            .torsional_friction = def->torsional_friction,
+                            .stiffness = def->stiffness,
+                            .tangential_ratio = def->tangential_ratio,
+                            .cohesion = def->cohesion,
+                            .adhesion = def->adhesion,
+                            .damping_ratio = def->damping_ratio,
+                            .tangential_ratio_hertz = def->tangential_ratio_hertz,
+                            .tangential_damping = def->tangential_damping,
+                            .rolling_ratio = def->rolling_ratio,
+                            .rolling_damping = def->rolling_damping};
+}
+
+/* What may be the law's own. */
+static se3d_status check_choices(se3d_system *system, const se3d_material_def *def)
+{
+    const struct {
+        const char *what;
+        double value, most;
+    } choices[] = {{"damping_ratio", def->damping_ratio, 100.0},
+                   {"tangential_ratio_hertz", def->tangential_ratio_hertz, 10.0},
+                   {"tangential_damping", def->tangential_damping, 10.0},
+                   {"rolling_ratio", def->rolling_ratio, 100.0},
+                   {"rolling_damping", def->rolling_damping, 10.0}};
+    for (size_t k = 0; k < sizeof choices / sizeof *choices; ++k) {
+        SE3DI_TRY(
+            se3di_check_range(system, choices[k].what, choices[k].value, -1e30, choices[k].most));
+    }
+    const se3di_material data = read_material(def);
+    const double e =
+        se3di_material_restitution((se3di_contact_law)system->model.contact.law, &data);
+    return e >= SE3DI_RESTITUTION_MIN
+               ? SE3D_OK
+               : SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
+                               " = %g is a restitution of %g, must be %g or more",
+                               def->damping_ratio, e, SE3DI_RESTITUTION_MIN);
+}
+
 static se3d_status check_material(se3d_system *system, const se3d_material_def *def)
 {
     const double most = 1e30;
@@ -121,22 +166,8 @@ static se3d_status check_material(se3d_system *system, const se3d_material_def *
     SE3DI_TRY(se3di_check_range(system, "tangential_ratio", def->tangential_ratio, 0.0, 10.0));
     SE3DI_TRY(se3di_check_range(system, "young", def->young, 0.0, most));
     SE3DI_TRY(se3di_check_range(system, "poisson", def->poisson, 0.0, 0.5));
+    SE3DI_TRY(check_choices(system, def));
     return check_law(system, system->model.contact.law, def->stiffness, def->young);
-}
-
-static se3di_material read_material(const se3d_material_def *def)
-{
-    return (se3di_material){.density = def->density,
-                            .young = def->young,
-                            .poisson = def->poisson,
-                            .friction = def->friction,
-                            .restitution = def->restitution,
-                            .rolling_friction = def->rolling_friction,
-                            .torsional_friction = def->torsional_friction,
-                            .stiffness = def->stiffness,
-                            .tangential_ratio = def->tangential_ratio,
-                            .cohesion = def->cohesion,
-                            .adhesion = def->adhesion};
 }
 
 se3d_status se3d_material_create(se3d_system *system, const se3d_material_def *def,
@@ -208,7 +239,12 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                     .poisson = data->poisson,
                                     .cohesion = data->cohesion,
                                     .adhesion = data->adhesion,
-                                    .name = data->name};
+                                    .name = data->name,
+                                    .damping_ratio = data->damping_ratio,
+                                    .tangential_ratio_hertz = data->tangential_ratio_hertz,
+                                    .tangential_damping = data->tangential_damping,
+                                    .rolling_ratio = data->rolling_ratio,
+                                    .rolling_damping = data->rolling_damping};
     return se3di_sized_give(def, size, &full, sizeof full);
 }
 

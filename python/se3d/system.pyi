@@ -138,7 +138,10 @@ class System:
                  torsional_friction: float | None = ..., stiffness: float | None = ...,
                  tangential_ratio: float | None = ..., young: float | None = ...,
                  poisson: float | None = ..., cohesion: float | None = ...,
-                 adhesion: float | None = ..., name: str | None = ...) -> Material: ...
+                 adhesion: float | None = ..., name: str | None = ...,
+                 damping_ratio: float | None = ..., tangential_ratio_hertz: float | None = ...,
+                 tangential_damping: float | None = ..., rolling_ratio: float | None = ...,
+                 rolling_damping: float | None = ...) -> Material: ...
     def contact(self, *, law: Word | None = ..., step: float | None = ...,
                 overlap_limit: float | None = ...) -> None: ...
     def shape(self, type: str, *, vertices: ArrayLike | None = ...,

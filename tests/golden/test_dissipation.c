@@ -23,6 +23,8 @@ static se3d_material_def stuff(double restitution, double rolling)
     def.restitution = restitution;
     def.rolling_friction = rolling;
     def.torsional_friction = 0.5 * rolling;
+    def.rolling_ratio = 0.6;
+    def.tangential_damping = 0.7;
     return def;
 }
 

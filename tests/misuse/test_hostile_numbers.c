@@ -179,6 +179,11 @@ static const field material_fields[] = {NUMBERS(se3d_material_def, density),
                                         NUMBERS(se3d_material_def, poisson),
                                         NUMBERS(se3d_material_def, cohesion),
                                         NUMBERS(se3d_material_def, adhesion),
+                                        NUMBERS(se3d_material_def, damping_ratio),
+                                        NUMBERS(se3d_material_def, tangential_ratio_hertz),
+                                        NUMBERS(se3d_material_def, tangential_damping),
+                                        NUMBERS(se3d_material_def, rolling_ratio),
+                                        NUMBERS(se3d_material_def, rolling_damping),
                                         FIELDS_END};
 
 FILL_IN(se3d_material_pair_def, pair)

@@ -239,7 +239,7 @@ static void eval_rolling(se3di_encounter *e)
     if (!(e->pair.rolling > 0.0 || e->pair.torsion > 0.0)) {
         return;
     }
-    double k = e->pair.kt * e->s;
+    double k = e->pair.kr * e->s;
     double c = e->pair.dr * e->root_mass * e->root;
     se3di_encounter_spin(e, spin);
     double turn = se3di_dot(spin, n);
@@ -335,7 +335,7 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
 static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 {
     double out[3];
-    double k = e->pair.kt * e->s;
+    double k = e->pair.kr * e->s;
     const double wring[3] = {e->wring, 0.0, 0.0};
     const double now[3] = {e->twist, 0.0, 0.0};
     settled(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
@@ -345,14 +345,14 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 
 void se3di_encounter_spring(const se3di_encounter *e, double wrench[12])
 {
-    const double k = e->pair.kt * e->s;
+    const double kt = e->pair.kt * e->s, kr = e->pair.kr * e->s;
     se3di_encounter kept = *e;
     double xi[3], rho[3], twist;
     settled_xi(e, xi);
     settled_roll(e, rho, &twist);
     se3di_add_scaled(twist, e->at->normal, rho);
-    se3di_scale(-k, xi, kept.force);
-    se3di_scale(-k * e->radius, rho, kept.moment);
+    se3di_scale(-kt, xi, kept.force);
+    se3di_scale(-kr * e->radius, rho, kept.moment);
     se3di_encounter_wrench(&kept, wrench);
 }
 
@@ -369,11 +369,12 @@ double se3di_encounter_energy(const se3di_encounter *e)
     settled_xi(e, xi);
     settled_roll(e, rho, &twist);
     double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
-    double springs = se3di_dot(xi, xi) + se3di_dot(rho, rho) + twist * twist;
+    const double rolled = se3di_dot(rho, rho) + twist * twist;
+    const double springs = e->pair.kt * se3di_dot(xi, xi) + e->pair.kr * rolled;
     /* the integrals of the attractions over the overlap */
     double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
     double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;
-    return share * e->elastic * e->at->overlap + 0.5 * e->pair.kt * e->s * springs - stuck;
+    return share * e->elastic * e->at->overlap + 0.5 * e->s * springs - stuck;
 }
 
 double se3di_encounter_power(const se3di_encounter *e)

@@ -265,9 +265,9 @@ static void move_rolling(const se3di_encounter *e, rates *d)
 {
     const double *n = e->at->normal;
     double spin[3], dspin[3], raw[3], dbend[3], dm[3], wring[3] = {e->wring, 0.0, 0.0};
-    double k = e->pair.kt * e->s;
+    double k = e->pair.kr * e->s;
     double c = e->pair.dr * e->root_mass * e->root * e->radius;
-    double dk = e->pair.kt * d->s;
+    double dk = e->pair.kr * d->s;
     double dc = e->pair.dr * e->radius * (d->root_mass * e->root + e->root_mass * d->root);
     se3di_encounter_spin(e, raw);
     se3di_sub(d->w[1], d->w[0], dspin);

@@ -15,6 +15,27 @@ static double choose(double given, double mixed)
     return given < 0.0 ? mixed : given;
 }
 
+/* What a material says, where 0 is what the law has and less is none. */
+static double own(double given, double law)
+{
+    return given > 0.0 ? given : given < 0.0 ? 0.0 : law;
+}
+
+static int is_given(double a, double b)
+{
+    return a > 0.0 || a < 0.0 || b > 0.0 || b < 0.0;
+}
+
+double se3di_material_restitution(se3di_contact_law law, const se3di_material *material)
+{
+    const double ratio = own(material->damping_ratio, 0.0);
+    if (!is_given(material->damping_ratio, 0.0)) {
+        return material->restitution;
+    }
+    return law == SE3DI_LAW_HERTZ_MINDLIN ? se3di_restitution_hertz(sqrt(6.0) * ratio)
+                                          : se3di_restitution_hooke(ratio);
+}
+
 static void hooke(const se3di_material *a, const se3di_material *b, double stiffness, double e,
                   se3di_pair *pair)
 {
@@ -26,6 +47,12 @@ static void hooke(const se3di_material *a, const se3di_material *b, double stiff
     pair->dt = ratio * pair->dn; /* with 2/7: the same damping ratio as the normal direction */
 }
 
+/* kt/kn between two of a material. */
+static double hertz_ratio(const se3di_material *a)
+{
+    return own(a->tangential_ratio_hertz, 3.0 * (1.0 - a->poisson) / (2.0 - a->poisson));
+}
+
 static void hertz(const se3di_material *a, const se3di_material *b, double e, se3di_pair *pair)
 {
     double compliance =
@@ -33,10 +60,32 @@ static void hertz(const se3di_material *a, const se3di_material *b, double e, se
     double shear = 2.0 * (2.0 - a->poisson) * (1.0 + a->poisson) / a->young +
                    2.0 * (2.0 - b->poisson) * (1.0 + b->poisson) / b->young;
     pair->kn = 4.0 / (3.0 * compliance);
-    pair->kt = 8.0 / shear;
+    pair->kt = is_given(a->tangential_ratio_hertz, b->tangential_ratio_hertz)
+                   ? sqrt(hertz_ratio(a) * hertz_ratio(b)) * pair->kn
+                   : 8.0 / shear;
     pair->dn = se3di_restitution_hertz_damping(e) * sqrt(pair->kn);
     /* The damping ratio of the tangent stiffnesses, 3/2 kn s and kt s. */
     pair->dt = pair->dn * sqrt(pair->kt / (1.5 * pair->kn));
+}
+
+/* Damping along the tangent that is given over dn. */
+static void drag(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
+{
+    if (is_given(a->tangential_damping, b->tangential_damping) && pair->dn > 0.0) {
+        const double law = pair->dt / pair->dn;
+        pair->dt =
+            sqrt(own(a->tangential_damping, law) * own(b->tangential_damping, law)) * pair->dn;
+    }
+}
+
+static void roll(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
+{
+    const double damping = ROLLING_DAMPING;
+    pair->kr = sqrt(own(a->rolling_ratio, 1.0) * own(b->rolling_ratio, 1.0)) * pair->kt;
+    pair->dr = is_given(a->rolling_damping, b->rolling_damping)
+                   ? sqrt(own(a->rolling_damping, damping) * own(b->rolling_damping, damping))
+                   : damping;
+    pair->dr *= sqrt(pair->kr);
 }
 
 void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
@@ -44,7 +93,8 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
 {
     const se3di_override none = SE3DI_OVERRIDE_NONE;
     const se3di_override *o = over ? over : &none;
-    double e = choose(o->restitution, sqrt(a->restitution * b->restitution));
+    double e = choose(o->restitution, sqrt(se3di_material_restitution(law, a) *
+                                           se3di_material_restitution(law, b)));
     if (law == SE3DI_LAW_HOOKE) {
         hooke(a, b, o->stiffness, e, pair);
     } else if (law == SE3DI_LAW_CALLBACK) {
@@ -62,7 +112,8 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
         choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
     pair->cohesion = 2.0 * PI * choose(o->cohesion, sqrt(a->cohesion * b->cohesion));
     pair->pull_off = 1.5 * PI * choose(o->adhesion, sqrt(a->adhesion * b->adhesion));
-    pair->dr = ROLLING_DAMPING * sqrt(pair->kt);
+    drag(a, b, pair);
+    roll(a, b, pair);
 }
 
 void se3di_pair_mix_all(se3di_model *model)
@@ -90,12 +141,15 @@ double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3
     if (law == SE3DI_LAW_CALLBACK) {
         return HUGE_VAL;
     }
+    const double stiffest = fmax(pair->kt, pair->kr) / pair->kn;
     if (law == SE3DI_LAW_HOOKE) {
-        double rate = sqrt(pair->kn / reduced_mass);
+        double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
         return 0.02 * PI / (rate + pair->dn / sqrt(reduced_mass));
     }
     double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
     double shear_modulus = a->young / (2.0 * (1.0 + a->poisson));
     double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * a->poisson + 0.8766);
-    return 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass);
+    /* Mindlin's springs have 1.5 at most */
+    return 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass) /
+           (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);
 }

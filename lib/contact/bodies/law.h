@@ -5,6 +5,10 @@
 
 #include "model/model.h"
 
+/* The restitution of a material, as given or by its damping ratio (of critical damping at the
+ * stiffness of the overlap, 2 ratio sqrt(m* dFn/d overlap)). */
+double se3di_material_restitution(se3di_contact_law law, const se3di_material *material);
+
 /* Mix two materials: geometric means of friction and restitution, springs in series for stiffness
  * (twice, so that equal ones give themselves). `over` may be NULL. */
 void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,

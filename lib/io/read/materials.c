@@ -17,14 +17,28 @@ static const se3di_key material_keys[] = {
      .text = "coefficient of sliding"},
     {"restitution", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, restitution),
      .standard = "0.5", .text = "over the speed of approach, the same at any speed, 0.01 to 1"},
+    {"damping_ratio", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, damping_ratio),
+     .text = "in place of restitution: damping along the normal over the critical one"},
     {"rolling_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, rolling_friction),
      .standard = "0", .text = "resisting moment over radius times normal force"},
     {"torsional_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, torsional_friction),
      .standard = "0", .text = "the same about the normal"},
     {"stiffness", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, stiffness),
      .text = "hooke [N/m] > 0"},
-    {"tangential_ratio", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, tangential_ratio),
-     .standard = "2/7", .text = "hooke: tangential over normal stiffness"},
+    {"rolling_ratio", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, rolling_ratio), .standard = "1",
+     .text = "stiffness of rolling and torsion over the tangential one, at most 100"},
+    {"rolling_damping", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, rolling_damping), .standard = "1.2",
+     .text = "over the root of mass and stiffness of rolling, at most 10"},
+    {"tangential_ratio", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, tangential_ratio),
+     .standard = "2/7; hertz_mindlin: Mindlin's",
+     .text = "tangential over normal stiffness, at most 10"},
+    {"tangential_damping", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, tangential_damping), .standard = "of the law",
+     .text = "over that along the normal, at most 10"},
     {"young", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, young),
      .text = "hertz_mindlin [Pa] > 0"},
     {"poisson", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, poisson), .standard = "0.3",
@@ -60,12 +74,42 @@ static bool check_given(se3di_reader *reader, const se3di_node *entry)
                                  is_hooke ? "N/m" : "Pa", is_hooke ? "hooke" : "hertz_mindlin");
 }
 
+/* What was given as none: 0 of a definition is what the law has. */
+static void choose(const se3di_node *entry, const char *key, double *value)
+{
+    if (se3di_node_get(entry, key) && !(*value > 0.0)) {
+        *value = -1.0;
+    }
+}
+
+/* Choices beside what the law has. */
+static bool read_choices(se3di_reader *reader, const se3di_node *entry, se3d_material_def *def)
+{
+    se3d_contact_settings contact = {.struct_size = sizeof contact};
+    if (!se3di_reader_check(reader, entry, se3d_system_get_contact(reader->system, &contact))) {
+        return false;
+    }
+    if (contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN &&
+        se3di_node_get(entry, "tangential_ratio")) {
+        def->tangential_ratio_hertz = def->tangential_ratio;
+        def->tangential_ratio = se3d_material_def_default().tangential_ratio;
+        choose(entry, "tangential_ratio", &def->tangential_ratio_hertz);
+    }
+    choose(entry, "damping_ratio", &def->damping_ratio);
+    choose(entry, "tangential_damping", &def->tangential_damping);
+    choose(entry, "rolling_ratio", &def->rolling_ratio);
+    choose(entry, "rolling_damping", &def->rolling_damping);
+    return !(se3di_node_get(entry, "damping_ratio") && se3di_node_get(entry, "restitution")) ||
+           se3di_reader_fail_key(reader, entry, "damping_ratio",
+                                 "stands beside `restitution`: one follows from the other");
+}
+
 static bool create_material(se3di_reader *reader, const se3di_node *entry, se3d_material *material)
 {
     se3d_material_def def = se3d_material_def_default();
     if (!se3di_read_fields(reader, entry, &se3di_object_material, NULL, "se3d_material_def",
                            &def) ||
-        !check_given(reader, entry)) {
+        !check_given(reader, entry) || !read_choices(reader, entry, &def)) {
         return false;
     }
     def.name = se3di_node_get(entry, "name")->text;

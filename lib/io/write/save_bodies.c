@@ -376,23 +376,44 @@ void se3di_save_bodies(se3di_save *s)
 
 /* ---- what they touch with -------------------------------------------------------------------*/
 
+/* What 0 is the law's own of, and less is none. */
+static void save_choice(se3di_save *s, const char *key, double value)
+{
+    if (value > 0.0 || value < 0.0) {
+        se3di_save_number(s, key, value > 0.0 ? value : 0.0);
+    }
+}
+
 static void save_material(se3di_save *s, se3d_material material)
 {
+    se3d_contact_settings contact = se3d_contact_settings_default();
     const se3d_material_def standard = se3d_material_def_default();
     se3d_material_def def = standard;
     (void)se3d_material_get(s->system, material, &def);
+    (void)se3d_system_get_contact(s->system, &contact);
     se3di_save_text(s, "name", s->materials.names[material.index1]);
     se3di_save_number(s, "density", def.density);
     se3di_save_number_but(s, "friction", def.friction, standard.friction);
-    se3di_save_number_but(s, "restitution", def.restitution, standard.restitution);
+    if (!(def.damping_ratio > 0.0 || def.damping_ratio < 0.0)) {
+        se3di_save_number_but(s, "restitution", def.restitution, standard.restitution);
+    }
     se3di_save_number_but(s, "rolling_friction", def.rolling_friction, 0.0);
     se3di_save_number_but(s, "torsional_friction", def.torsional_friction, 0.0);
     se3di_save_number_but(s, "stiffness", def.stiffness, 0.0);
-    se3di_save_number_but(s, "tangential_ratio", def.tangential_ratio, standard.tangential_ratio);
+    if (contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN) {
+        save_choice(s, "tangential_ratio", def.tangential_ratio_hertz);
+    } else {
+        se3di_save_number_but(s, "tangential_ratio", def.tangential_ratio,
+                              standard.tangential_ratio);
+    }
     se3di_save_number_but(s, "young", def.young, 0.0);
     se3di_save_number_but(s, "poisson", def.poisson, standard.poisson);
     se3di_save_number_but(s, "cohesion", def.cohesion, 0.0);
     se3di_save_number_but(s, "adhesion", def.adhesion, 0.0);
+    save_choice(s, "damping_ratio", def.damping_ratio);
+    save_choice(s, "tangential_damping", def.tangential_damping);
+    save_choice(s, "rolling_ratio", def.rolling_ratio);
+    save_choice(s, "rolling_damping", def.rolling_damping);
 }
 
 void se3di_save_materials(se3di_save *s)

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* What a material may say in place of what its law has: damping along the normal, stiffness and
+ * damping along the tangent, of rolling and of torsion, in closed form. A ball meets a plane, or
+ * rests on it, as a particle and as a body (docs/theory/contact-laws.md). */
+#include "se3d/io.h"
+#include "support/scene.h"
+
+#define RADIUS 0.02
+
+enum { PARTICLE = -2, PORTABLE = -1 };
+static const int32_t everyone[] = {PARTICLE, PORTABLE, SE3D_METHOD_DOP853, SE3D_METHOD_RADAU};
+#define EVERYONE 4
+
+typedef struct ball {
+    scene s;
+    se3d_particles *set;
+    se3d_body body;
+    double mass, now;
+} ball;
+
+static se3d_material_def stuff(void)
+{
+    return scene_stuff(1e6, 1.0, 1e4); /* nothing slips */
+}
+
+/* Steps of particles: a 10th of the automatic ones. */
+static void refine(ball *b, int32_t law)
+{
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    double step;
+    contact.law = law;
+    CHECK(se3d_particles_get_step(b->set, &step) == SE3D_OK);
+    contact.step = 0.1 * step;
+    CHECK(se3d_system_set_contact(b->s.system, &contact) == SE3D_OK);
+}
+
+/* The plane of another material; at height z, no gravity. */
+static ball begin(int32_t who, int32_t law, const se3d_material_def *of,
+                  const se3d_material_def *plane, double z, const double v[3], const double w[3])
+{
+    ball b = {.s = scene_begin_with(NULL, law, plane),
+              .mass = of->density * 4.0 / 3.0 * PI * RADIUS * RADIUS * RADIUS};
+    const double r[3] = {0.0, 0.0, z}, radius = RADIUS;
+    scene_floor(&b.s, 0.0);
+    CHECK(se3d_material_create(b.s.system, of, &b.s.material) == SE3D_OK);
+    CHECK(se3d_system_set_gravity(b.s.system, scene_zero) == SE3D_OK);
+    if (who <= PORTABLE) {
+        se3d_particles_def set = se3d_particles_def_default();
+        set.portable = who == PORTABLE;
+        CHECK(se3d_particles_create(b.s.system, &set, &b.set) == SE3D_OK);
+        CHECK(se3d_particles_add(b.set, b.s.material, 1, r, &radius, v, w, NULL) == SE3D_OK);
+        refine(&b, law);
+    } else {
+        b.body = scene_ball(&b.s, RADIUS, b.mass, r, v);
+        CHECK(se3d_body_set_angular_velocity(b.s.system, b.body, w) == SE3D_OK);
+        scene_solve(&b.s, who, SE3D_FORMULATION_AUTO, 0.0, 1e-8);
+    }
+    return b;
+}
+
+static void end(ball *b)
+{
+    se3d_particles_destroy(b->set);
+    scene_end(&b->s);
+}
+
+static void run(ball *b, double time, double v[3], double w[3])
+{
+    double r[3];
+    if (b->set) {
+        CHECK(se3d_particles_run(b->set, time) == SE3D_OK);
+        CHECK(se3d_particles_get_all(b->set, 1, r, v, w) == SE3D_OK);
+    } else {
+        (void)scene_run(&b->s, time);
+        CHECK(se3d_body_get_velocity(b->s.system, b->body, v) == SE3D_OK);
+        CHECK(se3d_body_get_angular_velocity(b->s.system, b->body, w) == SE3D_OK);
+    }
+}
+
+/* After an impact of 1 mm/s, slow enough that the arm is the radius: the restitution, and the slip
+ * over that before. */
+static double impact(int32_t who, int32_t law, const se3d_material_def *of,
+                     const se3d_material_def *plane, double *slip)
+{
+    const double into = 1e-3, before = 0.2 * into, gap = 1e-6;
+    double v[3] = {before, 0.0, -into}, w[3] = {0.0, 0.0, 0.0};
+    ball b = begin(who, law, of, plane, RADIUS + gap, v, w);
+    run(&b, 1.0, v, w);
+    CHECK(v[2] > 0.0);
+    end(&b);
+    *slip = (v[0] - RADIUS * w[1]) / before;
+    return v[2] / into;
+}
+
+static void the_tangential_stiffness_of_hertz_is_that_given(void)
+{
+    static const double given[4] = {0.25, 0.6, 1.2, -1.0};
+    for (int k = 0; k < 5 * EVERYONE; ++k) {
+        se3d_material_def of = stuff(), plane = stuff();
+        double slip;
+        const double mindlin = 3.0 * (1.0 - 0.3) / (2.0 - 0.3);
+        const double ratio = k / EVERYONE < 4 ? given[k / EVERYONE] : 0.5;
+        of.tangential_ratio_hertz = ratio;
+        plane.tangential_ratio_hertz = k / EVERYONE < 4 ? ratio : 0.0; /* the law's own */
+        const double is = k / EVERYONE < 4 ? fmax(ratio, 0.0) : sqrt(ratio * mindlin);
+        CHECK_NEAR(
+            impact(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HERTZ_MINDLIN, &of, &plane, &slip), 1.0,
+            1e-4);
+        CHECK_NEAR(slip, cos(PI * sqrt(0.01 + 2.8 * is)) / cos(0.1 * PI), 5e-3);
+    }
+}
+
+/* With hooke the slip swings with w_t = sqrt(7/2 kt/m) and the damping ratio 7/2 x zeta wn/w_t for
+ * as long as the normal force pushes. */
+static void tangential_damping_is_that_given(void)
+{
+    static const double given[3] = {0.6, 0.0, -1.0};
+    for (int k = 0; k < 3 * EVERYONE; ++k) {
+        se3d_material_def of = stuff();
+        double slip;
+        const double zeta = 0.2, wn = sqrt(1e4 / (1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0)));
+        const double root = sqrt(1.0 - zeta * zeta);
+        const double time = (PI - atan2(2.0 * zeta * root, root * root - zeta * zeta)) / root / wn;
+        of.damping_ratio = zeta;
+        of.tangential_ratio = 0.4;
+        of.tangential_damping = given[k / EVERYONE];
+        const double wt = sqrt(3.5 * 0.4) * wn;
+        const double x = k / EVERYONE == 1 ? 0.4 : fmax(of.tangential_damping, 0.0); /* hooke's */
+        const double ratio = 3.5 * x * zeta * wn / wt, wd = wt * sqrt(1.0 - ratio * ratio);
+        const double expected =
+            exp(-ratio * wt * time) * (cos(wd * time) - ratio * wt / wd * sin(wd * time));
+        CHECK_NEAR(impact(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HOOKE, &of, &of, &slip),
+                   exp(-zeta * wn * time), 5e-4);
+        CHECK_NEAR(slip, expected, 3e-3);
+    }
+}
+
+/* x'' = -max(0, x^1.5 + alpha x^.25 x'), alpha = 2 ratio sqrt(3/2), from x' = 1. */
+static double restitution_of_hertz(double ratio)
+{
+    const double alpha = 2.0 * ratio * sqrt(1.5), h = 1e-5;
+    double x = 0.0, v = 1.0, force = 0.0;
+    for (int k = 0; k < 1000000 && (force > 0.0 || v > 0.0); ++k) {
+        x += 0.5 * h * v;
+        force = pow(fmax(x, 0.0), 1.5) + alpha * pow(fmax(x, 0.0), 0.25) * v;
+        v -= h * fmax(force, 0.0);
+        x += 0.5 * h * v;
+    }
+    return -v;
+}
+
+static void a_damping_ratio_stands_for_a_restitution(void)
+{
+    static const double ratios[4] = {-1.0, 0.05, 0.3, 0.9};
+    for (int k = 0; k < 4 * EVERYONE; ++k) {
+        se3d_material_def of = stuff();
+        double slip;
+        const double ratio = ratios[k / EVERYONE];
+        of.restitution = 0.77; /* not looked at */
+        of.damping_ratio = ratio;
+        CHECK_NEAR(impact(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HERTZ_MINDLIN, &of, &of, &slip),
+                   ratio > 0.0 ? restitution_of_hertz(ratio) : 1.0, 1e-3);
+    }
+}
+
+/* A ball that is pressed on the plane and spins about the vertical: R^2 (kr theta + dr sqrt(m) w) =
+ * -I w'. */
+static void torsion_swings_as_given(void)
+{
+    static const double given[3][2] = {{0.5, 0.1}, {2.0, -1.0}, {0.0, 0.3}};
+    for (int k = 0; k < 3 * EVERYONE; ++k) {
+        se3d_material_def of = stuff();
+        const double *choice = given[k / EVERYONE];
+        of.damping_ratio = 0.5; /* hooke: no swing of its own */
+        of.torsional_friction = 1e6;
+        of.rolling_ratio = choice[0];
+        of.rolling_damping = choice[1];
+        const double kr = (choice[0] > 0.0 ? choice[0] : 1.0) * 2.0 / 7.0 * 1e4, spin = 1e-2;
+        const double g[3] = {0.0, 0.0, -G};
+        double v[3] = {0.0, 0.0, 0.0}, w[3] = {0.0, 0.0, spin};
+        ball b = begin(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HOOKE, &of, &of,
+                       RADIUS - 1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0) * G / 1e4, v, w);
+        CHECK(se3d_system_set_gravity(b.s.system, g) == SE3D_OK);
+        const double w0 = sqrt(2.5 * kr / b.mass);
+        const double ratio = 1.25 * fmax(choice[1], 0.0) * sqrt(kr / b.mass) / w0;
+        const double wd = w0 * sqrt(1.0 - ratio * ratio);
+        for (int n = 1; n < 8; ++n) {
+            const double t = 0.37 * n * 2.0 * PI / w0;
+            run(&b, t, v, w);
+            CHECK_NEAR(w[2] / spin,
+                       exp(-ratio * w0 * t) * (cos(wd * t) - ratio * w0 / wd * sin(wd * t)), 5e-3);
+        }
+        end(&b);
+    }
+}
+
+static void what_no_contact_could_be_is_refused(void)
+{
+    scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.5, 1e4);
+    se3d_material_def def = stuff();
+    se3d_material made;
+    def.damping_ratio = 60.0;
+    CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "damping_ratio = 60 is a restitution of ");
+    def.damping_ratio = 0.0;
+    def.rolling_ratio = 101.0;
+    CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "rolling_ratio = 101");
+    def.rolling_ratio = 3.0;
+    CHECK(se3d_material_create(s.system, &def, &made) == SE3D_OK);
+    CHECK(se3d_material_get(s.system, made, &def) == SE3D_OK);
+    CHECK_NEAR(def.rolling_ratio, 3.0, 0.0);
+    scene_end(&s);
+}
+
+/* Read a model; NULL, with the message in `error`, if that fails. */
+static se3d_model *read_model(const char *text, se3d_model_error *error)
+{
+    se3d_model *model = NULL;
+    (void)se3d_model_read_text(text, strlen(text), "choices.yaml", NULL, &model, error);
+    return model;
+}
+
+static se3d_material_def get_material(const se3d_model *model)
+{
+    se3d_material material;
+    se3d_material_def def = se3d_material_def_default();
+    se3d_system *system = se3d_model_get_system(model);
+    CHECK(se3d_system_get_material(system, 0, &material) == SE3D_OK);
+    CHECK(se3d_material_get(system, material, &def) == SE3D_OK);
+    return def;
+}
+
+/* 0 of a model file is none. */
+static void model_files_say_so_too(void)
+{
+    static const struct {
+        const char *law, *keys;
+        double damping, linear, hertz, tangential, rolling, rolled;
+    } rows[] = {{"hooke", "restitution: 0.7", 0.0, 2.0 / 7.0, 0.0, 0.0, 0.0, 0.0},
+                {"hooke", "damping_ratio: 0.1, tangential_ratio: 0, rolling_damping: 0", 0.1, 0.0,
+                 0.0, 0.0, 0.0, -1.0},
+                {"hertz_mindlin", "damping_ratio: 0, tangential_ratio: 0.8, tangential_damping: 0",
+                 -1.0, 2.0 / 7.0, 0.8, -1.0, 0.0, 0.0},
+                {"hertz_mindlin", "tangential_ratio: 0, rolling_ratio: 0, tangential_damping: 2",
+                 0.0, 2.0 / 7.0, -1.0, 2.0, -1.0, 0.0}};
+    for (size_t k = 0; k < 2 * sizeof rows / sizeof *rows; ++k) {
+        char text[600], written[4000];
+        size_t length;
+        se3d_model_error error;
+        snprintf(text, sizeof text,
+                 "se3d: 1\ncontact: {law: %s}\nmaterials: [{name: m, density: 1, young: 1, "
+                 "stiffness: 1, %s}]\nparticles: [{material: m, radius: 1, lower: [0, 0, 0], "
+                 "upper: [9, 9, 9]}]\n",
+                 rows[k / 2].law, rows[k / 2].keys);
+        se3d_model *model = read_model(text, &error);
+        CHECK(model != NULL);
+        if (model && k % 2) { /* as it is written and read again */
+            CHECK(se3d_model_write_text(model, NULL, written, sizeof written, &length, &error) ==
+                  SE3D_OK);
+            se3d_model_destroy(model);
+            model = read_model(written, &error);
+            CHECK(model != NULL);
+        }
+        if (model) {
+            const se3d_material_def def = get_material(model);
+            CHECK_NEAR(def.damping_ratio, rows[k / 2].damping, 0.0);
+            CHECK_NEAR(def.tangential_ratio, rows[k / 2].linear, 0.0);
+            CHECK_NEAR(def.tangential_ratio_hertz, rows[k / 2].hertz, 0.0);
+            CHECK_NEAR(def.tangential_damping, rows[k / 2].tangential, 0.0);
+            CHECK_NEAR(def.rolling_ratio, rows[k / 2].rolling, 0.0);
+            CHECK_NEAR(def.rolling_damping, rows[k / 2].rolled, 0.0);
+        }
+        se3d_model_destroy(model);
+    }
+}
+
+static void model_files_say_one_damping(void)
+{
+    se3d_model_error error;
+    CHECK(!read_model("se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1, restitution: 0.5, "
+                      "damping_ratio: 0.1}]\nparticles: [{material: m, radius: 1, lower: [0, 0, "
+                      "0], upper: [9, 9, 9]}]\n",
+                      &error));
+    CHECK_CONTAINS(error.message, "damping_ratio: stands beside `restitution`");
+}
+
+int main(void)
+{
+    RUN(the_tangential_stiffness_of_hertz_is_that_given);
+    RUN(tangential_damping_is_that_given);
+    RUN(a_damping_ratio_stands_for_a_restitution);
+    RUN(torsion_swings_as_given);
+    RUN(model_files_say_so_too);
+    RUN(model_files_say_one_damping);
+    RUN(what_no_contact_could_be_is_refused);
+    return check_finish();
+}
