@@ -666,7 +666,57 @@ static const refusal refusals[] = {
      "orientation: {rpy: [0, 0, 0]}, lower: [0, 0, 0], upper: [1, 1, 1]}]\n",
      3,
      {"orientation: is only for a `clump`"}},
+#define SINGLE                                                                                     \
+    "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\n"                                  \
+    "clumps: [{name: c, spheres: [{position: [0, 0, 0], radius: 1}]}]\nparticles:\n"               \
+    "  - {material: m, position: [0, 0, 0], "
+    {SINGLE "radius: 1, count: 3}\n", 5, {"count: has no effect with `position`", " radius "}},
+    {SINGLE "radius: [1, 2]}\n", 5, {"radius: must be one number at a `position`"}},
+    {SINGLE "velocity: [1, 0, 0]}\n", 5, {"radius: is missing"}},
+    {SINGLE "clump: c, radius: 1}\n", 5, {"radius: has no effect", "`clump`, which takes:"}},
+    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, radius: "
+     "1, lower: [0, 0, 0], upper: [2, 2, 2], angular_velocity: [1, 0, 0]}]\n",
+     3,
+     {"angular_velocity: is only for a `position`"}},
 };
+
+/* To the bit. */
+static void single_particles_are_where_they_are_said_to_be(void)
+{
+    static const char text[] =
+        "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\n"
+        "clumps: [{name: c, spheres: [{position: [0, 0, 0], radius: 0.1}, {position: [0.3, 0, 0], "
+        "radius: 0.1}]}]\n"
+        "particles:\n  - {name: a, material: m, radius: 0.1, position: [0.7, -0.3, 0.1], velocity: "
+        "[1, 2, 3], angular_velocity: [4, 5, 6]}\n"
+        "  - {name: b, material: m, radius: 0.2, position: [3, 3, 3]}\n"
+        "  - {name: a, material: m, clump: c, position: [9, 8, 7], velocity: [0, 0, 1], "
+        "orientation: "
+        "{axis: [0, 0, 1], angle: pi/2}, angular_velocity: [0, 2, 0]}\n";
+    se3d_model *model = NULL;
+    se3d_model_error error;
+    se3d_particles *set = NULL;
+    double r[12], v[12], w[12], e[4], centre[3];
+    uint32_t tags[4];
+    CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error) == SE3D_OK);
+    CHECK(se3d_system_get_particles(se3d_model_get_system(model), 0, &set) == SE3D_OK);
+    CHECK(se3d_particles_get_all(set, 4, r, v, w) == SE3D_OK);
+    CHECK(se3d_particles_get_tags(set, 4, tags) == SE3D_OK);
+    CHECK(se3d_particles_get_clumps(set, 1, centre, e, NULL, NULL) == SE3D_OK);
+    const double expected[9] = {0.7, -0.3, 0.1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+    for (int a = 0; a < 3; ++a) {
+        CHECK_NEAR(r[a], expected[a], 0.0);
+        CHECK_NEAR(v[a], expected[3 + a], 0.0);
+        CHECK_NEAR(w[a], expected[6 + a], 0.0);
+        CHECK_NEAR(r[3 + a], 3.0, 0.0);
+        CHECK_NEAR(w[3 + a], 0.0, 0.0);
+        CHECK_NEAR(centre[a], 9.0 - a, 0.0);
+        CHECK_NEAR(w[6 + a], a == 1 ? 2.0 : 0.0, 1e-15);
+    }
+    CHECK_NEAR(fabs(r[10] - r[7]), 0.3, 1e-12); /* turned to y */
+    CHECK(tags[0] == tags[2] && tags[0] == tags[3] && tags[1] != tags[0] && tags[1] != 0);
+    se3d_model_destroy(model);
+}
 
 static void clumps_and_regions_are_refused_by_name_and_line(void)
 {
@@ -694,6 +744,7 @@ int main(void)
     RUN(cells_are_read_and_strain);
     RUN(servo_walls_are_read_and_press);
     RUN(bonds_are_read_and_break);
+    RUN(single_particles_are_where_they_are_said_to_be);
     RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);

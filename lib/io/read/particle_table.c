@@ -278,20 +278,22 @@ static bool place_clumps(const table *t, const se3di_clump_pose *poses, size_t c
     return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
 }
 
-/* The particles from `before` on, of ascending ids, are of the set. */
-static bool tag_all(const table *t, size_t before, uint32_t tag)
+bool se3di_tag_particles(se3di_reader *reader, const se3di_node *node, size_t before, uint32_t tag)
 {
-    se3d_particles *set = t->reader->model->particles->set;
+    se3d_particles *set = reader->model->particles->set;
     const size_t all = se3d_particles_count(set);
-    uint32_t *ids = tag > 0 ? se3di_iopool_array(t->pool, all + 1, sizeof *ids) : NULL;
-    if (tag > 0 && !ids) {
-        return se3di_reader_fail_memory(t->reader);
+    if (tag == 0) {
+        return true;
     }
-    se3d_status status = tag > 0 ? se3d_particles_get_ids(set, all, ids) : SE3D_OK;
-    if (tag > 0 && status >= 0) {
+    se3di_iopool pool;
+    se3di_iopool_init(&pool, &reader->pool->allocator);
+    uint32_t *ids = se3di_iopool_array(&pool, all + 1, sizeof *ids);
+    se3d_status status = ids ? se3d_particles_get_ids(set, all, ids) : SE3D_ERR_NO_MEMORY;
+    if (status >= 0) {
         status = se3d_particles_set_tags(set, all - before, ids + before, tag);
     }
-    return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
+    se3di_iopool_destroy(&pool);
+    return ids ? se3di_reader_check(reader, node, status) : se3di_reader_fail_memory(reader);
 }
 
 /* In the order of the file. */
@@ -322,7 +324,8 @@ static bool add_rows(table *t, uint32_t tag)
             return se3di_reader_fail_system(t->reader, t->node, status);
         }
     }
-    return (!scaled || place_clumps(t, poses, clumps)) && tag_all(t, before, tag);
+    return (!scaled || place_clumps(t, poses, clumps)) &&
+           se3di_tag_particles(t->reader, t->node, before, tag);
 }
 
 bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3d_material material,

@@ -9,4 +9,7 @@
 bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3d_material material,
                                uint32_t tag);
 
+/* The particles of the model's set from `before` on, of ascending ids, are of a named one. */
+bool se3di_tag_particles(se3di_reader *reader, const se3di_node *node, size_t before, uint32_t tag);
+
 #endif

@@ -58,6 +58,10 @@ static const se3di_key particles_keys[] = {
      .standard = "0", .text = "lattice: largest displacement along each axis [m]"},
     {"velocity", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_fill_def, velocity),
      .standard = "[0, 0, 0]", .text = "[m/s]"},
+    {"position", SE3DI_KIND_VECTOR,
+     .text = "in place of a region: the centre of a single one, of a clump that of mass [m]"},
+    {"angular_velocity", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
+     .text = "with position: ground frame [rad/s]"},
     {"seed", SE3DI_KIND_COUNT, .most = 9007199254740992.0, .standard = "0",
      .text = "of the random numbers"},
     {"region", SE3DI_KIND_WORD, .words = regions, .standard = "box",
@@ -72,10 +76,11 @@ static const se3di_key particles_keys[] = {
     {.key = NULL}};
 const se3di_object se3di_object_particles = {
     "particles",
-    "A region that is filled with spheres, a table of them, or a source.",
+    "A region that is filled with spheres, one sphere, a table of them, or a source.",
     particles_keys, NULL,
     "\"anyOf\": [{\"required\": [\"file\"]}, {\"required\": [\"radius\", \"lower\", \"upper\"]}, "
-    "{\"required\": [\"clump\", \"lower\", \"upper\"]}]"};
+    "{\"required\": [\"clump\", \"lower\", \"upper\"]}, "
+    "{\"required\": [\"radius\", \"position\"]}, {\"required\": [\"clump\", \"position\"]}]"};
 /* clang-format on */
 
 /* clang-format off */
@@ -418,6 +423,38 @@ static bool read_fill(se3di_reader *reader, const se3di_node *node, se3d_fill_de
     return true;
 }
 
+/* A single one at a place. */
+static bool read_single(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
+{
+    const se3di_object *object = &se3di_object_particles;
+    se3d_particles *set = reader->model->particles->set;
+    double r[3] = {0.0, 0.0, 0.0}, w[3] = {0.0, 0.0, 0.0};
+    const double straight[4] = {1.0, 0.0, 0.0, 0.0};
+    const bool is_clump = se3di_node_get(node, "clump") != NULL;
+    const char *keys = is_clump
+                           ? " name material clump position orientation velocity angular_velocity "
+                           : " name material radius position velocity angular_velocity ";
+    if (!check_beside(reader, node, is_clump ? "position` of a `clump" : "position", keys) ||
+        !se3di_read_key_clump(reader, node, &def->clump) || !read_radius(reader, node, def) ||
+        !se3di_read_fields(reader, node, object, NULL, "se3d_fill_def", def) ||
+        !se3di_read_key(reader, node, object, NULL, "position", r) ||
+        !se3di_read_key(reader, node, object, NULL, "angular_velocity", w)) {
+        return false;
+    }
+    if (!is_clump && (def->radius_count > 0 || def->radius_max > def->radius_min)) {
+        return se3di_reader_fail_key(reader, node, "radius", "must be one number at a `position`");
+    }
+    const size_t before = se3d_particles_count(set);
+    const double *turn = se3di_node_get(node, "orientation") ? def->orientation : straight;
+    const se3d_status status = is_clump
+                                   ? se3d_particles_add_clumps(set, def->clump - 1, def->material,
+                                                               1, r, turn, def->velocity, w)
+                                   : se3d_particles_add(set, def->material, 1, r, &def->radius_min,
+                                                        def->velocity, w, NULL);
+    return se3di_reader_check(reader, node, status) &&
+           se3di_tag_particles(reader, node, before, def->tag);
+}
+
 static bool read_entry(se3di_reader *reader, const se3di_node *node)
 {
     se3d_fill_def def = se3d_fill_def_default();
@@ -430,7 +467,11 @@ static bool read_entry(se3di_reader *reader, const se3di_node *node)
         return check_beside(reader, node, "file", " name material file ") &&
                se3di_read_particle_table(reader, node, def.material, def.tag);
     }
-    return read_fill(reader, node, &def);
+    if (se3di_node_get(node, "angular_velocity") && !se3di_node_get(node, "position")) {
+        return se3di_reader_fail_key(reader, node, "angular_velocity", "is only for a `position`");
+    }
+    return se3di_node_get(node, "position") ? read_single(reader, node, &def)
+                                            : read_fill(reader, node, &def);
 }
 
 static bool read_sink(se3di_reader *reader, const se3di_node *node)
