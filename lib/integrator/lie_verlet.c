@@ -3,6 +3,8 @@
 
 #include "assembly/energy.h"
 #include "assembly/loads.h"
+#include "contact/bodies/body_contacts.h"
+#include "contact/bodies/met.h"
 #include "integrator/state.h"
 #include "math/elementary.h"
 #include "math/inertia.h"
@@ -383,6 +385,7 @@ se3d_status se3di_lie_verlet_drift(se3di_lie_verlet *m)
     se3di_equations *equations = m->equations;
     se3di_assembly *assembly = m->assembly;
     const se3di_model *model = assembly->model;
+    SE3DI_TRY(se3di_met_reserve(m->assembly->model));
     se3di_contacts_begin(m->assembly->model, fmax(m->h, 0.0), 0.5, 1);
     se3di_equations_save(equations);
     if (assembly->row_count > 0) {
@@ -429,6 +432,7 @@ static se3d_status solve_accelerations(se3di_lie_verlet *m)
 se3d_status se3di_lie_verlet_kick(se3di_lie_verlet *m)
 {
     predict_velocities(m);
+    se3di_contacts_look(m->assembly->model);
     SE3DI_TRY(se3di_equations_factor(m->equations));
     SE3DI_TRY(se3di_lie_friction_prepare(&m->friction));
     for (int iteration = 0; iteration < m->force_iterations + 1; ++iteration) {

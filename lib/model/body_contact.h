@@ -66,6 +66,8 @@ typedef struct se3di_body_contacts {
                                the contacts of two of them; NULL: none */
     const struct se3di_body_contact *followed; /* the same of pairs of shapes whose contacts are */
     size_t followed_count; /* known at the end of the step under way without a look at them */
+    void *met;             /* what was found of pairs of shapes, see contact/bodies/met.h */
+    size_t met_bytes;
 } se3di_body_contacts;
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "contact/bodies/broad.h"
 #include "contact/bodies/law.h"
+#include "contact/bodies/met.h"
 #include "contact/bodies/parted.h"
 #include "math/vec3.h"
 
@@ -11,7 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LANDED 1e-6 /* of R*: the overlap from which on the force over it is a stiffness */
+#define REST   1e-30 /* of places: no length, and no turn */
+#define LANDED 1e-6  /* of R*: the overlap from which on the force over it is a stiffness */
 
 /* The first point of a pair of shapes; the list is in order of the pairs. */
 static size_t find_pair(const se3di_body_contact *list, size_t count, uint32_t i, uint32_t j)
@@ -67,7 +69,40 @@ typedef struct visit {
     se3di_contact_visitor visitor;
     void *ctx;
     se3di_pair_visitor keep; /* of a pair that stays; NULL: it is looked at as others are */
+    se3di_model *noting;     /* the model, if what is found may be kept */
 } visit;
+
+/* What joints leave of places that are 0 is 0, so that those of a body at rest are the same. */
+static void clear_rest(se3di_shape_pose *at)
+{
+    for (int k = 0; k < 9; ++k) {
+        at->R[k] = fabs(at->R[k]) < REST ? 0.0 : at->R[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        at->x[k] = fabs(at->x[k]) < REST ? 0.0 : at->x[k];
+    }
+}
+
+/* The points in which two shapes touch. */
+static void find_manifold(const visit *v, const uint32_t pair[2], se3di_manifold *manifold)
+{
+    const se3di_model *model = v->model;
+    const se3di_shape *a = &model->shapes[pair[0]], *b = &model->shapes[pair[1]];
+    se3di_shape_pose at[2];
+    se3di_shape_place(a, &model->frames[a->body], &at[0]);
+    se3di_shape_place(b, &model->frames[b->body], &at[1]);
+    if (se3di_shape_is(a, SE3DI_SHAPE_IS_SURFACE) || se3di_shape_is(b, SE3DI_SHAPE_IS_SURFACE)) {
+        clear_rest(&at[0]);
+        clear_rest(&at[1]);
+        if (se3di_met_find(model, pair, at, manifold)) {
+            return;
+        }
+    }
+    se3di_narrow_find(a, &at[0], b, &at[1], manifold);
+    if (v->noting) {
+        se3di_met_keep(v->noting, pair, at, manifold);
+    }
+}
 
 /* Both shapes are near enough for a closer look. */
 static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
@@ -78,14 +113,10 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
     if (v->keep && (se3di_contact_is_frozen(model, i, j) || find_known(model, i, j, &known) > 0)) {
         return v->keep(v->ctx, i, j);
     }
-    const se3di_shape *a = &model->shapes[i];
-    const se3di_shape *b = &model->shapes[j];
-    se3di_shape_pose at_a, at_b;
+    const uint32_t pair[2] = {i, j};
     se3di_manifold manifold;
     se3di_encounter points[SE3DI_MANIFOLD_POINTS];
-    se3di_shape_place(a, &model->frames[a->body], &at_a);
-    se3di_shape_place(b, &model->frames[b->body], &at_b);
-    se3di_narrow_find(a, &at_a, b, &at_b, &manifold);
+    find_manifold(v, pair, &manifold);
     size_t memory =
         manifold.count > 0 ? find_pair(model->contacts.list, model->contacts.count, i, j) : 0;
     for (uint32_t k = 0; k < manifold.count; ++k) {
@@ -107,8 +138,34 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
 se3d_status se3di_contacts_visit(const se3di_model *model, double t, se3di_contact_visitor visitor,
                                  void *ctx)
 {
-    visit v = {model, t - model->contacts.time, visitor, ctx, NULL};
+    visit v = {model, t - model->contacts.time, visitor, ctx, NULL, NULL};
     return se3di_broad_visit(model, visit_pair, &v);
+}
+
+/* The forces of the state are impulses of the step that led to it. */
+static int are_stepped(const se3di_model *model)
+{
+    return model->contacts.count > 0 && model->contacts.list[0].kind != SE3DI_CONTACT_LAWFUL &&
+           model->history_tag != 0;
+}
+
+static se3d_status look(void *ctx, uint32_t i, uint32_t j)
+{
+    const visit *v = ctx;
+    const uint32_t pair[2] = {i, j};
+    se3di_manifold manifold;
+    if (se3di_met_is_kept(v->model, pair)) {
+        find_manifold(v, pair, &manifold);
+    }
+    return SE3D_OK;
+}
+
+void se3di_contacts_look(se3di_model *model)
+{
+    visit v = {.model = model, .noting = model};
+    if (model->contacts.met && !are_stepped(model)) {
+        (void)se3di_broad_visit(model, look, &v);
+    }
 }
 
 static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
@@ -120,13 +177,6 @@ static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
         wrench[6 * (size_t)e->body[k / 6] + (size_t)(k % 6)] += both[k];
     }
     return SE3D_OK;
-}
-
-/* The forces of the state are impulses of the step that led to it. */
-static int are_stepped(const se3di_model *model)
-{
-    return model->contacts.count > 0 && model->contacts.list[0].kind != SE3DI_CONTACT_LAWFUL &&
-           model->history_tag != 0;
 }
 
 void se3di_contact_push(const se3di_frame *frame, const double arm[3], double share,
@@ -347,7 +397,7 @@ static se3d_status note_all(se3di_model *model, double t, double overlap_limit, 
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     model->contacts.next_time = t;
-    visit v = {model, t - model->contacts.time, note, &p, keep_pair};
+    visit v = {model, t - model->contacts.time, note, &p, keep_pair, model};
     return model->shape_slots.count < 2 ? SE3D_OK : se3di_broad_visit(model, visit_pair, &v);
 }
 

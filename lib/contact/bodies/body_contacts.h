@@ -10,6 +10,10 @@
 
 #include "contact/bodies/encounter.h"
 
+/* Before forces are asked for at the poses of the model several times: what surfaces touch, where
+ * they have been reserved (met.h). */
+void se3di_contacts_look(se3di_model *model);
+
 /* Called for every point of contact of the model's state, which is that at t, in an order that
  * depends on the model only. */
 typedef se3d_status (*se3di_contact_visitor)(void *ctx, const se3di_encounter *encounter);
