@@ -448,8 +448,8 @@ static void meet_edges(void *ctx, uint32_t triangle)
     }
     const se3di_shape *s = m->mesh->shape;
     for (uint32_t k = 0; k < 3; ++k) {
-        if (s->closed != 0 &&
-            (!se3di_mesh_edge_bulges(s, triangle, k) || se3di_mesh_edge_is_told(s, triangle, k))) {
+        if (se3di_mesh_edge_is_told(s, triangle, k) ||
+            (s->closed != 0 && !se3di_mesh_edge_bulges(s, triangle, k))) {
             continue;
         }
         edge e = {.m = m,

@@ -757,21 +757,25 @@ static int is_below(const se3di_shape *s, uint32_t triangle, uint32_t other)
     return s->closed * se3di_dot(d, f->normal) < 0.0;
 }
 
+/* Of an open one what holds from both of its sides. */
 static void meet_told(void *ctx, uint32_t other)
 {
     told_search *t = ctx;
-    const facet *own = se3di_mesh_facets(t->shape) + t->triangle;
-    const facet *next = se3di_mesh_facets(t->shape) + other;
+    const se3di_shape *s = t->shape;
+    const facet *own = se3di_mesh_facets(s) + t->triangle;
+    const facet *next = se3di_mesh_facets(s) + other;
     if (other != t->triangle) {
-        t->told =
-            t->told || other < t->triangle || se3di_dot(own->normal, next->normal) > COPLANAR ||
-            (!is_below(t->shape, other, t->triangle) && !is_below(t->shape, t->triangle, other));
+        const int sides = s->closed != 0 || s->oriented;
+        t->told = t->told || other < t->triangle ||
+                  (sides && se3di_dot(own->normal, next->normal) > COPLANAR) ||
+                  (s->closed != 0 && !is_below(s, other, t->triangle) &&
+                   !is_below(s, t->triangle, other));
     }
 }
 
 static void note_told(se3di_shape *s)
 {
-    for (uint32_t k = 0; k < 3 * s->triangle_count && s->closed != 0; ++k) {
+    for (uint32_t k = 0; k < 3 * s->triangle_count; ++k) {
         const uint32_t *t = s->triangles + k / 3 * 3;
         const double *from = s->vertices + 3 * (size_t)t[k % 3];
         const double *to = s->vertices + 3 * (size_t)t[(k + 1) % 3];

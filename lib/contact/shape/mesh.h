@@ -69,8 +69,8 @@ size_t se3di_mesh_find_cuts(const se3di_shape *shape, const double from[3], cons
 
 /* Whether the surface bulges at an edge of a triangle; of open ones also if it bends inward. */
 int se3di_mesh_edge_bulges(const se3di_shape *shape, uint32_t triangle, uint32_t side);
-/* Whether an edge of a closed mesh need not be looked at from this triangle: it is about flat, or
- * the triangle beyond it, which comes first, tells of it. */
+/* Whether an edge of a mesh need not be looked at from this triangle: it is about flat, or the
+ * triangle beyond it, which comes first, tells of it. */
 int se3di_mesh_edge_is_told(const se3di_shape *shape, uint32_t triangle, uint32_t side);
 /* Whether nothing of a closed mesh is beyond the plane of a triangle, as far as is known: of meshes
  * of more vertices than outlines are looked for all triangles count as such. */
