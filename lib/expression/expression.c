@@ -10,6 +10,8 @@
 #include <math.h>
 #include <string.h>
 
+#define TINY 1e-100 /* a quotient by more than that is finite for all that has a meaning */
+
 struct se3d_expression {
     se3d_allocator allocator;
     size_t size; /* of the block */
@@ -290,22 +292,6 @@ static int is_continuous(const se3di_instruction *in)
                : in->op != SE3DI_OP_JUMP_IF_ZERO;
 }
 
-static int is_total(const se3di_instruction *in)
-{
-    switch (in->op) {
-    case SE3DI_OP_UNARY:
-    case SE3DI_OP_BINARY:
-        return se3di_function_is_total(in->function);
-    case SE3DI_OP_POWER:
-        return is_whole_power(in);
-    case SE3DI_OP_DIVIDE:
-    case SE3DI_OP_STEP:
-        return 0;
-    default:
-        return 1;
-    }
-}
-
 static int holds_for_all(const se3d_expression *expression,
                          int (*holds)(const se3di_instruction *in))
 {
@@ -326,9 +312,53 @@ int se3di_expression_is_continuous(const se3d_expression *expression)
     return holds_for_all(expression, is_continuous);
 }
 
+static int has_jumps(const se3d_expression *expression)
+{
+    size_t k = 0;
+    while (k < expression->code_count && expression->code[k].op != SE3DI_OP_JUMP &&
+           expression->code[k].op != SE3DI_OP_JUMP_IF_ZERO) {
+        ++k;
+    }
+    return k < expression->code_count;
+}
+
+/* Whether the `count` operands before an instruction that takes them last are constants: if there
+ * are no jumps, they are what has been pushed just before. */
+static int are_constants(const se3d_expression *expression, size_t at, size_t count)
+{
+    size_t k = 1;
+    while (k <= count && k <= at && expression->code[at - k].op == SE3DI_OP_CONSTANT) {
+        ++k;
+    }
+    return k > count && !has_jumps(expression);
+}
+
+/* Whether an instruction has a value for all operands that it can get. */
+static int is_total(const se3d_expression *expression, size_t at)
+{
+    const se3di_instruction *in = &expression->code[at];
+    switch (in->op) {
+    case SE3DI_OP_UNARY:
+    case SE3DI_OP_BINARY:
+        return se3di_function_is_total(in->function);
+    case SE3DI_OP_POWER:
+        return is_whole_power(in);
+    case SE3DI_OP_DIVIDE:
+        return are_constants(expression, at, 1) && fabs(in[-1].value) > TINY;
+    case SE3DI_OP_STEP: /* of x, x0, h0, x1, h1 */
+        return are_constants(expression, at, 4) && fabs(in[-2].value - in[-4].value) > TINY;
+    default:
+        return 1;
+    }
+}
+
 int se3di_expression_is_total(const se3d_expression *expression)
 {
-    return holds_for_all(expression, is_total);
+    size_t k = 0;
+    while (k < expression->code_count && is_total(expression, k)) {
+        ++k;
+    }
+    return k == expression->code_count;
 }
 
 const char *se3d_expression_get_text(const se3d_expression *expression)

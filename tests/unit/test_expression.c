@@ -445,9 +445,26 @@ static void what_may_jump_is_known(void)
 
 static void what_may_not_be_finite_is_known(void)
 {
-    static const char *const total[] = {"3", "pi/4*cos(2*t)", "t^3 - 2*t", "if(t<1,0,t-1)",
-                                        "max(abs(t), floor(2*t))"};
-    static const char *const partial[] = {"1/t", "sqrt(1-t)", "t^-1", "log(t)", "tan(t)", "exp(t)"};
+    static const char *const total[] = {"3",
+                                        "pi/4*cos(2*t)",
+                                        "t^3 - 2*t",
+                                        "if(t<1,0,t-1)",
+                                        "max(abs(t), floor(2*t))",
+                                        "2*pi*t/20",
+                                        "0.06*step(t, 0.2, 0, 0.25, 1)",
+                                        "step(t, 1, 3, 0, 2)/3",
+                                        "(t-1)/(1-3)"};
+    static const char *const partial[] = {"1/t",
+                                          "sqrt(1-t)",
+                                          "t^-1",
+                                          "log(t)",
+                                          "tan(t)",
+                                          "exp(t)",
+                                          "t/1e-200",
+                                          "1/if(t<1,t,2)",
+                                          "step(t, 0, 0, t, 1)",
+                                          "step(1, t, 0, 2, 1)",
+                                          "step(t, t, 0, 1, 2)/2"};
     check_all(total, sizeof total / sizeof *total, se3di_expression_is_total, 1);
     check_all(partial, sizeof partial / sizeof *partial, se3di_expression_is_total, 0);
 }
