@@ -390,7 +390,7 @@ static void code_mesh_pairs(se3di_coder *c, se3di_mesh_pair *pairs, size_t count
         se3di_code_uint32(c, &pair->count);
         se3di_code_uint32(c, &pair->face_begin);
         se3di_code_uint32(c, &pair->face_count);
-        if (pair->count > SE3DI_MESH_TOUCHES) {
+        if (pair->count > SE3DI_PARTICLE_FACES) {
             c->failed = 1;
             pair->count = 0;
         }

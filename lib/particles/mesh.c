@@ -71,11 +71,11 @@ static size_t find_places(const se3di_particles *set, const se3di_mesh_pair *pai
 {
     const se3di_wall *wall = &set->walls[pair->wall];
     const double radius = set->particles[pair->i].radius;
-    se3di_touch touches[SE3DI_MESH_TOUCHES];
+    se3di_touch touches[SE3DI_PARTICLE_FACES];
     double local[3];
     locate(set, pair, radius, local);
     const size_t count = se3di_mesh_contacts_among(&wall->shape, faces, face_count, local, radius,
-                                                   SE3DI_MESH_TOUCHES, touches);
+                                                   SE3DI_PARTICLE_FACES, touches);
     for (size_t k = 0; k < count; ++k) {
         places[k].distance = touches[k].distance;
         se3di_copy(touches[k].normal, places[k].local);
@@ -113,7 +113,7 @@ static int add_places(const se3di_mesh_pair *pair, const place *places, size_t c
 int se3di_mesh_batch_add(const se3di_particles *set, const se3di_mesh_pair *pair,
                          se3di_mesh_batch *batch)
 {
-    place places[SE3DI_MESH_TOUCHES];
+    place places[SE3DI_PARTICLE_FACES];
     const size_t count =
         find_places(set, pair, set->faces + pair->face_begin, pair->face_count, places);
     return add_places(pair, places, count, batch);
@@ -222,7 +222,7 @@ static void evaluate_pairs(se3di_particles *set, se3di_mesh_pair *begin, se3di_m
     size_t at = 0;
     se3di_mesh_batch_begin(set, begin->wall, &batch);
     for (se3di_mesh_pair *pair = begin; pair < end; ++pair) {
-        place places[SE3DI_MESH_TOUCHES];
+        place places[SE3DI_PARTICLE_FACES];
         size_t count;
         if (pair == sifted && is_sifted(set, pair)) {
             sifted = sift_pairs(set, pair, end, &sift);

@@ -114,7 +114,7 @@ typedef struct se3di_mesh_touch {
     double xi[3], rho[4];
 } se3di_mesh_touch;
 
-#define SE3DI_MESH_TOUCHES 6
+#define SE3DI_PARTICLE_FACES 6
 
 /* A particle that may touch a wall before the list is built anew. */
 typedef struct se3di_near_wall {
@@ -127,7 +127,7 @@ typedef struct se3di_mesh_pair {
     uint32_t i, wall;
     uint32_t count, next;
     uint32_t face_begin, face_count; /* in the set's faces: triangles that it may touch */
-    se3di_mesh_touch touches[SE3DI_MESH_TOUCHES];
+    se3di_mesh_touch touches[SE3DI_PARTICLE_FACES];
 } se3di_mesh_pair;
 
 /* Distances and normals (towards the particles, ground frame) of the lanes of a block. */

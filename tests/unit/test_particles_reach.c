@@ -99,11 +99,11 @@ static size_t count_wall_contacts(const se3di_particles *set)
         for (size_t k = 0; k < set->count; ++k) {
             const se3di_particle *g = &set->particles[k];
             if (wall->shape.kind == SE3DI_SHAPE_MESH) {
-                se3di_touch touch[SE3DI_MESH_TOUCHES];
+                se3di_touch touch[SE3DI_PARTICLE_FACES];
                 double local[3];
                 se3di_wall_local(wall, g->x, local);
-                count +=
-                    se3di_mesh_contacts(&wall->shape, local, g->radius, SE3DI_MESH_TOUCHES, touch);
+                count += se3di_mesh_contacts(&wall->shape, local, g->radius, SE3DI_PARTICLE_FACES,
+                                             touch);
             } else {
                 count += se3di_wall_distance(wall, g->x) < g->radius;
             }

@@ -249,7 +249,7 @@ static bool run_before(const se3di_session_source *from, se3di_session *s, size_
 {
     size_t failed = 0;
     double start = 0.0;
-    const se3d_status status =
+    se3d_status status =
         se3di_fmi_run_before(s->model, index, from->interrupt, from->ctx, &start, &failed);
     if (status < 0) {
         char what[100];
@@ -257,8 +257,8 @@ static bool run_before(const se3di_session_source *from, se3di_session *s, size_
                  s->model->analyses[failed].analysis.type);
         return se3di_session_say(message, s, what, status);
     }
-    (void)se3d_system_set_time(s->model->system, start);
-    return true;
+    status = se3d_system_set_time(s->model->system, start);
+    return status >= 0 || se3di_session_say(message, s, "the model cannot start", status);
 }
 
 static const se3di_element_entry *find_element(const se3d_model *model, const char *name)
@@ -294,11 +294,11 @@ static void move_body(const se3di_session *from, const se3di_body_entry *entry, 
 }
 
 /* A driver with a rate goes on from where it has come to. */
-static void move_rates(const se3di_session *from, se3di_session *to)
+static se3d_status move_rates(const se3di_session *from, se3di_session *to)
 {
     double time = 0.0;
-    se3d_system_get_time(from->model->system, &time);
-    for (size_t k = 0; k < to->slider_count; ++k) {
+    se3d_status status = se3d_system_get_time(from->model->system, &time);
+    for (size_t k = 0; k < to->slider_count && status >= 0; ++k) {
         const se3di_fmi_variable *v = &to->variables.list[to->slider_variables[k]];
         if (v->role != SE3DI_FMI_INPUT || !to->model->elements[v->element].rate.index1) {
             continue;
@@ -306,20 +306,23 @@ static void move_rates(const se3di_session *from, se3di_session *to)
         const se3di_element_entry *e = &to->model->elements[v->element];
         const se3di_element_entry *old = find_element(from->model, e->name);
         double jet[3] = {0.0, 0.0, 0.0};
-        if (old && old->rate.index1 &&
-            se3d_function_eval(from->model->system, old->rate, &time, jet) >= 0) {
-            (void)se3di_rate_put_place(to->model, e->rate, time, jet[0], to->sliders[k].value);
+        if (old && old->rate.index1) {
+            status = se3d_function_eval(from->model->system, old->rate, &time, jet);
+            status = status < 0 ? status
+                                : se3di_rate_put_place(to->model, e->rate, time, jet[0],
+                                                       to->sliders[k].value);
         }
     }
+    return status;
 }
 
 /* Bodies and states of `to` take what those of the same names in `from` have. */
-static void move_state(const se3di_session *from, se3di_session *to)
+static se3d_status move_state(const se3di_session *from, se3di_session *to)
 {
     const se3d_model *model = to->model;
     double time = 0.0;
     double value = 0.0;
-    move_rates(from, to);
+    const se3d_status status = move_rates(from, to);
     for (size_t k = 1; k < model->body_count; ++k) {
         move_body(from, &model->bodies[k], model->system);
     }
@@ -335,7 +338,7 @@ static void move_state(const se3di_session *from, se3di_session *to)
         }
     }
     se3d_system_get_time(from->model->system, &time);
-    (void)se3d_system_set_time(model->system, time);
+    return status < 0 ? status : se3d_system_set_time(model->system, time);
 }
 
 /* ---- going on -------------------------------------------------------------------------------*/
@@ -394,8 +397,8 @@ static se3d_status copy_snapshot(const se3d_system *from, se3d_system *to, se3di
 static se3d_status put_state(const se3di_session *from, se3di_session *to,
                              const se3d_snapshot *snapshot, const double *poses, double *now)
 {
-    move_rates(from, to);
-    const se3d_status status = se3d_snapshot_restore(snapshot, to->model->system);
+    se3d_status status = move_rates(from, to);
+    status = status < 0 ? status : se3d_snapshot_restore(snapshot, to->model->system);
     if (status >= 0) {
         (void)se3di_drawing_get_poses(to->model, now);
         keep_fixed(to->model, poses, now);
@@ -427,10 +430,11 @@ static se3d_status copy_state(const se3di_session *from, se3di_session *to)
 }
 
 /* Numbers that were set in `before` are set in `s`, if it has them. */
-static void take_values(const se3di_session *before, se3di_session *s)
+static se3d_status take_values(const se3di_session *before, se3di_session *s)
 {
+    se3d_status status = SE3D_OK;
     for (size_t k = 0; k < s->slider_count; ++k) {
-        for (size_t i = 0; before && i < before->slider_count; ++i) {
+        for (size_t i = 0; before && i < before->slider_count && status >= 0; ++i) {
             if (before->is_set[i] && strcmp(before->sliders[i].name, s->sliders[k].name) == 0) {
                 s->is_set[k] = true;
                 s->sliders[k].value = before->sliders[i].value;
@@ -438,12 +442,13 @@ static void take_values(const se3di_session *before, se3di_session *s)
                 s->held[k] = s->sliders[k].value;
                 s->held_is_set[k] = true;
                 if (!s->sliders[k].is_parameter) {
-                    (void)se3di_fmi_apply_input(
+                    status = se3di_fmi_apply_input(
                         s->model, &s->variables.list[s->slider_variables[k]], s->sliders[k].value);
                 }
             }
         }
     }
+    return status;
 }
 
 void se3di_session_renew(se3di_session *s)
@@ -490,8 +495,9 @@ static bool prepare(const se3di_session *before, se3di_session *s, char *message
     if (status == SE3D_ERR_NO_MEMORY || !list_sliders(s) || !list_columns(s)) {
         return say_memory(message);
     }
-    take_values(before, s);
-    return true;
+    status = take_values(before, s);
+    return status >= 0 ||
+           se3di_session_say(message, s, "a number that was set cannot be set again", status);
 }
 
 /* Bring a model that was read to where it begins. `before` NULL: all is as in the file. */
@@ -522,8 +528,9 @@ static bool start(const se3di_session_source *from, const se3di_session *before,
         return say_memory(message);
     }
     if (goes_on && !is_copied) {
-        move_state(before, s);
-        return settle(s, goes_not, message);
+        const se3d_status moved = move_state(before, s);
+        return moved < 0 ? se3di_session_say(message, s, goes_not, moved)
+                         : settle(s, goes_not, message);
     }
     return true;
 }
