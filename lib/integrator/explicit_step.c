@@ -172,8 +172,15 @@ static se3d_status settle_memory(se3di_explicit *m, double h, double *error)
     if (end.has_moved) {
         m->motion->follow(m->equations);
     }
-    m->next = end.has_changed ? m->sum : m->next;
-    return end.has_changed ? m->motion->derive(m->equations, t, m->equations->l, m->next) : SE3D_OK;
+    if (!end.has_changed) {
+        return SE3D_OK;
+    }
+    m->next = m->sum;
+    const se3d_status status = m->motion->derive(m->equations, t, m->equations->l, m->next);
+    if (status < 0) {
+        se3di_model_restore_memory(model, m->memory);
+    }
+    return status;
 }
 
 /* The state half way to the projected end, along a cubic, which the contacts look at. */

@@ -422,7 +422,11 @@ se3d_status se3di_memory_settle(se3di_equations *equations, const se3di_memory_s
     end->error = se3di_memory_review_stops(model, h, tolerance, scale, &end->fraction);
     equations->friction.has_end = 0;
     if (end->error <= 1.0) {
-        SE3DI_TRY(se3di_hold_review(equations, step, end, &since));
+        const se3d_status status = se3di_hold_review(equations, step, end, &since);
+        if (status < 0) {
+            se3di_model_restore_memory(model, memory);
+            return status;
+        }
     }
     if (equations->friction.count > 0) {
         se3di_frictions_take_loads(model, lambda);

@@ -4,6 +4,7 @@
  * where it had come without the failure. */
 #define _POSIX_C_SOURCE 200809L
 #include "check.h"
+#include "se3d/io.h"
 #include "se3d/se3d.h"
 #include "support/analyses.h"
 #include "support/call_paths.h"
@@ -33,37 +34,93 @@ typedef struct pose {
 
 enum { BODIES = 16 };
 
-/* @return as the run, which went on after a failure */
-static se3d_status attempt(const support_analysis *row, size_t refused, pose poses[BODIES])
-{
-    support_counting counting = {0};
-    const se3d_allocator allocator = support_counting_allocator(&counting);
-    support_plan plan;
+/* What is run: a mechanism of support/models.h, or a model file. */
+typedef struct scene {
+    const support_analysis *row;
+    const char *text;
+    int32_t method;
+    double step, t_end;
+} scene;
+
+typedef struct world {
+    support_counting counting;
+    se3d_allocator allocator;
     support_model model;
-    se3d_solver *solver = NULL;
+    se3d_model *file;
+    se3d_system *system;
+    se3d_solver *solver;
+} world;
+
+static void read_scene(world *w, const scene *s)
+{
+    se3d_model_error error = {0, 0, ""};
+    se3d_model_options options = se3d_model_options_default();
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_event event;
+    options.allocator = &w->allocator;
+    CHECK(se3d_model_read_text(s->text, strlen(s->text), "scene.yaml", &options, &w->file,
+                               &error) == SE3D_OK);
+    w->system = se3d_model_get_system(w->file);
+    CHECK(se3d_model_get_solver(w->file, 0, &def) == SE3D_OK);
+    def.method = s->method;
+    def.step = s->step;
+    CHECK(se3d_solver_create(w->system, &def, &w->solver) == SE3D_OK);
+    se3d_event_def watch = se3d_event_def_default();
+    watch.level = 0.01; /* the ball has been lower */
+    CHECK(se3d_model_create_event(w->file, w->solver, "ball.velocity.z", &watch, &event, &error) ==
+          SE3D_OK);
+}
+
+static void make_scene(world *w, const scene *s)
+{
+    memset(w, 0, sizeof *w);
+    w->allocator = support_counting_allocator(&w->counting);
+    if (s->row) {
+        support_plan plan;
+        support_plan_make(&plan, s->row->mechanism, s->row->count);
+        CHECK(support_model_create(&w->model, &plan, &w->allocator, 0) == SE3D_OK);
+        support_plan_destroy(&plan);
+        w->system = w->model.system;
+        CHECK(support_solver_create(w->system, s->row, SE3D_FORMULATION_ROMEGA, &w->solver) ==
+              SE3D_OK);
+    } else {
+        read_scene(w, s);
+    }
+}
+
+static void end_scene(world *w)
+{
+    se3d_solver_destroy(w->solver);
+    support_model_destroy(&w->model);
+    se3d_model_destroy(w->file);
+    CHECK(w->counting.live == 0 && w->counting.bytes == 0 && w->counting.wrong == 0);
+}
+
+/* @return as the run, which went on after a failure */
+static se3d_status attempt(const scene *s, size_t refused, pose poses[BODIES])
+{
+    world w;
     double time = 0.0;
-    support_plan_make(&plan, row->mechanism, row->count);
-    CHECK(support_model_create(&model, &plan, &allocator, 0) == SE3D_OK);
-    CHECK(support_solver_create(model.system, row, SE3D_FORMULATION_ROMEGA, &solver) == SE3D_OK);
+    make_scene(&w, s);
     memset(poses, 0, BODIES * sizeof *poses);
     calls.count = calls.reached = 0;
     calls.refused = refused;
     is_running = 1;
-    const se3d_status status = se3d_solver_run(solver, row->t_end);
+    const se3d_status status = se3d_solver_run(w.solver, s->t_end);
     is_running = 0;
     if (status < 0) {
         CHECK(refused > 0);
-        CHECK(se3d_system_get_time(model.system, &time) == SE3D_OK && time <= row->t_end);
-        CHECK(se3d_solver_run(solver, row->t_end) >= 0);
+        CHECK(se3d_system_get_time(w.system, &time) == SE3D_OK && time <= s->t_end);
+        CHECK(se3d_solver_run(w.solver, s->t_end) >= 0);
     }
-    CHECK(se3d_system_get_time(model.system, &time) == SE3D_OK);
-    for (int k = 0; k < model.body_count; ++k) {
-        CHECK(se3d_body_get_position(model.system, model.bodies[k], poses[k].r) == SE3D_OK);
+    const size_t count = se3d_system_count_bodies(w.system);
+    CHECK(count <= BODIES);
+    for (size_t k = 0; k < count; ++k) {
+        se3d_body body;
+        CHECK(se3d_system_get_body(w.system, k, &body) == SE3D_OK);
+        CHECK(se3d_body_get_position(w.system, body, poses[k].r) == SE3D_OK);
     }
-    se3d_solver_destroy(solver);
-    support_model_destroy(&model);
-    support_plan_destroy(&plan);
-    CHECK(counting.live == 0 && counting.bytes == 0 && counting.wrong == 0);
+    end_scene(&w);
     return status;
 }
 
@@ -78,30 +135,76 @@ static double distance(const pose *a, const pose *b)
     return apart;
 }
 
-/* @return how many calls failed */
-static size_t fail_each(const support_analysis *row)
+/* @return how many calls failed, of those on paths that are new */
+static size_t fail_each(const scene *s)
 {
     static size_t chosen[CALLS];
     static pose whole[BODIES], poses[BODIES];
     calls.looks = 1;
     calls.fresh_count = 0;
-    forget_paths();
-    CHECK(attempt(row, 0, whole) >= 0);
+    CHECK(attempt(s, 0, whole) >= 0);
     calls.looks = 0;
     const size_t count = calls.fresh_count;
     memcpy(chosen, calls.fresh, count * sizeof *chosen);
     for (size_t k = 0; k < count; ++k) {
         const int before = check_failures;
-        const se3d_status status = attempt(row, chosen[k], poses);
+        const se3d_status status = attempt(s, chosen[k], poses);
         CHECK(calls.reached == 1);
-        CHECK_NEAR(distance(poses, whole), 0.0, 1e-4); /* other steps */
+        /* other steps */
+        CHECK_NEAR(distance(poses, whole), 0.0, s->method == SE3D_METHOD_CONVEX ? 1e-3 : 1e-4);
         if (check_failures > before) {
-            fprintf(stderr, "%s, method %d, %s failed by %d: %d\n", row->mechanism,
-                    (int)row->method, failing, (int)failure, (int)status);
+            fprintf(stderr, "%s, method %d, %s failed by %d: %d\n",
+                    s->row ? s->row->mechanism : "scene", (int)s->method, failing, (int)failure,
+                    (int)status);
         }
     }
     return count;
 }
+
+#define BALL                                                                                       \
+    "se3d: 1\n"                                                                                    \
+    "materials: [{name: m, density: 1000, stiffness: 1e5, friction: 0.3}]\n"                       \
+    "contact: {}\n"                                                                                \
+    "analysis: {type: dynamics, duration: 1}\n"                                                    \
+    "bodies:\n"                                                                                    \
+    "  - {name: floor, fixed: true, position: [0, 9, 0], shapes: [{type: plane, material: m}]}\n"  \
+    "  - {name: ball, position: [0, 9, 0.1005], velocity: [1, 0, -0.1], shapes: [{type: sphere, "  \
+    "radius: 0.1, material: m}]}\n"
+
+/* The ball lands, the block comes to rest, the arm meets a stop. */
+#define MACHINE                                                                                    \
+    BALL                                                                                           \
+        "  - {name: arm, mass: 1, inertia: [0.1, 0.1, 0.1], position: [0.5, 0, 0], "               \
+        "angular_velocity: "                                                                       \
+        "[0, 1, 0], velocity: [0, 0, -0.5]}\n"                                                     \
+        "  - {name: block, mass: 1, inertia: [1, 1, 1], position: [0, 2, 0], velocity: [0.02, 0, " \
+        "0]}\n"                                                                                    \
+        "joints:\n"                                                                                \
+        "  - {name: pin, type: revolute, body_i: ground, body_j: arm, at: [0, 0, 0], axis: [0, "   \
+        "1, "                                                                                      \
+        "0]}\n"                                                                                    \
+        "  - {name: rail, type: prismatic, body_i: ground, body_j: block, at: [0, 2, 0], axis: "   \
+        "[1, "                                                                                     \
+        "0, 0]}\n"                                                                                 \
+        "forces:\n"                                                                                \
+        "  - {name: rub, type: friction, joint: rail, mu: 0.2}\n"                                  \
+        "  - {name: hold, type: friction, joint: pin, mu: 0.1, radius: 0.02}\n"                    \
+        "  - {name: spring, type: tsda, body_i: ground, body_j: arm, point_i: [0, 0, 1], "         \
+        "point_j: "                                                                                \
+        "[0.5, 0, 0], k: 50, l0: 1}\n"                                                             \
+        "  - {name: end, type: stop, joint: pin, coordinate: angle, upper: 0.01, k: 1e3}\n"        \
+        "  - {name: load, type: effort, joint: pin, value: sin(30*t)}\n"                           \
+        "states: [{name: lag, type: lag, input: pin.angle, time_constant: 0.1}]\n"
+
+static const scene scenes[] = {
+    {NULL, MACHINE, SE3D_METHOD_AUTO, 0.0, 0.02},
+    {NULL, MACHINE, SE3D_METHOD_RADAU, 0.0, 0.015},
+    {NULL, MACHINE, SE3D_METHOD_BDF, 0.0, 0.015},
+    {NULL, MACHINE, SE3D_METHOD_GENERALIZED_ALPHA, 1e-3, 0.015},
+    {NULL, MACHINE, SE3D_METHOD_VERLET, 1e-4, 0.012},
+    {NULL, MACHINE, SE3D_METHOD_RATTLE, 1e-4, 0.012},
+    {NULL, BALL, SE3D_METHOD_CONVEX, 1e-3, 0.01},
+};
 
 static void fail_all(se3d_status how)
 {
@@ -109,7 +212,14 @@ static void fail_all(se3d_status how)
     failure = how;
     calls.depth = 3;
     for (size_t k = 0; k < SUPPORT_ANALYSES; ++k) {
-        sum += fail_each(&support_analyses[k]);
+        const support_analysis *row = &support_analyses[k];
+        const scene s = {row, NULL, row->method, row->step, row->t_end};
+        forget_paths();
+        sum += fail_each(&s);
+    }
+    calls.depth = 2;
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k) {
+        sum += fail_each(&scenes[k]);
     }
     CHECK(sum > 1000);
 }
@@ -129,18 +239,12 @@ static void a_call_that_meets_no_number_is_made_up_for_or_leaves_the_last_good_s
     fail_all(SE3D_ERR_NOT_FINITE);
 }
 
-static void a_call_that_is_interrupted_leaves_the_last_good_state(void)
-{
-    fail_all(SE3D_ERR_INTERRUPTED);
-}
-
 int main(void)
 {
 #ifdef SE3D_LETS_FAIL
     RUN(a_call_without_memory_leaves_the_last_good_state);
     RUN(a_call_that_does_not_converge_is_made_up_for_or_leaves_the_last_good_state);
     RUN(a_call_that_meets_no_number_is_made_up_for_or_leaves_the_last_good_state);
-    RUN(a_call_that_is_interrupted_leaves_the_last_good_state);
     return check_finish();
 #else
     puts("python3 was missing for the build");
