@@ -444,6 +444,51 @@ static se3d_status use_model(const char *path, se3d_model_error *error)
     return status;
 }
 
+/* ---- runs that go on ---- */
+
+static void take_log(void *ctx, se3d_log_level level, se3d_log_kind about, const char *message)
+{
+    (void)ctx, (void)about, (void)message;
+    is_told |= level >= SE3D_LOG_WARNING;
+}
+
+/* The model runs to its second row, with an estimate of its error or a checkpoint at each row. */
+static se3d_status run_on(const char *path, int resume, int estimate, se3d_model_error *error)
+{
+    int rows = 0;
+    se3d_model *model = NULL;
+    se3d_run *report = NULL;
+    se3d_model_options options = se3d_model_options_default();
+    se3d_run_options how = se3d_run_options_default();
+    options.allocator = &allocator;
+    options.log = take_log;
+    how.directory = results();
+    how.checkpoint = estimate ? 0.0 : 1e-9;
+    how.estimate = estimate;
+    how.resume = resume;
+    how.progress = stop;
+    how.ctx = &rows;
+    is_read = 0;
+    se3d_status status = se3d_model_read_file(path, &options, &model, error);
+    is_read = status >= 0;
+    status = status < 0 ? status : se3d_model_run(model, &how, &report, error);
+    se3d_run_destroy(report);
+    se3d_model_destroy(model);
+    return status == SE3D_ERR_INTERRUPTED ? SE3D_OK : status;
+}
+
+static se3d_status use_going_on(const char *path, se3d_model_error *error)
+{
+    char name[900];
+    snprintf(name, sizeof name, "%s/run.checkpoint", results());
+    se3d_status status = run_on(path, 0, 1, error);
+    status = status < 0 ? status : run_on(path, 0, 0, error);
+    status = status < 0 ? status : run_on(path, 1, 0, error);
+    (void)remove(name);
+    snprintf(error->message + strlen(error->message), 2, status < 0 ? "" : " ");
+    return status;
+}
+
 static se3d_status use_import(const char *path, se3d_model_error *error)
 {
     se3d_model_import *made = NULL;
@@ -789,6 +834,20 @@ static void every_path_of_units_survives_a_refusal(void)
     CHECK(refuse_each_anew(use_exchanging, results()) > least(250));
 }
 
+static void every_path_of_runs_that_go_on_survives_a_refusal(void)
+{
+    char path[900];
+    static const char *const seeds[] = {"grains", "solids", "states"};
+    snprintf(path, sizeof path, "%s/life.yaml", results());
+    write_text("life.yaml",
+               LIFE LIFE_ACTS "analysis: {type: dynamics, duration: 1, step: 1e-3, method: rk4}\n");
+    CHECK(refuse_each_anew(use_going_on, path) > least(250));
+    for (size_t k = 0; k < sizeof seeds / sizeof *seeds; ++k) {
+        snprintf(path, sizeof path, "fuzz/seeds/model/%s.yaml", seeds[k]);
+        (void)refuse_each(use_going_on, path);
+    }
+}
+
 static void every_path_of_a_live_model_survives_a_refusal(void)
 {
     char path[900];
@@ -809,6 +868,7 @@ static void let_calls_fail(int depth)
     every_path_of_models_survives_a_refusal();
     every_path_of_units_survives_a_refusal();
     every_path_of_a_live_model_survives_a_refusal();
+    every_path_of_runs_that_go_on_survives_a_refusal();
 }
 
 static void every_failure_of_the_library_below_is_told(void)
@@ -835,6 +895,7 @@ static void every_failure_of_files_is_told(void)
     every_path_of_models_survives_a_refusal();
     every_path_of_units_survives_a_refusal();
     every_path_of_a_live_model_survives_a_refusal();
+    every_path_of_runs_that_go_on_survives_a_refusal();
 }
 
 int main(void)
@@ -845,6 +906,7 @@ int main(void)
     RUN(every_path_of_models_survives_a_refusal);
     RUN(every_path_of_units_survives_a_refusal);
     RUN(every_path_of_a_live_model_survives_a_refusal);
+    RUN(every_path_of_runs_that_go_on_survives_a_refusal);
 #ifdef SE3D_LETS_FAIL
     RUN(every_failure_of_the_library_below_is_told);
     RUN(no_failure_within_the_library_leaks_or_crashes);

@@ -492,14 +492,23 @@ static const char *check_frame(const se3di_runner *r, se3di_coder *p)
                : NULL;
 }
 
+/* What is behind the frame could not be read. */
+static se3d_status refuse_content(se3di_runner *r)
+{
+    return r->run->pool.is_short ? refuse(r, SE3D_ERR_NO_MEMORY, "out of memory")
+                                 : refuse(r, SE3D_ERR_STATE, "it is malformed");
+}
+
 /* Its state can be restored here. */
-static const char *check_state(const se3di_runner *r, const struct se3di_resume *c)
+static se3d_status check_state(se3di_runner *r, const struct se3di_resume *c)
 {
     se3d_snapshot *snapshot = NULL;
     const se3d_status status =
         se3d_snapshot_read(r->model->system, c->state.bytes, c->state.size, &snapshot);
     se3d_snapshot_destroy(snapshot);
-    return status < 0 ? se3d_system_get_error(r->model->system) : NULL;
+    return status >= 0 ? SE3D_OK
+                       : refuse(r, status == SE3D_ERR_NO_MEMORY ? status : SE3D_ERR_STATE,
+                                se3d_system_get_error(r->model->system));
 }
 
 se3d_status se3di_checkpoint_open(se3di_runner *r)
@@ -510,7 +519,7 @@ se3d_status se3di_checkpoint_open(se3di_runner *r)
     if (!join(r, path)) {
         return refuse(r, SE3D_ERR_IO, strerror(errno));
     }
-    const se3d_status status = read_file(r, path, &bytes, &size);
+    se3d_status status = read_file(r, path, &bytes, &size);
     if (status < 0 || !bytes) {
         return status;
     }
@@ -525,12 +534,13 @@ se3d_status se3di_checkpoint_open(se3di_runner *r)
     }
     c->coder = (se3di_coder){.in = (const unsigned char *)bytes, .size = size};
     const char *why = check_frame(r, &c->coder);
-    if (!why) {
-        pack_marks(&c->coder, r, c);
-        why = c->coder.failed ? "it is malformed, or there is no memory for it" : check_state(r, c);
+    if (why) {
+        return refuse(r, SE3D_ERR_STATE, why);
     }
-    r->resume = why ? NULL : c;
-    return why ? refuse(r, SE3D_ERR_STATE, why) : SE3D_OK;
+    pack_marks(&c->coder, r, c);
+    status = c->coder.failed ? refuse_content(r) : check_state(r, c);
+    r->resume = status < 0 ? NULL : c;
+    return status;
 }
 
 const se3di_csv_mark *se3di_checkpoint_get_mark(const se3di_runner *r, size_t k)
@@ -567,7 +577,7 @@ se3d_status se3di_checkpoint_take(se3di_runner *r)
         c->coder.failed = scene.failed;
     }
     if (c->coder.failed || c->coder.at != c->coder.size) {
-        return refuse(r, SE3D_ERR_STATE, "it is malformed, or there is no memory for it");
+        return refuse_content(r);
     }
     tell_again(r);
     return SE3D_OK;
