@@ -312,7 +312,8 @@ static void seek_tyres(se3di_explicit *m, double h)
 {
     const se3di_model *model = m->assembly->model;
     double *begin = m->memory, *end = begin + SE3DI_TYRE_NOTES * model->force_slots.count;
-    const double t = m->past->at.time;
+    const double t = m->past->at.time, before = m->step.resumed;
+    m->step.resumed = 0.0;
     if (m->step.tries > TYRE_TRIES || !se3di_tyres_are_there(model)) {
         return;
     }
@@ -323,7 +324,7 @@ static void seek_tyres(se3di_explicit *m, double h)
     const int is_known = status >= 0 && se3di_tyres_note(model, t + h, end) >= 0;
     const double part = is_known ? se3di_tyres_find_part(model, h, begin, end) : 0.0;
     m->step.fraction = part > 0.0 ? part : m->step.fraction;
-    m->step.resumed = part > 0.0 ? fmax(m->step.resumed, h) : 0.0;
+    m->step.resumed = part > 0.0 ? fmax(before, h) : 0.0;
 }
 
 static se3d_status try_step(se3di_adaptive *step, double h, double *error)
