@@ -21,7 +21,8 @@ _Static_assert(2 * SE3DI_TYRE_NOTES <= SE3DI_FORCE_STATES,
                "memory has room for notes of both ends");
 
 #define FORCED_MAX 3
-#define TYRE_TRIES 4     /* of a step that look for changes of tyres */
+#define TYRE_TRIES 4     /* of a step that look for changes of tyres, */
+#define CROSSING   4.0   /* and how many of the least steps lead across one */
 #define LEAST_STEP 3e-14 /* of the time */
 #define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step; */
@@ -307,15 +308,15 @@ static double pace(se3di_adaptive *step, double h)
     return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
 }
 
-/* A step that is too long may be so because tyres leave their roads or meet them within it. */
-static void seek_tyres(se3di_explicit *m, double h)
+/* A step that is too long may be so because tyres leave their roads or meet them within it: the
+ * part after which the next one ends, 0 if that is unknown. */
+static double seek_tyres(se3di_explicit *m, double h)
 {
     const se3di_model *model = m->assembly->model;
     double *begin = m->memory, *end = begin + SE3DI_TYRE_NOTES * model->force_slots.count;
-    const double t = m->past->at.time, before = m->step.resumed;
-    m->step.resumed = 0.0;
+    const double t = m->past->at.time, least = LEAST_STEP * fmax(1e-3, fabs(t));
     if (m->step.tries > TYRE_TRIES || !se3di_tyres_are_there(model)) {
-        return;
+        return 0.0;
     }
     m->motion->set_frames(m->equations, m->y1);
     const se3d_status status = se3di_tyres_note(model, t, begin);
@@ -323,18 +324,26 @@ static void seek_tyres(se3di_explicit *m, double h)
     m->motion->set_frames(m->equations, m->y);
     const int is_known = status >= 0 && se3di_tyres_note(model, t + h, end) >= 0;
     const double part = is_known ? se3di_tyres_find_part(model, h, begin, end) : 0.0;
-    m->step.fraction = part > 0.0 ? part : m->step.fraction;
-    m->step.resumed = part > 0.0 ? fmax(before, h) : 0.0;
+    const double shortest = CROSSING * least / h;
+    return part > 0.0 && shortest < 1.0 ? fmax(part, shortest) : 0.0;
 }
 
 static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 {
     se3di_explicit *m = get_explicit(step);
+    const double resumed = step->resumed;
+    step->resumed = 0.0;
     SE3DI_TRY(attempt(m, h, error));
-    if (*error > 1.0 && isfinite(*error)) {
-        seek_tyres(m, h);
+    if (*error <= 1.0) {
+        step->resumed = resumed;
+        return prepare(m, h, error);
     }
-    return *error <= 1.0 ? prepare(m, h, error) : SE3D_OK;
+    const double part = isfinite(*error) ? seek_tyres(m, h) : 0.0;
+    if (part > 0.0) {
+        step->fraction = part;
+        step->resumed = fmax(resumed, h);
+    }
+    return SE3D_OK;
 }
 
 /* The step h has met the tolerance: what follows for the next ones. */
