@@ -94,7 +94,7 @@ static inline void unary_values(const se3di_instruction *in, double *u, size_t p
 
 /* top = (what `next`, an expression in k, says of each point); `pops` operands less. */
 #define EACH(pops, next)                                                                           \
-    top -= (size_t)(pops)*points;                                                                  \
+    top -= (ptrdiff_t)(pops) * (ptrdiff_t)points;                                                  \
     for (size_t k = 0; k < points; ++k) {                                                          \
         top[k] = (next);                                                                           \
     }                                                                                              \
