@@ -27,8 +27,8 @@ typedef struct se3d_material_def {
     double cohesion;           /* >= 0 [J/m^3]: attraction per area of contact, 2 pi R* overlap */
     double adhesion;  /* >= 0 [J/m^2]: work of adhesion; pull-off force 3/2 pi R* adhesion */
     const char *name; /* copied; NULL or unique among materials */
-    /* What follows is the law's own where it is 0, and not there at all below 0. */
-    double damping_ratio;          /* [1] of critical damping, in place of restitution */
+    /* What follows is the law's own where it is 0, and not there at all below 0. @since 0.1 */
+    double damping_ratio;          /* [1] of critical damping, in place of a restitution >= 0.01 */
     double tangential_ratio_hertz; /* [1] <= 10, hertz_mindlin: kt/kn; 3 (1 - nu)/(2 - nu) */
     double tangential_damping;     /* [1] <= 10, over that along the normal */
     double rolling_ratio;          /* [1] <= 100, stiffness of rolling and torsion over kt; 1 */

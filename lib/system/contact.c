@@ -47,6 +47,17 @@ static se3d_status check_law(se3d_system *system, int32_t law, double stiffness,
     return SE3D_OK;
 }
 
+static se3d_status check_damping(se3d_system *system, int32_t law, const se3di_material *material)
+{
+    const double e = se3di_material_restitution((se3di_contact_law)law, material);
+    return e >= SE3DI_RESTITUTION_MIN
+               ? SE3D_OK
+               : SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
+                               " = %g of a material is a restitution of %g with this law, must be "
+                               "so small that it is %g or more",
+                               material->damping_ratio, e, SE3DI_RESTITUTION_MIN);
+}
+
 se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_settings *settings)
 {
     SE3DI_SET(system);
@@ -75,6 +86,7 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
     for (size_t k = 0; k < model->material_slots.count; ++k) {
         SE3DI_TRY(
             check_law(system, full.law, model->materials[k].stiffness, model->materials[k].young));
+        SE3DI_TRY(check_damping(system, full.law, &model->materials[k]));
     }
     const double before = se3di_audit_contacts(model);
     se3di_model_set_contact(model, &(se3di_contact_settings){.law = full.law,
@@ -138,17 +150,15 @@ static se3d_status check_choices(se3d_system *system, const se3d_material_def *d
                    {"rolling_ratio", def->rolling_ratio, 100.0},
                    {"rolling_damping", def->rolling_damping, 10.0}};
     for (size_t k = 0; k < sizeof choices / sizeof *choices; ++k) {
-        SE3DI_TRY(
-            se3di_check_range(system, choices[k].what, choices[k].value, -1e30, choices[k].most));
+        if (!(isfinite(choices[k].value) && choices[k].value <= choices[k].most)) {
+            return SE3DI_FAIL_OF(system, choices[k].what, SE3D_ERR_INVALID_ARGUMENT,
+                                 " = %g, must be finite and <= %g (0: as the law has it, below 0: "
+                                 "none)",
+                                 choices[k].value, choices[k].most);
+        }
     }
     const se3di_material data = read_material(def);
-    const double e =
-        se3di_material_restitution((se3di_contact_law)system->model.contact.law, &data);
-    return e >= SE3DI_RESTITUTION_MIN
-               ? SE3D_OK
-               : SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
-                               " = %g is a restitution of %g, must be %g or more",
-                               def->damping_ratio, e, SE3DI_RESTITUTION_MIN);
+    return check_damping(system, system->model.contact.law, &data);
 }
 
 static se3d_status check_material(se3d_system *system, const se3d_material_def *def)

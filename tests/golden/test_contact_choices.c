@@ -201,7 +201,8 @@ static void what_no_contact_could_be_is_refused(void)
     se3d_material made;
     def.damping_ratio = 60.0;
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(s.system), "damping_ratio = 60 is a restitution of ");
+    CHECK_CONTAINS(se3d_system_get_error(s.system),
+                   "damping_ratio = 60 of a material is a restitution of ");
     def.damping_ratio = 0.0;
     def.rolling_ratio = 101.0;
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
