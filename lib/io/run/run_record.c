@@ -49,7 +49,10 @@ static void record_start(se3di_runner *r, se3d_run_analysis *done)
 static void warn_of_step(const se3di_runner *r, const se3di_analysis_entry *entry, double step)
 {
     char text[200];
-    if (r->model->log && r->model->particles && step > 0.0 && step < 0.999 * entry->solver.step) {
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    se3d_system_get_contact(r->model->system, &contact);
+    if (r->model->log && !(contact.step > 0.0) && r->model->particles && step > 0.0 &&
+        step < 0.999 * entry->solver.step) {
         snprintf(text, sizeof text,
                  "steps of %.3g s in place of %.3g s, which contacts of particles do not allow; "
                  "only the `step` of `contact` sets longer ones",
