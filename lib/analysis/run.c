@@ -15,7 +15,6 @@
 #include "base/pending.h"
 #include "contact/bodies/crowd.h"
 #include "contact/bodies/pace.h"
-#include "integrator/explicit_point.h"
 #include "integrator/explicit_step.h"
 #include "integrator/kink_step.h"
 #include "integrator/motion.h"
@@ -382,7 +381,7 @@ static se3d_status switch_method(se3di_run *run)
     if (!must_switch(run)) {
         if (is_early) { /* what comes after the first tiny steps is still asked */
             run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
-            se3di_explicit_stays(run->model);
+            se3di_run_stay(run);
         }
         return SE3D_OK;
     }

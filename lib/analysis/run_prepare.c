@@ -187,6 +187,15 @@ static int is_left(const se3di_model *model)
                : is_history_of(model, SE3D_METHOD_DOP853) && se3di_explicit_leaves_crowd(model);
 }
 
+void se3di_run_stay(se3di_run *run)
+{
+    if (is_history_of(run->model, SE3D_METHOD_RADAU)) {
+        se3di_radau_stays(run->model);
+    } else {
+        se3di_explicit_stays(run->model);
+    }
+}
+
 /* Contacts have held steps short, and nothing else needs them so short. */
 static int is_slow(const se3di_run *run)
 {

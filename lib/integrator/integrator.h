@@ -81,7 +81,7 @@ typedef struct se3di_integrator {
     /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
     /* Whether stability, not accuracy, has held its last steps so short; NULL: it never does. With
-     * settings.leaves_stiff `run` then ends where that was seen. */
+     * settings.leaves_stiff or leaves_crowd `run` then ends where that was seen. */
     int (*is_held)(const se3di_integration *integration);
     const struct se3di_explicit_class *explicit_class; /* of explicit methods, */
     const struct se3di_rk_tableau *tableau;            /* and of those of Runge-Kutta */

@@ -693,6 +693,11 @@ int se3di_radau_leaves_crowd(const se3di_model *model)
     return ((const radau_header *)(const void *)model->history)->leaves > 0.0;
 }
 
+void se3di_radau_stays(se3di_model *model)
+{
+    ((radau_header *)(void *)model->history)->leaves = 0.0;
+}
+
 /* By contacts of which each is followed. */
 static int is_held(const se3di_integration *integration)
 {
