@@ -106,7 +106,8 @@ static inline __attribute__((always_inline)) int eval_values(const se3di_instruc
                                                              size_t count, const double *x,
                                                              const size_t points, double *values)
 {
-    double stack[(SE3DI_PROGRAM_STACK + 1) * SE3DI_PROGRAM_POINTS]; /* values begin at the second */
+    /* values begin at the second place */
+    double stack[(SE3DI_PROGRAM_STACK + 1) * SE3DI_EXPRESSION_POINTS];
     double *top = stack, poison = 0.0;
     for (const se3di_instruction *in = code, *end = code + count; in != end; ++in) {
         switch ((se3di_op)in->op) { /* unreached: no other operation is compiled */
@@ -154,15 +155,15 @@ static inline __attribute__((always_inline)) int eval_values(const se3di_instruc
 }
 
 void se3di_program_eval_points(const se3di_instruction *code, size_t count, const double *x,
-                               size_t variable_count, double values[SE3DI_PROGRAM_POINTS])
+                               size_t variable_count, double values[SE3DI_EXPRESSION_POINTS])
 {
-    if (eval_values(code, count, x, SE3DI_PROGRAM_POINTS, values)) {
+    if (eval_values(code, count, x, SE3DI_EXPRESSION_POINTS, values)) {
         return;
     }
-    for (size_t point = 0; point < SE3DI_PROGRAM_POINTS; ++point) {
+    for (size_t point = 0; point < SE3DI_EXPRESSION_POINTS; ++point) {
         double at[SE3D_EXPRESSION_VARIABLE_MAX];
         for (size_t k = 0; k < variable_count; ++k) {
-            at[k] = x[k * SE3DI_PROGRAM_POINTS + point];
+            at[k] = x[k * SE3DI_EXPRESSION_POINTS + point];
         }
         (void)eval_values(code, count, at, 1, values + point);
     }

@@ -200,8 +200,6 @@ se3d_status se3d_expression_eval(const se3d_expression *expression, const double
     return isfinite(*value) ? SE3D_OK : SE3D_ERR_NOT_FINITE;
 }
 
-_Static_assert(SE3DI_EXPRESSION_POINTS == SE3DI_PROGRAM_POINTS, "they are the same");
-
 se3d_status se3di_expression_eval_points(const se3d_expression *expression, const double *x,
                                          double values[SE3DI_EXPRESSION_POINTS])
 {

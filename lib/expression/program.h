@@ -3,7 +3,7 @@
 #ifndef SE3DI_EXPRESSION_PROGRAM_H
 #define SE3DI_EXPRESSION_PROGRAM_H
 
-#include "base/alloc.h"
+#include "expression/expression.h"
 
 typedef enum se3di_op {
     SE3DI_OP_CONSTANT = 0,     /* push value */
@@ -39,11 +39,10 @@ typedef struct se3di_instruction {
 void se3di_program_eval(const se3di_instruction *code, size_t count, const double *x,
                         size_t variable_count, double *result);
 
-#define SE3DI_PROGRAM_POINTS 8
-
-/* Values at points side by side: x [variables][SE3DI_PROGRAM_POINTS]. The same bits as of each. */
+/* Values at points side by side: x [variables][SE3DI_EXPRESSION_POINTS], the same bits as of
+ * each. */
 void se3di_program_eval_points(const se3di_instruction *code, size_t count, const double *x,
-                               size_t variable_count, double values[SE3DI_PROGRAM_POINTS]);
+                               size_t variable_count, double values[SE3DI_EXPRESSION_POINTS]);
 
 /* Evaluate f, f' and f'' with respect to variable 0. */
 void se3di_program_eval_time(const se3di_instruction *code, size_t count, const double *x,
