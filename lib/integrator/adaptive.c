@@ -21,6 +21,11 @@ double se3di_adaptive_pace(se3di_adaptive *step, double h)
     return se3di_contacts_pace(model, SE3DI_PACE_ADAPTIVE, se3di_state_limit_turn(model, 0.0, h));
 }
 
+double se3di_adaptive_least(const se3di_adaptive *step, double t)
+{
+    return step->methods->least * fmax(1e-3, fabs(t));
+}
+
 double se3di_adaptive_limit(const se3di_integration *integration, double h)
 {
     const double limit = integration->settings.step;
@@ -62,7 +67,7 @@ static se3d_status try_steps(se3di_adaptive *step, double next)
     const se3di_adaptive_class *methods = step->methods;
     se3di_equations *equations = step->integration->equations;
     const double begin = step->at->time;
-    const double least = methods->least * fmax(1e-3, fabs(begin));
+    const double least = se3di_adaptive_least(step, begin);
     step->resumed = 0.0;
     for (step->tries = 1;; ++step->tries) {
         const double h = se3di_step_length(begin, step->t, next);

@@ -66,6 +66,9 @@ int se3di_adaptive_ends(const se3di_integration *integration, const se3di_adapti
  * angle's counter can follow. */
 double se3di_adaptive_pace(se3di_adaptive *step, double h);
 
+/* No step from t is shorter. */
+double se3di_adaptive_least(const se3di_adaptive *step, double t);
+
 /* h, or settings.step if that is less. */
 double se3di_adaptive_limit(const se3di_integration *integration, double h);
 

@@ -314,7 +314,7 @@ static double seek_tyres(se3di_explicit *m, double h)
 {
     const se3di_model *model = m->assembly->model;
     double *begin = m->memory, *end = begin + SE3DI_TYRE_NOTES * model->force_slots.count;
-    const double t = m->past->at.time, least = LEAST_STEP * fmax(1e-3, fabs(t));
+    const double t = m->past->at.time;
     if (m->step.tries > TYRE_TRIES || !se3di_tyres_are_there(model)) {
         return 0.0;
     }
@@ -324,7 +324,7 @@ static double seek_tyres(se3di_explicit *m, double h)
     m->motion->set_frames(m->equations, m->y);
     const int is_known = status >= 0 && se3di_tyres_note(model, t + h, end) >= 0;
     const double part = is_known ? se3di_tyres_find_part(model, h, begin, end) : 0.0;
-    const double shortest = CROSSING * least / h;
+    const double shortest = CROSSING * se3di_adaptive_least(&m->step, t) / h;
     return part > 0.0 && shortest < 1.0 ? fmax(part, shortest) : 0.0;
 }
 
@@ -350,7 +350,7 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 static se3d_status take(se3di_adaptive *step, double h, double error)
 {
     se3di_explicit *m = get_explicit(step);
-    const double least = LEAST_STEP * fmax(1e-3, fabs(step->t));
+    const double least = se3di_adaptive_least(step, step->t);
     accept(m, step->t);
     if (step->integration->settings.leaves_stiff || m->methods->is_watched) {
         m->methods->watch_stability(m, h);
