@@ -583,12 +583,18 @@ static se3d_status find_disc_plane(const se3di_model *model, const se3di_road *r
     return SE3D_OK;
 }
 
+/* It rises and falls as a whole: discs stand on it as the wheel does at a point. */
+static int is_level(const se3di_model *model, const se3di_road *road)
+{
+    const se3d_expression *formula = get_formula(model, road);
+    return formula && !se3di_expression_reads(formula, IN_PLANE);
+}
+
 se3d_status se3di_road_find_plane(const se3di_model *model, const se3di_road *road,
                                   const se3di_road_wheel *wheel, se3di_road_plane *plane)
 {
-    const se3d_expression *formula = get_formula(model, road);
-    const int is_level = formula && !se3di_expression_reads(formula, IN_PLANE);
     memset(plane, 0, sizeof *plane);
-    return wheel->length > 0.0 && !is_level ? find_disc_plane(model, road, wheel, plane)
-                                            : find_point_plane(model, road, wheel, plane);
+    return wheel->length > 0.0 && !is_level(model, road)
+               ? find_disc_plane(model, road, wheel, plane)
+               : find_point_plane(model, road, wheel, plane);
 }
