@@ -196,6 +196,20 @@ static void distances_of_cores_are_exact(void)
     }
 }
 
+/* Two points at one place would be as stiff and damp as one twice that, by rounding. */
+static void check_single(const se3di_manifold *m)
+{
+    for (uint32_t a = 0; a < m->count; ++a) {
+        for (uint32_t b = 0; b < a; ++b) {
+            double d[3], turn[3];
+            se3di_sub(m->points[a].point, m->points[b].point, d);
+            se3di_sub(m->points[a].normal, m->points[b].normal, turn);
+            const double deeper = fabs(m->points[a].overlap - m->points[b].overlap);
+            CHECK(se3di_norm(d) > 1e-12 || se3di_norm(turn) > 1e-9 || deeper > 1e-3);
+        }
+    }
+}
+
 /* Boxes, cylinders and hulls exactly on each other: shared axes, shared planes, shared centres. */
 static void degenerate_poses_give_finite_contacts(void)
 {
@@ -217,6 +231,7 @@ static void degenerate_poses_give_finite_contacts(void)
                 }
                 se3di_narrow_find(&one, &at_one, &two, &at_two, &m);
                 CHECK(is_good(&m));
+                check_single(&m);
                 found += m.count > 0;
             }
         }
@@ -328,11 +343,38 @@ static void cylinders_stand_on_four_and_lie_on_two_points(void)
     CHECK_NEAR(m.points[0].point[0] + m.points[1].point[0], 0.0, 1e-12);
 }
 
+/* Of two that are pushed out of each other until they overlap by little. */
+static void points_are_at_different_places(void)
+{
+    uint64_t seed = 77;
+    const int count = poses_count(60);
+    for (int a = 0; a < SOLIDS - 1; ++a) {
+        for (int b = a; b < SOLIDS; ++b) {
+            const se3di_shape one = shape_of(kinds[a]), two = shape_of(kinds[b]);
+            for (int trial = 0; trial < count; ++trial) {
+                se3di_shape_pose at_one, at_two;
+                se3di_manifold m;
+                random_pose(&seed, 0.2, &at_one);
+                random_pose(&seed, 0.75, &at_two);
+                for (int step = 0; step < 3; ++step) {
+                    se3di_narrow_find(&one, &at_one, &two, &at_two, &m);
+                    check_single(&m);
+                    if (m.count > 0) {
+                        const double by = m.points[0].overlap - 0.01 * one.bound;
+                        se3di_add_scaled(by, m.points[0].normal, at_two.x);
+                    }
+                }
+            }
+        }
+    }
+}
+
 int main(void)
 {
     RUN(overlaps_equal_brute_force_for_all_pairs);
     RUN(distances_of_cores_are_exact);
     RUN(degenerate_poses_give_finite_contacts);
+    RUN(points_are_at_different_places);
     RUN(overlaps_are_continuous);
     RUN(boxes_on_each_other_touch_at_four_corners);
     RUN(what_begins_to_touch_flat_has_all_corners);

@@ -11,7 +11,8 @@
 #define CUT_CORNERS    (2 * SE3DI_FACE_CORNERS)
 #define CROSSINGS      64u /* numbers of corners are below */
 #define CROSSING_COUNT 960u
-#define SLACK          1e-4 /* of the face: corners beyond a side by less stay, at the side */
+#define SLACK          1e-4 /* of the face: corners beyond a side by less stay, at the side; */
+#define SAME           1e-9 /* those within it by less are at the side, too */
 
 typedef struct cut {
     int count;
@@ -37,9 +38,10 @@ static void cut_add(cut *to, const double x[3], uint32_t id)
 /* What of `from` is on the inner side (n . x <= level) of one side of the face. A corner that is
  * beyond it by less than the slack is moved to it: if edges lie on each other but for little, as
  * those of equal boxes in a wall, the least turn would cut off another corner, and every corner has
- * the whole stiffness of the materials. */
-static void cut_side(const cut *from, const double n[3], double level, double slack, uint32_t side,
-                     cut *to)
+ * the whole stiffness of the materials. For that a corner at the side but for rounding is no inner
+ * one either: the crossing beside it would be a second point at the same place. */
+static void cut_side(const cut *from, const double n[3], double level, const double slack[2],
+                     uint32_t side, cut *to)
 {
     to->count = 0;
     for (int k = 0; k < from->count; ++k) {
@@ -49,12 +51,13 @@ static void cut_side(const cut *from, const double n[3], double level, double sl
         double high_a = se3di_dot(n, a) - level;
         double high_b = se3di_dot(n, b) - level;
         double x[3];
-        if (high_a <= slack) {
+        if (high_a <= slack[0]) {
             se3di_copy(a, x);
             se3di_add_scaled(-se3di_raised(0.0, high_a), n, x);
             cut_add(to, x, from->id[k]);
         }
-        int crosses = high_a > slack ? high_b <= 0.0 : high_a <= 0.0 && high_b > slack;
+        const int crosses =
+            high_a > slack[0] ? high_b < -slack[1] : high_a < -slack[1] && high_b > slack[0];
         if (crosses && (from->count > 2 || k == 0)) {
             double t = high_a / (high_a - high_b);
             se3di_sub(b, a, x);
@@ -97,8 +100,9 @@ void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,
 {
     cut a = {.count = 0}, b;
     cut *from = &a, *to = &b;
-    const double size = face_size(reference), slack = SLACK * size;
+    const double size = face_size(reference);
     const double rounding = se3di_narrow_rounding(reference->corner[0], size);
+    const double slack[2] = {SLACK * size, SAME * size + rounding};
     const double lean = se3di_dot(reference->normal, along);
     for (int k = 0; k < incident->count; ++k) {
         cut_add(from, incident->corner[k], (uint32_t)k);
