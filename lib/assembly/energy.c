@@ -88,6 +88,9 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
         }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (se3di_force_is_apart(model, &model->forces[k])) {
+            continue;
+        }
         SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
         power[0] += effect.power[0];
         power[1] += effect.power[1];

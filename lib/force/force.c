@@ -103,7 +103,7 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
         sums->effort[along] += sums->has_efforts ? 0.0 : force->value[0];
         return SE3D_OK;
     }
-    if (is_told_by_tyre(model, force)) {
+    if (is_told_by_tyre(model, force) || se3di_force_is_apart(model, force)) {
         return SE3D_OK;
     }
     se3di_effect effect;

@@ -14,7 +14,6 @@
 #include "assembly/loads.h"
 #include "assembly/user.h"
 #include "contact/bodies/pace.h"
-#include "contact/bodies/pace_stop.h"
 #include "force/force.h"
 #include "integrator/kink_step.h"
 #include "integrator/state.h"
@@ -263,6 +262,34 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* The body at a place. */
+static uint32_t body_at(const se3di_convex *c, const se3di_assembly *assembly, int32_t place)
+{
+    uint32_t k = 0;
+    while (c->place[k] != place) {
+        ++k;
+    }
+    return assembly->free_body[k];
+}
+
+/* What the impulses of stops pressed with in the step, on the average. */
+static void push_by_stops(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
+        const se3di_convex_contact *stop = &c->contacts[k];
+        for (int e = 0; e < 2; ++e) {
+            const double share = (e ? 1.0 : -1.0) / c->h;
+            double moment[3];
+            if (stop->free[e] >= 0 && se3di_dot(stop->impulse, stop->impulse) > 0.0) {
+                double *push = c->push + 6 * (size_t)body_at(c, assembly, stop->free[e]);
+                se3di_mul_transposed(stop->lever[e], stop->impulse, moment);
+                se3di_add_scaled(share * stop->reach, stop->impulse, push);
+                se3di_add_scaled(share, moment, push + 3);
+            }
+        }
+    }
+}
+
 /* What the impulses pressed with in the step, where they did, less what the contacts at its end do:
  * a point that has moved on would turn a shaft that nothing turned. */
 static void find_push(const se3di_convex *c, const se3di_assembly *assembly, double t1)
@@ -276,7 +303,7 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
     for (size_t k = 0; k < count; ++k) {
         c->push[k] = 0.0 - c->push[k];
     }
-    for (size_t k = 0; k < c->contact_count; ++k) {
+    for (size_t k = 0; k < c->shape_count; ++k) {
         const se3di_convex_contact *contact = &c->contacts[k];
         for (int e = 0; e < 2; ++e) {
             if (contact->free[e] >= 0) {
@@ -295,12 +322,20 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
     const se3di_model *model = assembly->model;
     if (assembly->row_count > 0) {
         find_push(c, assembly, t1);
+        push_by_stops(c, assembly);
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
         assembly->push = NULL;
         return status;
     }
-    SE3DI_TRY(se3di_assembly_eval_wrenches(assembly, t1, equations->error));
+    if (c->shape_count < c->contact_count) {
+        memset(c->push, 0, 6 * (size_t)assembly->dense_count * sizeof *c->push);
+        push_by_stops(c, assembly);
+        assembly->push = c->push;
+    }
+    const se3d_status status = se3di_assembly_eval_wrenches(assembly, t1, equations->error);
+    assembly->push = NULL;
+    SE3DI_TRY(status);
     ++equations->counters.evaluations;
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t at = assembly->free_body[k];
@@ -346,7 +381,7 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     model->contacts.frozen = NULL;
     SE3DI_TRY(accelerated);
     SE3DI_TRY(se3di_user_report(model, equations->error));
-    model->work[0] += taken;
+    model->work[0] += taken + se3di_convex_stopped(c, model);
     model->work[1] += se3di_convex_fed(c);
     SE3DI_TRY(se3di_work_accept(model, c->h));
     model->history[0] = c->h;
@@ -365,7 +400,8 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
 {
     const se3di_assembly *assembly = &equations->assembly;
     const double t0 = assembly->model->time;
-    c->drifts = assembly->model->contacts.count == 0;
+    c->drifts =
+        assembly->model->contacts.count == 0 && !se3di_convex_nears_stops(c, assembly->model);
     begin(c, assembly);
     recall_chords(c, assembly);
     if (c->drifts) {
@@ -375,6 +411,9 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(aim(c, equations, t));
     SE3DI_TRY(aim_rows(c, equations, t));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
+    if (!c->drifts) {
+        SE3DI_TRY(se3di_convex_collect_stops(c, assembly, equations->error));
+    }
     se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
     move(c, assembly);
@@ -395,7 +434,9 @@ static se3d_status advance(se3di_integration *integration, double t1)
         return SE3D_OK;
     }
     se3d_status status = se3di_equations_keep(equations);
+    equations->assembly.model->stops_apart = 1;
     status = status < 0 ? status : try_step(c, equations, t1);
+    equations->assembly.model->stops_apart = 0;
     if (status < 0) {
         se3di_equations_come_back(equations);
         return status;
@@ -425,8 +466,8 @@ static se3d_status check_step(se3di_integration *integration, double h)
     const se3di_model *model = equations->assembly.model;
     SE3DI_TRY(se3di_turns_check(equations, h, TURN_MAX));
     return is_fast(model, h)
-               ? se3di_contacts_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error)
-               : se3di_stops_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error);
+               ? se3di_shapes_check_step(model, SE3DI_PACE_IMPLICIT, h, equations->error)
+               : SE3D_OK;
 }
 
 static se3d_status take_step(se3di_integration *integration, double t1)
@@ -453,7 +494,6 @@ static se3d_status take_in_parts(se3di_integration *integration, double t1, int 
         return status;
     }
     SE3DI_TRY(se3di_turns_check(integration->equations, h, TURN_MAX)); /* these are refused */
-    SE3DI_TRY(se3di_stops_check_step(model, SE3DI_PACE_IMPLICIT, h, integration->equations->error));
     const se3d_status first = take_in_parts(integration, middle, halvings - 1);
     return first == SE3D_OK ? take_in_parts(integration, t1, halvings - 1) : first;
 }
@@ -489,7 +529,7 @@ static se3d_status renew(se3di_integration *integration)
     se3di_model *model = integration->equations->assembly.model;
     double into, fed;
     se3di_contacts_power(model, model->time, &into, &fed);
-    model->power[0] -= into;
+    model->power[0] -= into + se3di_convex_stop_power(model);
     model->power[1] -= fed;
     rouse(integration);
     return SE3D_OK;

@@ -32,6 +32,7 @@ typedef struct se3di_convex_contact {
     int32_t coupling;   /* of the two, -1: one is fixed */
     int32_t way;        /* SE3DI_CONVEX_ */
     double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
+    double reach;       /* 1; of a stop of an angle 0: the body's own velocity does not count */
     double v[3], change[3];           /* velocity of the point: now, of the search */
     double normal[3], xi[3];          /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
@@ -52,7 +53,7 @@ typedef struct se3di_convex_contact {
     double chord[3];  /* and what the chord before had there more, across the constraints */
     double arm[2][3]; /* from the bodies to the point, ground frame */
     double held;      /* energy of its springs at the start of the step */
-    const se3di_body_contact *record; /* of the state that the step begins with */
+    const se3di_body_contact *record; /* of the state that the step begins with; NULL: a stop */
 } se3di_convex_contact;
 
 /* Bodies that contacts, or constraints, connect: a problem of its own. */
@@ -66,7 +67,8 @@ typedef struct se3di_convex_island {
 typedef struct se3di_convex {
     se3di_convex_contact *contacts;
     size_t contact_count, contact_capacity;
-    int32_t *pairs; /* couplings: free bodies i < j, increasing */
+    size_t shape_count; /* of these: the first ones are of shapes, the others stops */
+    int32_t *pairs;     /* couplings: free bodies i < j, increasing */
     size_t pair_count, pair_capacity;
     int32_t *kkt_pairs; /* those that the solver was made for */
     size_t kkt_pair_count, kkt_pair_capacity;
@@ -140,7 +142,7 @@ static inline void se3di_convex_velocity(const se3di_convex_contact *contact, co
             const double *body = v + 6 * (size_t)contact->free[k];
             double turning[3];
             se3di_mul(contact->lever[k], body + 3, turning);
-            se3di_add(turning, body, turning);
+            se3di_add_scaled(contact->reach, body, turning);
             se3di_add_scaled(k ? 1.0 : -1.0, turning, sum);
         }
     }
@@ -162,6 +164,8 @@ double se3di_convex_normal(const se3di_convex_contact *contact, double h, double
 /* The impulse along contact->change, and minus its derivative that way. */
 double se3di_convex_along(const se3di_convex_contact *contact, double h, const double v[3],
                           double *bend);
+/* Whether a contact of this stiffness is over in too few steps to be followed. */
+int se3di_convex_is_short(double k, double inverse_mass, double h);
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
 /* What the contacts that were found at the end of the step remember of it. */
@@ -172,8 +176,19 @@ static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3d
     return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
 }
 
-/* convex_energy.c: what is taken from the bodies in a step [J]: by the impulses on the surfaces,
- * and by the step itself; the work of what moves the surfaces on their bodies. */
+/* convex_stops.c: whether a stop may act in a step from the state under way; */
+int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
+/* stops become contacts behind those of shapes. @return OK, NO_MEMORY */
+se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error);
+/* the power that their law dissipates at the state; */
+double se3di_convex_stop_power(const se3di_model *model);
+/* what they took from the bodies in the step and do not hold at its end [J]. */
+double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model);
+
+/* convex_energy.c: what an impulse takes from the bodies in a step [J]; what all on shapes and the
+ * step itself do; the work of what moves the surfaces on their bodies. */
+double se3di_convex_taken_by(const se3di_convex_contact *contact);
 double se3di_convex_work(const se3di_convex *c, const se3di_assembly *assembly);
 double se3di_convex_fed(const se3di_convex *c);
 /* The energy that the springs of the contacts hold at the start of the step; */

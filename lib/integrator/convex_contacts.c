@@ -92,7 +92,7 @@ double se3di_convex_along(const se3di_convex_contact *c, double h, const double 
 }
 
 /* The longest time in which a contact may be over, from its stiffness k and the mass it moves. */
-static int is_short(double k, double inverse_mass, double h)
+int se3di_convex_is_short(double k, double inverse_mass, double h)
 {
     return k * inverse_mass * (FEW_STEPS * h) * (FEW_STEPS * h) > PI * PI;
 }
@@ -127,7 +127,7 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
         sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
     const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
     c->way = SE3DI_CONVEX_SPRING;
-    if (!is_short(k, record->inverse_mass, h)) {
+    if (!se3di_convex_is_short(k, record->inverse_mass, h)) {
         c->damping = fmax(0.0, damping - 0.5 * h * now);
         c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));
         return;
@@ -235,7 +235,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
 {
     const se3di_model *model = assembly->model;
     se3di_convex_contact *c = &convex->contacts[convex->contact_count];
-    *c = (se3di_convex_contact){.record = record, .coupling = -1};
+    *c = (se3di_convex_contact){.record = record, .coupling = -1, .reach = 1.0};
     set_geometry(c, assembly);
     if (c->free[0] < 0 && c->free[1] < 0) {
         return;
@@ -310,6 +310,7 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
             collect_one(convex, assembly, record);
         }
     }
+    convex->shape_count = convex->contact_count;
     return SE3D_OK;
 }
 
@@ -472,7 +473,7 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
         memset(r->roll, 0, sizeof r->roll);
         set_anchors(model, r, none);
     }
-    for (size_t k = 0; k < convex->contact_count; ++k) {
+    for (size_t k = 0; k < convex->shape_count; ++k) {
         const se3di_convex_contact *c = &convex->contacts[k];
         while (next < end && se3di_convex_is_before(next, c->record)) {
             ++next;

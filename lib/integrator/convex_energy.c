@@ -19,7 +19,7 @@
  * and half a step on they have what they have at the start on the average. Of bodies that
  * constraints hold these are both chords: their parts across the constraints cancel, and the
  * reactions to the impulse do no work. */
-static double taken_by(const se3di_convex_contact *c)
+double se3di_convex_taken_by(const se3di_convex_contact *c)
 {
     return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->chord) +
                    se3di_dot(c->impulse, c->v) - se3di_dot(c->impulse, c->shift)) +
@@ -31,7 +31,7 @@ static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
 {
     const int lifted = (c->free[1] >= 0) - (c->free[0] >= 0);
     const int lifts = c->way == SE3DI_CONVEX_IMPACT && lifted != 0;
-    return taken_by(c) +
+    return se3di_convex_taken_by(c) +
            (lifts ? 0.5 * lifted * convex->h * se3di_dot(c->impulse, convex->gravity) : 0.0);
 }
 
@@ -61,8 +61,8 @@ static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, 
 double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assembly)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < convex->contact_count; ++k) {
-        sum += taken_by(&convex->contacts[k]);
+    for (size_t k = 0; k < convex->shape_count; ++k) {
+        sum += se3di_convex_taken_by(&convex->contacts[k]);
     }
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         sum += convex->asleep[k] ? 0.0 : taken_from(convex, assembly, k);
@@ -73,7 +73,7 @@ double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assem
 double se3di_convex_fed(const se3di_convex *convex)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < convex->contact_count; ++k) {
+    for (size_t k = 0; k < convex->shape_count; ++k) {
         const se3di_convex_contact *c = &convex->contacts[k];
         sum -= se3di_dot(c->impulse, c->drift) - se3di_dot(c->impulse, c->ahead);
     }
@@ -99,7 +99,7 @@ static double law_energy(const se3di_model *model, const se3di_body_contact *r)
 
 void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)
 {
-    for (size_t k = 0; k < convex->contact_count; ++k) {
+    for (size_t k = 0; k < convex->shape_count; ++k) {
         const se3di_body_contact *r = convex->contacts[k].record;
         convex->contacts[k].held =
             r->kind == SE3DI_CONTACT_LAWFUL ? law_energy(model, r) : r->energy;
@@ -111,11 +111,11 @@ void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)
 static double gather(const se3di_convex *convex, const se3di_body_contact *r, size_t *first)
 {
     double sum = 0.0;
-    while (*first < convex->contact_count &&
+    while (*first < convex->shape_count &&
            se3di_convex_is_before(convex->contacts[*first].record, r)) {
         ++*first;
     }
-    for (; *first < convex->contact_count &&
+    for (; *first < convex->shape_count &&
            !se3di_convex_is_before(r, convex->contacts[*first].record);
          ++*first) {
         const se3di_convex_contact *c = &convex->contacts[*first];
@@ -181,7 +181,7 @@ void se3di_convex_store(const se3di_convex *convex, const se3di_assembly *assemb
 {
     se3di_model *model = assembly->model;
     double sum = store_pairs(convex, model), most = taken;
-    for (size_t k = 0; k < convex->contact_count; ++k) {
+    for (size_t k = 0; k < convex->shape_count; ++k) {
         most += convex->contacts[k].held;
     }
     most = fmax(0.0, most);

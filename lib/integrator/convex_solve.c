@@ -186,10 +186,12 @@ static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
     return SE3D_OK;
 }
 
-/* block [6 x 6] += sign (I L_a)^T G (I L_b) */
-static void add_block(double *block, double sign, const double *La, const double G[9],
-                      const double *Lb)
+/* block [6 x 6] += sign (r I L_a)^T G (r I L_b), r: reach, of which r^2 = r */
+static void add_block(double *block, double sign, const se3di_convex_contact *contact,
+                      const int of[2], const double G[9])
 {
+    const double *La = contact->lever[of[0]], *Lb = contact->lever[of[1]];
+    const double across = sign * contact->reach;
     double GL[9], LG[9];
     se3di_mat_mul(G, Lb, GL);
     for (int r = 0; r < 3; ++r) {
@@ -200,9 +202,9 @@ static void add_block(double *block, double sign, const double *La, const double
     for (int r = 0; r < 3; ++r) {
         for (int k = 0; k < 3; ++k) {
             const double turned = La[r] * GL[k] + La[3 + r] * GL[3 + k] + La[6 + r] * GL[6 + k];
-            block[6 * r + k] += sign * G[3 * r + k];
-            block[6 * r + 3 + k] += sign * GL[3 * r + k];
-            block[6 * (3 + r) + k] += sign * LG[3 * r + k];
+            block[6 * r + k] += across * G[3 * r + k];
+            block[6 * r + 3 + k] += across * GL[3 * r + k];
+            block[6 * (3 + r) + k] += across * LG[3 * r + k];
             block[6 * (3 + r) + 3 + k] += sign * turned;
         }
     }
@@ -212,14 +214,13 @@ static void add_contact(se3di_convex *c, const se3di_convex_contact *contact, co
 {
     for (int k = 0; k < 2; ++k) {
         if (contact->free[k] >= 0) {
-            add_block(c->body + 36 * (size_t)contact->free[k], 1.0, contact->lever[k], G,
-                      contact->lever[k]);
+            const int same[2] = {k, k};
+            add_block(c->body + 36 * (size_t)contact->free[k], 1.0, contact, same, G);
         }
     }
     if (contact->coupling >= 0) {
-        const int first = contact->free[0] > contact->free[1];
-        add_block(c->coupling + 36 * (size_t)contact->coupling, -1.0, contact->lever[first], G,
-                  contact->lever[!first]);
+        const int first = contact->free[0] > contact->free[1], two[2] = {first, !first};
+        add_block(c->coupling + 36 * (size_t)contact->coupling, -1.0, contact, two, G);
     }
 }
 
@@ -231,7 +232,7 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
             double *g = gradient + 6 * (size_t)contact->free[k], turning[3];
             const double sign = k ? -1.0 : 1.0;
             se3di_mul_transposed(contact->lever[k], contact->impulse, turning);
-            se3di_add_scaled(sign, contact->impulse, g);
+            se3di_add_scaled(sign * contact->reach, contact->impulse, g);
             se3di_add_scaled(sign, turning, g + 3);
         }
     }

@@ -81,7 +81,7 @@ static void respond(const se3di_convex *c, se3di_convex_contact *contact)
             }
             se3di_mat_mul(contact->lever[k], turn, turning);
             for (int e = 0; e < 9; ++e) {
-                W[e] += turning[e] + (e % 4 == 0 ? mobility[0] : 0.0);
+                W[e] += turning[e] + (e % 4 == 0 ? contact->reach * mobility[0] : 0.0);
             }
         }
     }
@@ -98,7 +98,7 @@ static void apply(se3di_convex *c, const se3di_convex_contact *contact, const do
             double *v = c->v + 6 * (size_t)contact->free[k], moment[3], turned[3];
             se3di_mul_transposed(contact->lever[k], p, moment);
             se3di_mul(mobility + 1, moment, turned);
-            se3di_add_scaled(sign * mobility[0], p, v);
+            se3di_add_scaled(sign * contact->reach * mobility[0], p, v);
             se3di_add_scaled(sign, turned, v + 3);
         }
     }
@@ -199,11 +199,13 @@ static void remember(se3di_convex *c, const se3di_convex_island *island)
 {
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        const int lasts =
-            contact->way == SE3DI_CONVEX_SPRING && contact->record->kind != SE3DI_CONTACT_PARTING;
+        const se3di_body_contact *record = contact->record;
         respond(c, contact);
-        se3di_scale(lasts ? c->h : 0.0, contact->record->force, contact->impulse);
-        apply(c, contact, contact->impulse);
+        if (record && contact->way == SE3DI_CONVEX_SPRING &&
+            record->kind != SE3DI_CONTACT_PARTING) {
+            se3di_scale(c->h, record->force, contact->impulse);
+            apply(c, contact, contact->impulse);
+        }
     }
 }
 

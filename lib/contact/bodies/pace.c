@@ -306,19 +306,26 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
     return paced < step && rest < 2.0 * paced ? 0.5 * rest : paced;
 }
 
-se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
-                                      se3di_error *error)
+se3d_status se3di_shapes_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
+                                    se3di_error *error)
 {
     pace p = {.model = model, .kind = kind, .checks = 1, .step = h};
     look(&p);
     if (!(p.step < h)) {
-        return se3di_stops_check_step(model, kind, h, error);
+        return SE3D_OK;
     }
     return se3di_error_set(error, SE3D_ERR_STEP_SIZE,
                            "t = %g s: a step of %g s is too large for the contact of the shapes "
                            "%.60s and %.60s; try at most %.3g s, or a run that chooses its steps",
                            model->time, h, se3di_shape_describe(model, p.i),
                            se3di_shape_describe(model, p.j), p.step);
+}
+
+se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
+                                      se3di_error *error)
+{
+    SE3DI_TRY(se3di_shapes_check_step(model, kind, h, error));
+    return se3di_stops_check_step(model, kind, h, error);
 }
 
 /* The pair that is nearest to each other. */

@@ -21,6 +21,9 @@ double se3di_contacts_next_step(const se3di_model *model, se3di_pace_kind kind, 
 /* Whether a step of h that was asked for follows the contacts: none is beyond stability (explicit
  * methods), no shape may pass through another one.
  * @return OK, STEP_SIZE (the message names the two shapes) */
+se3d_status se3di_shapes_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
+                                    se3di_error *error);
+/* The same, and that it follows the impacts on stops. */
 se3d_status se3di_contacts_check_step(const se3di_model *model, se3di_pace_kind kind, double h,
                                       se3di_error *error);
 

@@ -10,7 +10,6 @@
  * docs/theory/stop.md */
 #include "contact/bodies/pace_stop.h"
 
-#include "force/measure.h"
 #include "force/stop.h"
 #include "math/elementary.h"
 #include "math/inertia.h"
@@ -25,9 +24,8 @@
 #define SHORT        1e-6 /* a long step ends so much before an impact begins */
 #define SOFT         1e-9 /* m or rad: arrivals that move less in the time of an impact */
 
-/* g M^-1 g^T of the free bodies of the element. */
-static double inverse_mass(const se3di_model *model, const se3di_force *force,
-                           const se3di_measure *measure)
+double se3di_stop_inverse_mass(const se3di_model *model, const se3di_force *force,
+                               const se3di_measure *measure)
 {
     const uint32_t body[2] = {force->body_i, force->body_j};
     double sum = 0.0;
@@ -74,7 +72,7 @@ static double pace_stop(const se3di_model *model, const se3di_force *force, se3d
     if (!se3di_measure_force(model, force, 0, &measure)) {
         return h;
     }
-    const double inverse = inverse_mass(model, force, &measure);
+    const double inverse = se3di_stop_inverse_mass(model, force, &measure);
     const double acceleration = se3di_measure_acceleration(model, force);
     for (int end = 0; end < 2 && inverse > 0.0; ++end) {
         const double limit = end ? force->high : force->low, way = end ? 1.0 : -1.0;

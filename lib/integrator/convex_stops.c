@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Stops in a step of convex: contacts without friction, along a coordinate x of two bodies in place
+ * of a point's normal. With g = dx/dq of a body's velocities (v, w) and n a unit vector, what moves
+ * towards the stop is the velocity
+ *
+ *     reach v + n (g_w . w),    n . that = g . (v, w)
+ *
+ * n and reach = 1 from the gradient by v where that is a unit vector, as of displacements and
+ * distances; reach = 0 for angles. All stops are in every step in which anything touches: what
+ * hits one body drives another onto its stop in the same step.       docs/theory/convex.md */
+#include "integrator/convex.h"
+
+#include "contact/bodies/pace_stop.h"
+#include "force/measure.h"
+#include "math/vec3.h"
+
+#include <math.h>
+
+#define NEAR       2.0  /* steps at the speed of a coordinate: its stop may act in this one */
+#define FAST_TIMES 2.0  /* an impact arrives so much faster than a step makes it */
+#define SETTLING   4.0  /* steps in which a coordinate on its stop comes to rest */
+#define RIGID      1e4  /* an impact of one step, over what moves its bodies as one */
+#define SPEED_MIN  1e-3 /* slower impacts are damped as this one [1/s, m/s] */
+
+/* The coordinate of a stop at the start of a step, and what its rate changed by in the one before.
+ */
+typedef struct coordinate {
+    const se3di_force *force;
+    se3di_measure measure;
+    double change;
+} coordinate;
+
+static int is_stop(const se3di_force *force)
+{
+    return force->type == SE3DI_FORCE_STOP && !force->released;
+}
+
+/* Returns 0 where the coordinate has no direction. */
+static int look(const se3di_model *model, const se3di_force *force, double h, coordinate *x)
+{
+    *x = (coordinate){.force = force};
+    if (!is_stop(force) || !se3di_measure_force(model, force, 0, &x->measure)) {
+        return 0;
+    }
+    x->change = h * fabs(se3di_measure_acceleration(model, force));
+    return 1;
+}
+
+/* Towards the upper end, or the lower one: how far it is off, and its speed. */
+static double gap_to(const coordinate *x, int upper, double *speed)
+{
+    const double way = upper ? 1.0 : -1.0;
+    *speed = way * x->measure.rate;
+    return way * ((upper ? x->force->high : x->force->low) - x->measure.value);
+}
+
+int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model)
+{
+    coordinate x;
+    double speed;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (!look(model, &model->forces[k], c->h, &x)) {
+            continue;
+        }
+        const double reach = NEAR * c->h * (fabs(x.measure.rate) + x.change);
+        if (gap_to(&x, 0, &speed) < reach || gap_to(&x, 1, &speed) < reach) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* How it acts: by its law where that can be followed, else as an impact of one step, or at rest. */
+static void choose_way(se3di_convex_contact *stop, const coordinate *x, double h, double gap,
+                       double speed, double inverse_mass)
+{
+    const se3di_force *force = x->force;
+    const int meets = gap > -h * speed && gap < h * (speed + x->change);
+    stop->way = SE3DI_CONVEX_SPRING;
+    stop->stiffness = force->k;
+    stop->power = 1.0;
+    stop->overlap = -gap;
+    if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
+        const double damping = force->c * force->k * fmax(0.0, h * speed - gap);
+        stop->damping = damping / fmax(force->state[0], SPEED_MIN) - h * force->k;
+        return;
+    }
+    stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;
+    if (meets && speed > FAST_TIMES * x->change) {
+        stop->way = SE3DI_CONVEX_IMPACT;
+        stop->damping = RIGID / inverse_mass;
+        stop->rebound = force->restitution * speed;
+    }
+}
+
+static void set_geometry(se3di_convex_contact *stop, const se3di_assembly *assembly,
+                         const coordinate *x, int upper)
+{
+    const uint32_t body[2] = {x->force->body_i, x->force->body_j};
+    const double way = upper ? -1.0 : 1.0; /* the stop pushes j back */
+    const double *along = x->measure.g + 6;
+    stop->reach = se3di_dot(along, along) > 0.25 ? 1.0 : 0.0;
+    se3di_scale(way, along, stop->normal);
+    if (!(stop->reach > 0.0)) {
+        stop->normal[0] = 1.0;
+    }
+    for (int k = 0; k < 2; ++k) {
+        const double *turn = x->measure.g + 6 * k + 3;
+        const double sign = k ? way : -way; /* velocities of i count as j's less */
+        stop->free[k] = assembly->free_index[body[k]];
+        for (int r = 0; r < 3; ++r) {
+            for (int e = 0; e < 3; ++e) {
+                stop->lever[k][3 * r + e] = sign * stop->normal[r] * turn[e];
+            }
+        }
+    }
+}
+
+static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coordinate *x, int upper)
+{
+    se3di_convex_contact *stop = &c->contacts[c->contact_count];
+    const double inverse_mass = se3di_stop_inverse_mass(assembly->model, x->force, &x->measure);
+    double speed;
+    const double gap = gap_to(x, upper, &speed);
+    *stop = (se3di_convex_contact){.coupling = -1};
+    set_geometry(stop, assembly, x, upper);
+    if (!(gap < HUGE_VAL) || !(inverse_mass > 0.0)) {
+        return;
+    }
+    choose_way(stop, x, c->h, gap, speed, inverse_mass);
+    se3di_convex_slip(stop, c->start, stop->before);
+    if (assembly->row_count > 0) {
+        se3di_convex_velocity(stop, c->chord, stop->chord);
+    }
+    stop->held = gap < 0.0 ? 0.5 * x->force->k * gap * gap : 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (stop->free[k] >= 0) {
+            c->touched[stop->free[k]] = 1;
+        }
+    }
+    ++c->contact_count;
+}
+
+static se3d_status reserve(se3di_convex *c, const se3di_model *model)
+{
+    size_t count = c->contact_count;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        count += is_stop(&model->forces[k]) ? 2 : 0;
+    }
+    return se3di_array_reserve_at(&model->allocator, &c->contacts, &c->contact_capacity, count,
+                                  sizeof *c->contacts);
+}
+
+se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    coordinate x;
+    if (reserve(c, model) < 0) {
+        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for stops",
+                               model->time);
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        if (look(model, &model->forces[k], c->h, &x)) {
+            add_end(c, assembly, &x, 0);
+            add_end(c, assembly, &x, 1);
+        }
+    }
+    return SE3D_OK;
+}
+
+double se3di_convex_stop_power(const se3di_model *model)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        se3di_effect effect = {.wants_derivative = 0};
+        if (is_stop(force) && se3di_force_eval(model, force, model->time, &effect) >= 0) {
+            sum += effect.power[0];
+        }
+    }
+    return sum;
+}
+
+double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model)
+{
+    double sum = 0.0;
+    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
+        sum += se3di_convex_taken_by(&c->contacts[k]) + c->contacts[k].held;
+    }
+    for (size_t k = 0; c->shape_count < c->contact_count && k < model->force_slots.count; ++k) {
+        const se3di_force *force = &model->forces[k];
+        double x;
+        if (is_stop(force) && se3di_measure_value(model, force, &x)) {
+            const double depth = fmax(0.0, fmax(x - force->high, force->low - x));
+            sum -= 0.5 * force->k * depth * depth;
+        }
+    }
+    return sum;
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Stops by `convex`, at steps of milliseconds whatever their stiffness: bounces, rest, energy. */
+#include "support/text_model.h"
+
+#include <stdio.h>
+
+#define STEP 1e-3
+
+/* `before`, the stiffness and restitution of a stop, `after`. */
+static text_model open_text(const char *before, double k, double e, const char *after)
+{
+    char text[2048];
+    (void)snprintf(text, sizeof text, "%s, k: %.17g, restitution: %g%s", before, k, e, after);
+    return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+}
+
+static const double stiffness[] = {1e4, 1e6, 1e9};
+
+/* 2 kg fall by 1 m along a rail, 4.43 m/s, and come to rest m g / k beyond. */
+static void what_falls_onto_a_stop_bounces_and_comes_to_rest(void)
+{
+    static const char *const before_stop =
+        "se3d: 1\nbodies: [{name: b, mass: 2, inertia: [1, 1, 1], position: [0, 0, 1]}]\n"
+        "joints: [{name: s, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 1], axis: [0, "
+        "0, 1]}]\n"
+        "forces: [{name: f, type: stop, joint: s, lower: -1";
+    static const char *const after_stop =
+        "}]\nanalysis: {type: dynamics, duration: 4}\n"
+        "output: [{file: r.csv, channels: [s.displacement, s.rate, energy.balance, f.force, "
+        "s.force, b.acceleration]}]\n";
+    for (size_t k = 0; k < 3; ++k) {
+        text_model m = open_text(before_stop, stiffness[k], 0.5, after_stop);
+        double before = 0.0, after = 0.0, worst = 0.0;
+        for (int step = 1; step <= 4000; ++step) {
+            CHECK(text_model_run(&m, STEP * step));
+            const double v = text_model_get(&m, 1, 0);
+            before = fmin(before, v);
+            after = fmax(after, v);
+            worst = fmax(worst, fabs(text_model_get(&m, 2, 0) - 2.0 * 9.81));
+            if (k > 0) {
+                CHECK(text_model_get(&m, 0, 0) > -1.0 - 1e-4);
+            }
+        }
+        CHECK_NEAR(-before / sqrt(2.0 * 9.81), 1.0, 0.01);
+        CHECK_NEAR(after / -before, 0.5, 0.02);
+        CHECK_NEAR((-1.0 - text_model_get(&m, 0, 0)) * stiffness[k] / (2.0 * 9.81), 1.0, 1e-6);
+        CHECK_NEAR(fabs(text_model_get(&m, 3, 0)) / (2.0 * 9.81), 1.0, 1e-6);
+        CHECK_NEAR(text_model_get(&m, 5, 2), 0.0, 1e-5);
+        CHECK(worst < 1e-3);
+        text_model_close(&m);
+    }
+}
+
+/* A door that a spring of 3 N m shuts onto its stop: 3 N m there, too. */
+static void an_angle_stays_within_its_range(void)
+{
+    static const char *const before_stop =
+        "se3d: 1\ngravity: [0, 0, 0]\n"
+        "bodies: [{name: d, mass: 5, inertia: [0.2, 0.2, 0.4], position: [0.4, 0, 0]}]\n"
+        "joints: [{name: h, type: revolute, body_i: ground, body_j: d, at: [0, 0, 0], axis: [0, 0, "
+        "1]}]\n"
+        "forces: [{name: f, type: stop, joint: h, upper: 0.7";
+    static const char *const after_stop =
+        "}, {name: s, type: effort, joint: h, value: 3}]\n"
+        "analysis: {type: dynamics, duration: 8}\n"
+        "output: [{file: r.csv, channels: [h.angle, h.rate, energy.balance, f.force]}]\n";
+    for (size_t k = 0; k < 3; ++k) {
+        text_model m = open_text(before_stop, stiffness[k], 0.4, after_stop);
+        double before = 0.0, after = 0.0, worst = 0.0;
+        for (int step = 1; step <= 8000; ++step) {
+            CHECK(text_model_run(&m, STEP * step));
+            before = fmax(before, text_model_get(&m, 1, 0));
+            after = fmin(after, text_model_get(&m, 1, 0));
+            worst = fmax(worst, fabs(text_model_get(&m, 2, 0)));
+        }
+        const double speed = sqrt(2.0 * 3.0 * 0.7 / (0.4 + 5.0 * 0.16));
+        CHECK_NEAR(before / speed, 1.0, 0.01);
+        CHECK_NEAR(-after / before, 0.4, 0.02);
+        CHECK_NEAR((text_model_get(&m, 0, 0) - 0.7) * stiffness[k] / 3.0, 1.0, 1e-5);
+        CHECK_NEAR(fabs(text_model_get(&m, 3, 0)) / 3.0, 1.0, 1e-5);
+        CHECK(worst < 1e-3);
+        text_model_close(&m);
+    }
+}
+
+/* A string to the ground, and one from ball to ball, without any joint. */
+static void what_hangs_on_strings_pulls_them_tight(void)
+{
+    static const char *const before_stop =
+        "se3d: 1\nbodies: [{name: a, mass: 1, inertia: [0.01, 0.01, 0.01], position: [0, 0, "
+        "-0.2]}, {name: b, mass: 2, inertia: [0.01, 0.01, 0.01], position: [0, 0, -0.4]}]\n"
+        "forces: [{name: f, type: stop, body_i: ground, body_j: a, upper: 0.5";
+    static const char *const after_stop =
+        "}, {name: g, type: stop, body_i: a, body_j: b, upper: 0.3, k: 1e6, "
+        "restitution: 0.1}]\n"
+        "analysis: {type: dynamics, duration: 3}\n"
+        "output: [{file: r.csv, channels: [a.position, b.position, energy.balance, "
+        "b.acceleration, a.acceleration]}]\n";
+    for (size_t k = 0; k < 3; ++k) {
+        text_model m = open_text(before_stop, stiffness[k], 0.1, after_stop);
+        CHECK(text_model_run(&m, 3.0));
+        const double low = -text_model_get(&m, 0, 2), lower = -text_model_get(&m, 1, 2);
+        CHECK_NEAR((low - 0.5) * stiffness[k] / (3.0 * 9.81), 1.0, 1e-5);
+        CHECK_NEAR((lower - low - 0.3) * 1e6 / (2.0 * 9.81), 1.0, 1e-5);
+        CHECK_NEAR(text_model_get(&m, 3, 2), 0.0, 1e-4);
+        CHECK_NEAR(text_model_get(&m, 4, 2), 0.0, 1e-4);
+        text_model_close(&m);
+    }
+}
+
+/* A figure of four parts whose joints have ranges falls down: what hits one part drives others
+ * onto their stops. No energy comes from them. */
+static const char figure[] =
+    "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, restitution: 0.2}]\n"
+    "contact: {}\n"
+    "bodies: [{name: ground, shapes: [{type: plane, material: m}]},\n"
+    "  {name: a, position: [0, 0, 1.2], angular_velocity: [0.4, 0.9, 0], shapes: [{type: capsule, "
+    "radius: 0.1, length: 0.3, material: m}]},\n"
+    "  {name: b, position: [0, 0, 0.75], shapes: [{type: capsule, radius: 0.07, length: 0.3, "
+    "material: m}]},\n"
+    "  {name: c, position: [0, 0, 0.35], shapes: [{type: capsule, radius: 0.05, length: 0.3, "
+    "material: m}]},\n"
+    "  {name: d, position: [0, 0, 1.55], shapes: [{type: sphere, radius: 0.09, material: m}]}]\n"
+    "joints: [{name: hip, type: revolute, body_i: a, body_j: b, at: [0, 0, 0.95], axis: [0, 1, "
+    "0]},\n"
+    "  {name: knee, type: revolute, body_i: b, body_j: c, at: [0, 0, 0.55], axis: [0, 1, 0]},\n"
+    "  {name: neck, type: revolute, body_i: a, body_j: d, at: [0, 0, 1.45], axis: [1, 0, 0]}]\n"
+    "forces: [{name: hs, type: stop, joint: hip, lower: -0.9, upper: 0.2, k: 1.0e+5, restitution: "
+    "0.1},\n"
+    "  {name: ks, type: stop, joint: knee, lower: -0.02, upper: 1.9, k: 1.0e+5, restitution: "
+    "0.1},\n"
+    "  {name: ns, type: stop, joint: neck, lower: -0.4, upper: 0.4, k: 1.0e+5, restitution: 0.1}]\n"
+    "analysis: {type: dynamics, duration: 2}\n"
+    "output: [{file: r.csv, channels: [energy.total, hip.angle, knee.angle, neck.angle, "
+    "contacts.count, energy.balance]}]\n";
+
+static void a_figure_falls_down_within_the_ranges_of_its_joints(void)
+{
+    static const double range[3][2] = {{-0.9, 0.2}, {-0.02, 1.9}, {-0.4, 0.4}};
+    text_model m = text_model_open(figure, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+    double beyond = 0.0, most = 0.0, last;
+    CHECK(text_model_run(&m, STEP));
+    last = text_model_get(&m, 0, 0);
+    const double first = last;
+    for (int step = 2; step <= 2500; ++step) {
+        CHECK(text_model_run(&m, STEP * step));
+        const double energy = text_model_get(&m, 0, 0);
+        most = fmax(most, energy - last);
+        last = energy;
+        for (size_t k = 0; k < 3; ++k) {
+            const double angle = text_model_get(&m, 1 + k, 0);
+            beyond = fmax(beyond, fmax(range[k][0] - angle, angle - range[k][1]));
+        }
+    }
+    CHECK(beyond < 0.02);
+    CHECK(most < 1e-4 * first);
+    CHECK(last < 0.3 * first);
+    CHECK(text_model_get(&m, 4, 0) >= 2.0);
+    text_model_close(&m);
+}
+
+int main(void)
+{
+    RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
+    RUN(an_angle_stays_within_its_range);
+    RUN(what_hangs_on_strings_pulls_them_tight);
+    RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
+    return check_finish();
+}
