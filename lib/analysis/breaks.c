@@ -157,8 +157,7 @@ double se3di_break_measure(const se3di_model *model, uint32_t joint)
 int se3di_breaks_end_steps(const se3di_events *events)
 {
     const se3di_run *run = events->run;
-    return !events->dense &&
-           (run->model->sets || run->integration.method->tag == SE3D_METHOD_CONVEX);
+    return !events->dense && (run->model->sets || run->integration.method->takes_crowd);
 }
 
 se3d_status se3di_breaks_keep_name(se3di_events *events, const char *name, const char **kept)

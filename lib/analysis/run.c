@@ -305,7 +305,7 @@ static se3di_pace_kind pace_of(const se3di_integration *integration)
 static se3d_status check_length(se3di_run *run, double h)
 {
     const se3di_integration *integration = &run->integration;
-    return integration->method->tag == SE3D_METHOD_CONVEX /* which checks all of its steps */
+    return integration->method->takes_crowd
                ? SE3D_OK
                : se3di_contacts_check_step(run->model, pace_of(integration), h, run->error);
 }
@@ -381,7 +381,7 @@ static se3d_status switch_method(se3di_run *run)
     if (!must_switch(run)) {
         if (is_early) { /* what comes after the first tiny steps is still asked */
             run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
-            se3di_run_stay(run);
+            run->integration.method->stay(run->model);
         }
         return SE3D_OK;
     }

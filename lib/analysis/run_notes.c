@@ -48,8 +48,7 @@ void se3di_run_tell_step(se3di_run *run)
 {
     const se3di_integration *integration = &run->integration;
     const se3di_integrator *method = integration->method;
-    if (method == &se3di_integrator_convex && !(integration->settings.step > 0.0) &&
-        run->told_step != method) {
+    if (method->takes_crowd && !(integration->settings.step > 0.0) && run->told_step != method) {
         run->told_step = method;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: no step is given: %s takes %g s and estimates no error",
@@ -64,7 +63,7 @@ void se3di_run_tell_crowd(se3di_run *run)
         return;
     }
     const int is_crowd = se3di_crowd_has(run->model, SE3DI_CROWD) && se3di_crowd_suits(run->model);
-    if (method == &se3di_integrator_convex && run->automatic) {
+    if (method->takes_crowd && run->automatic) {
         const char *why = run->left ? "bodies that touch have long held the steps short"
                                     : "its state has been stepped so";
         char many[64];
@@ -76,7 +75,7 @@ void se3di_run_tell_crowd(se3di_run *run)
                         "is followed",
                         run->model->time, why, method->name);
     }
-    if (method != &se3di_integrator_convex && is_crowd &&
+    if (!method->takes_crowd && is_crowd &&
         run->integration.settings.leaves_crowd == SE3DI_CROWD_NONE) {
         run->told_crowd = method;
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,

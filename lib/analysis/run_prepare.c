@@ -11,10 +11,7 @@
 #include "contact/bodies/crowd.h"
 #include "force/driver_rate.h"
 #include "integrator/convex.h"
-#include "integrator/explicit_point.h"
-#include "integrator/explicit_step.h"
 #include "integrator/gauss_lanes.h"
-#include "integrator/radau.h"
 #include "nonlinear/against.h"
 #include "primitive/user.h"
 
@@ -79,15 +76,10 @@ static size_t largest_history(const se3di_run *run)
     return run->integration.method->history_count(&of_bodies);
 }
 
-static int is_history_of(const se3di_model *model, int32_t method)
-{
-    return model->history_tag / SE3DI_HISTORY_TAGS == (uint64_t)method;
-}
-
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
 {
     run->integration.method = method;
-    run->integration.settings.leaves_stiff = method->tag == SE3D_METHOD_DOP853;
+    run->integration.settings.leaves_stiff = method->leaves_stiff;
 }
 
 /* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
@@ -110,7 +102,7 @@ static int are_in_lanes(const se3di_run *run)
 /* auto takes gauss for the sake of lanes: without them dop853 goes on with the same equations. */
 static se3d_status keep_lanes(se3di_run *run)
 {
-    if (!run->automatic || run->integration.method != &se3di_integrator_gauss) {
+    if (!run->automatic || !run->integration.method->takes_lanes) {
         return SE3D_OK;
     }
     if (are_loops_loose(run)) {
@@ -179,38 +171,22 @@ static int32_t may_crowd(const se3di_run *run)
     return se3di_crowd_has_mesh(model) ? SE3DI_CROWD_ROUGH : SE3DI_CROWD_SLOW;
 }
 
-/* The method under way was left for what touches. */
-static int is_left(const se3di_model *model)
+/* Contacts have held steps of the method under way short, and nothing else needs them so short. */
+static int is_slow(const se3di_run *run, const se3di_integrator *past)
 {
-    return is_history_of(model, SE3D_METHOD_RADAU)
-               ? se3di_radau_leaves_crowd(model)
-               : is_history_of(model, SE3D_METHOD_DOP853) && se3di_explicit_leaves_crowd(model);
-}
-
-void se3di_run_stay(se3di_run *run)
-{
-    if (is_history_of(run->model, SE3D_METHOD_RADAU)) {
-        se3di_radau_stays(run->model);
-    } else {
-        se3di_explicit_stays(run->model);
-    }
-}
-
-/* Contacts have held steps short, and nothing else needs them so short. */
-static int is_slow(const se3di_run *run)
-{
-    return is_left(run->model) &&
+    return past && past->leaves_crowd && past->leaves_crowd(run->model) &&
            se3di_crowd_bears(run->model, fmax(run->integration.settings.step, STEP_SLOW));
 }
 
 int se3di_run_is_crowded(const se3di_run *run)
 {
     const se3di_model *model = run->model;
+    const se3di_integrator *past = se3di_integrator_of_history(model->history_tag);
     const int32_t crowd = may_crowd(run);
-    if (crowd == SE3DI_CROWD_NONE || is_history_of(model, SE3D_METHOD_CONVEX)) {
+    if (crowd == SE3DI_CROWD_NONE || (past && past->takes_crowd)) {
         return crowd != SE3DI_CROWD_NONE;
     }
-    return crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(model) : is_slow(run);
+    return crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(model) : is_slow(run, past);
 }
 
 /* A function of time or the user's code is among the rows. */
@@ -250,9 +226,9 @@ static se3d_status choose_method(se3di_run *run)
     if (!run->automatic) {
         return SE3D_OK;
     }
-    int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS && is_history_of(model, SE3D_METHOD_RADAU);
-    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && !stiff &&
-        !is_history_of(model, SE3D_METHOD_DOP853)) {
+    const se3di_integrator *past = se3di_integrator_of_history(model->history_tag);
+    int stiff = run->analysis == SE3D_ANALYSIS_DYNAMICS && past && past->takes_stiff;
+    if (run->analysis == SE3D_ANALYSIS_DYNAMICS && !stiff && !(past && past->leaves_stiff)) {
         SE3DI_TRY(se3di_stiffness_is_stiff(run->model, run->error, &stiff));
     }
     int32_t method = stiff ? SE3D_METHOD_RADAU : choose_explicit(run);
@@ -400,8 +376,8 @@ se3d_status se3di_run_build(se3di_run *run)
 /* From the present state. */
 static se3d_status enter_crowd(se3di_run *run)
 {
-    if (is_history_of(run->model, SE3D_METHOD_DOP853) ||
-        is_history_of(run->model, SE3D_METHOD_RADAU)) {
+    const se3di_integrator *past = se3di_integrator_of_history(run->model->history_tag);
+    if (past && past->leaves_crowd) {
         run->left = run->integration.method;
         run->left_at = run->model->time;
     }
@@ -433,10 +409,7 @@ se3d_status se3di_run_prepare(se3di_run *run)
         SE3DI_TRY(enter_crowd(run));
     }
     run->integration.settings.leaves_crowd =
-        run->integration.method->tag == SE3D_METHOD_DOP853 ||
-                run->integration.method->tag == SE3D_METHOD_RADAU
-            ? may_crowd(run)
-            : SE3DI_CROWD_NONE;
+        run->integration.method->leaves_crowd ? may_crowd(run) : SE3DI_CROWD_NONE;
     se3di_equations_suit_masses(&run->equations); /* which may be others than at the last call */
     if (run->values_version != run->model->values_version) {
         se3di_assembly_take_values(&run->equations.assembly);

@@ -10,8 +10,6 @@ void se3di_run_choose_for_call(se3di_run *run, int is_step);
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method);
 /* auto: many bodies are at each other, which convex is for, or have been. */
 int se3di_run_is_crowded(const se3di_run *run);
-/* The method under way is not left yet for what touches. */
-void se3di_run_stay(se3di_run *run);
 /* The motion is to follow from constraints and drivers alone. */
 int se3di_run_is_driven(const se3di_run *run);
 /* Build what the model's structure decides. */

@@ -576,4 +576,5 @@ const se3di_integrator se3di_integrator_convex = {
     .fixes_step = 1,
     .orders = 1u << 1,
     .weighs_bodies = 1,
+    .takes_crowd = 1,
 };

@@ -222,5 +222,8 @@ const se3di_integrator se3di_integrator_dop853 = {
     .tag = SE3D_METHOD_DOP853,
     SE3DI_RK_METHOD(&tableau),
     .is_held = se3di_explicit_is_held,
+    .leaves_crowd = se3di_explicit_leaves_crowd,
+    .stay = se3di_explicit_stay,
+    .leaves_stiff = 1,
     .orders = 1u << 8,
 };

@@ -67,7 +67,7 @@ double se3di_equal_steps_given(const se3di_integration *integration, const se3di
     const se3di_integrator *method = integration->method;
     const double step =
         method->fixes_step || method->chooses_step ? integration->settings.step : 0.0;
-    return method->tag == SE3D_METHOD_VERLET
+    return method->takes_particles
                ? shorter(shorter(step, model->contact.step), se3di_sets_step(model))
                : step;
 }
@@ -79,7 +79,8 @@ double se3di_equal_steps_get(const se3di_integration *integration, const se3di_m
     if (given > 0.0) {
         return given;
     }
-    return are_chosen(integration, model) && model->history_tag / SE3DI_HISTORY_TAGS == method->tag
+    return are_chosen(integration, model) &&
+                   se3di_integrator_of_history(model->history_tag) == method
                ? model->history[SE3DI_EQUAL_STEP]
                : 0.0;
 }

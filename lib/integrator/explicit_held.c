@@ -33,7 +33,7 @@ int se3di_explicit_leaves_crowd(const se3di_model *model)
     return se3di_explicit_past_of(model)->held < 0.0;
 }
 
-void se3di_explicit_stays(se3di_model *model)
+void se3di_explicit_stay(se3di_model *model)
 {
     se3di_explicit_past *past = se3di_explicit_past_of(model);
     past->held = fmax(past->held, 0.0);

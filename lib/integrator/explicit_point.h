@@ -10,10 +10,6 @@
 #define SE3DI_EXPLICIT_PAST (sizeof(se3di_explicit_past) / sizeof(double))
 
 se3di_explicit_past *se3di_explicit_past_of(const se3di_model *model);
-/* Whether the method, whose history the model has, was left for what touches. */
-int se3di_explicit_leaves_crowd(const se3di_model *model);
-/* It is not left yet. */
-void se3di_explicit_stays(se3di_model *model);
 /* The parts of history and work. */
 se3di_explicit se3di_explicit_point(const se3di_integration *integration);
 /* The same, and the solver as it needs it; `is_controlled`: errors decide of its steps. */

@@ -157,6 +157,8 @@ int se3di_explicit_is_sound(const double *history, size_t count);
 se3d_status se3di_explicit_advance(se3di_integration *integration, double t_end);
 void se3di_explicit_interpolate(const se3di_integration *integration, double t, double *y);
 int se3di_explicit_is_held(const se3di_integration *integration);
+int se3di_explicit_leaves_crowd(const se3di_model *model);
+void se3di_explicit_stay(se3di_model *model);
 
 /* Local errors are a part of the tolerance, and no smaller than rounding allows. */
 #define SE3DI_EXPLICIT_PART  0.03

@@ -21,6 +21,14 @@ const se3di_integrator *se3di_integrator_find(int32_t method)
     return method >= 0 && method < count ? methods[method] : NULL;
 }
 
+const se3di_integrator *se3di_integrator_of_history(uint64_t tag)
+{
+    const uint64_t method = tag / SE3DI_HISTORY_TAGS;
+    return method != SE3D_METHOD_AUTO && method <= INT32_MAX
+               ? se3di_integrator_find((int32_t)method)
+               : NULL;
+}
+
 int se3di_integration_must_leave(const se3di_integration *integration)
 {
     const se3di_integrator_settings *settings = &integration->settings;

@@ -83,6 +83,10 @@ typedef struct se3di_integrator {
     /* Whether stability, not accuracy, has held its last steps so short; NULL: it never does. With
      * settings.leaves_stiff or leaves_crowd `run` then ends where that was seen. */
     int (*is_held)(const se3di_integration *integration);
+    /* Whether `run`, which left the history that the model has, ended for what touches; and that it
+     * is to go on all the same. NULL: settings.leaves_crowd is not looked at. */
+    int (*leaves_crowd)(const se3di_model *model);
+    void (*stay)(se3di_model *model);
     const struct se3di_explicit_class *explicit_class; /* of explicit methods, */
     const struct se3di_rk_tableau *tableau;            /* and of those of Runge-Kutta */
     /* Of the Newmark family: its coefficients. */
@@ -95,10 +99,14 @@ typedef struct se3di_integrator {
     /* The same where it depends on order, model or what is chosen; NULL: it does not. */
     double (*get_reach)(const struct se3di_integration *integration,
                         const struct se3di_model *model);
-    int32_t fixes_step;    /* not 0: with settings.step, errors are not controlled */
-    int32_t chooses_step;  /* not 0: without one, equal steps are chosen (equal_steps.h) */
-    int32_t weighs_bodies; /* not 0: needs a mass matrix of bodies alone, without armatures */
-    int32_t takes_lanes;   /* not 0: loops of several states are computed at once */
+    int32_t fixes_step;      /* not 0: with settings.step, errors are not controlled */
+    int32_t chooses_step;    /* not 0: without one, equal steps are chosen (equal_steps.h) */
+    int32_t weighs_bodies;   /* not 0: needs a mass matrix of bodies alone, without armatures */
+    int32_t takes_lanes;     /* not 0: loops of several states are computed at once */
+    int32_t takes_particles; /* not 0: steps are no longer than contacts and particles ask for */
+    int32_t leaves_stiff;    /* not 0: auto leaves it where stability holds it, */
+    int32_t takes_stiff;     /* for this one */
+    int32_t takes_crowd; /* not 0: bodies at each other at long steps, each of which is checked */
 } se3di_integrator;
 
 /* The ends of accepted steps [s] since a motion began. */
@@ -163,5 +171,7 @@ int se3di_integration_must_leave(const se3di_integration *integration);
 
 /* By se3d_method, AUTO: the one with which a run begins; NULL: there is none of that number. */
 const se3di_integrator *se3di_integrator_find(int32_t method);
+/* The method that left a history with this tag; NULL: there is none. */
+const se3di_integrator *se3di_integrator_of_history(uint64_t tag);
 
 #endif

@@ -688,12 +688,12 @@ static void interpolate(const se3di_integration *integration, double t, double *
     }
 }
 
-int se3di_radau_leaves_crowd(const se3di_model *model)
+static int leaves_crowd(const se3di_model *model)
 {
     return ((const radau_header *)(const void *)model->history)->leaves > 0.0;
 }
 
-void se3di_radau_stays(se3di_model *model)
+static void stay(se3di_model *model)
 {
     ((radau_header *)(void *)model->history)->leaves = 0.0;
 }
@@ -702,7 +702,7 @@ void se3di_radau_stays(se3di_model *model)
 static int is_held(const se3di_integration *integration)
 {
     return integration->settings.leaves_crowd &&
-           se3di_radau_leaves_crowd(integration->equations->assembly.model);
+           leaves_crowd(integration->equations->assembly.model);
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)
@@ -728,9 +728,12 @@ const se3di_integrator se3di_integrator_radau = {
     .advance = advance,
     .interpolate = interpolate,
     .is_held = is_held,
+    .leaves_crowd = leaves_crowd,
+    .stay = stay,
     .is_implicit = 1,
     .is_reduced = 1,
     .orders = 1u << 5,
     .reach = REACH,
     .get_reach = get_reach,
+    .takes_stiff = 1,
 };

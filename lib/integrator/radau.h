@@ -53,10 +53,6 @@ typedef struct se3di_radau {
                      rows may be dependent */
 } se3di_radau;
 
-/* Whether the method, whose history the model has, was left for what touches. */
-int se3di_radau_leaves_crowd(const se3di_model *model);
-/* It is not left yet. */
-void se3di_radau_stays(se3di_model *model);
 size_t se3di_radau_work_count(const se3di_assembly *assembly);
 /* Point into integration->work; history is the caller's. */
 void se3di_radau_begin(se3di_radau *m, se3di_integration *integration);

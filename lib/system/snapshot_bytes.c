@@ -326,11 +326,8 @@ static int are_numbers(const se3di_saved *s)
 static int is_sound(const se3d_snapshot *snapshot, const se3di_model *model)
 {
     const se3di_saved *state = &snapshot->state;
-    const uint64_t method = state->history_tag / SE3DI_HISTORY_TAGS;
-    const se3di_integrator *integrator =
-        method <= INT32_MAX ? se3di_integrator_find((int32_t)method) : NULL;
-    const int is_known = state->history_tag == 0 ? state->history.count == 0
-                                                 : integrator && method != SE3D_METHOD_AUTO;
+    const se3di_integrator *integrator = se3di_integrator_of_history(state->history_tag);
+    const int is_known = state->history_tag == 0 ? state->history.count == 0 : integrator != NULL;
     return is_known && are_numbers(state) && are_poses(&state->frames) &&
            are_contacts(state, model) && are_near(&snapshot->near, model) &&
            are_left_out(state, model) &&
