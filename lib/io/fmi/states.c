@@ -153,7 +153,7 @@ static se3d_status get_entry(const lister *l, size_t index, entry *e)
                                                     &e->component, &e->position);
     if (status >= 0 && joint.index1) {
         status = se3d_constraint_get_type(system, joint, &type);
-        se3d_constraint_get_name(system, joint, &e->name);
+        status = status < 0 ? status : se3d_constraint_get_name(system, joint, &e->name);
     } else if (status >= 0) {
         status = se3d_body_get_name(system, body, &e->name);
     }
