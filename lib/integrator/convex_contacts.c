@@ -461,6 +461,9 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
 {
     const double none[3] = {0.0, 0.0, 0.0};
     se3di_body_contact *next = model->contacts.next;
+    if (model->contacts.next_count == 0) {
+        return;
+    }
     const se3di_body_contact *end = next + model->contacts.next_count;
     for (se3di_body_contact *r = next; r < end; ++r) {
         if (se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
