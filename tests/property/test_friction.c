@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Friction in joints with rattle and verlet: rigid stick and slip. */
+/* Friction in joints: rigid stick and slip of rattle and verlet; the spring of the presliding. */
 #include "support/text_model.h"
 
 static const int32_t methods[2] = {SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET};
@@ -241,6 +241,22 @@ static void a_mass_on_a_spring_loses_as_much_in_every_swing(void)
     }
 }
 
+/* What sticks as 10 m/s^2 decelerate it gives under a load without swinging: critically damped. */
+static void the_spring_of_the_presliding_is_damped_critically(void)
+{
+    static const char *const text =
+        SLIDE("0", "limit: 20, presliding: 1.0e-8",
+              "  - {type: force, body: a, value: [\"if(t < 1e-5, 0, 10)\", 0, 0]}\n");
+    const double way = 0.5e-8, w = sqrt(10.0 / 1e-8);
+    text_model m = text_model_open(text, SE3D_METHOD_GENERALIZED_ALPHA, -1, 1e-7);
+    for (int k = 1; k <= 6; ++k) {
+        const double t = 2.5e-5 * k;
+        CHECK(text_model_run(&m, 1e-5 + t));
+        CHECK_NEAR(text_model_get(&m, 0, 0), way * (1.0 - (1.0 + w * t) * exp(-w * t)), 5e-3 * way);
+    }
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(a_mass_on_a_spring_loses_as_much_in_every_swing);
@@ -252,5 +268,6 @@ int main(void)
     RUN(what_friction_cannot_do_is_said_and_undone);
     RUN(an_equilibrium_knows_the_friction_that_a_run_has_left);
     RUN(the_advice_for_an_equilibrium_is_about_equilibria);
+    RUN(the_spring_of_the_presliding_is_damped_critically);
     return check_finish();
 }
