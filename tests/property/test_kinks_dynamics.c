@@ -219,6 +219,22 @@ static void values_that_jump_are_refused_in_every_method(void)
     }
 }
 
+/* Where a kink is less than two steps ahead, two shorter ones lead to it. */
+static void no_step_before_a_kink_is_longer_than_it_was_given(void)
+{
+    static const int32_t methods[] = {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT,
+                                      SE3D_METHOD_RATTLE, SE3D_METHOD_VERLET, SE3D_METHOD_CONVEX};
+    for (size_t k = 0; k < sizeof methods / sizeof methods[0]; ++k) {
+        text_model m = open_carts(DRIVE("da", "sa", "max(0, t - 0.036)"), methods[k], 0.01);
+        se3d_solver_stats stats;
+        CHECK(text_model_run(&m, 0.05));
+        CHECK(!se3d_solver_get_stats(m.solver, &stats));
+        CHECK(stats.steps == 7); /* four to the kink, one over it, two from there */
+        check_state(&m, 1.0, 0.0, 1e-9);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(two_drivers_jump_at_once_and_after_each_other);
@@ -229,5 +245,6 @@ int main(void)
     RUN(runs_go_on_bit_by_bit_over_kinks);
     RUN(friction_slips_the_new_way_behind_a_kink);
     RUN(values_that_jump_are_refused_in_every_method);
+    RUN(no_step_before_a_kink_is_longer_than_it_was_given);
     return check_finish();
 }
