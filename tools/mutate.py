@@ -98,16 +98,15 @@ class Bench:
         words += ["-w", "-iquote", os.path.dirname(os.path.abspath(path))]
         return subprocess.run(words, cwd=entry["directory"], capture_output=True, check=False).returncode == 0
 
-    def check(self, path, text):
-        """Once a file. Objects of tests may be older than the library: what is not changed must be linked and pass."""
-        if path in self.checked:
+    def check(self, path, text, test=None):
+        """Once a file and test. Objects of tests may be older than the library: what is not changed must pass."""
+        if (path, test) in self.checked:
             return
-        self.checked.add(path)
+        self.checked.add((path, test))
         if not self.compile(path, text):
             sys.exit(f"{path} is not compiled without any change")
-        for test in self.tests:
-            if self.dies(test):
-                sys.exit(f"{test} fails without any change: build it again")
+        if test and self.dies(test):
+            sys.exit(f"{test} fails without any change: build it again")
 
     def dies(self, test):
         place = os.path.join(self.build, "tests")
@@ -116,7 +115,7 @@ class Bench:
         words = [w for w in words if not w.endswith("ccache")]
         program = os.path.join(self.folder, test)
         words[words.index("-o") + 1] = program
-        words.insert(1, self.object)
+        words[1:1] = [self.object, "-Wl,--strip-debug"]
         linked = subprocess.run(words, cwd=place, capture_output=True, text=True, check=False)
         if linked.returncode:
             sys.exit(f"{test} was not linked:\n{linked.stderr}")
@@ -147,10 +146,12 @@ def main():
         for path, lines, (number, changed, what) in every:
             if killed + passed == options.count or time.monotonic() - begun > options.seconds:
                 break
-            bench.check(path, "\n".join(lines))
             if not bench.compile(path, "\n".join(lines[:number] + [changed] + lines[number + 1:])):
+                bench.check(path, "\n".join(lines))
                 continue
-            if any(bench.dies(test) for test in bench.tests):
+            killer = next((test for test in bench.tests if bench.dies(test)), None)
+            if killer:
+                bench.check(path, "\n".join(lines), killer)
                 killed += 1
                 continue
             passed += 1

@@ -146,7 +146,8 @@ mutation() {
         forces=$forces,test_golden_tyres,test_finite-difference_user_constraints,test_determinism_hashes
         assemblies=test_unit_assembly,test_finite-difference_tangent,test_property_armature
         assemblies=$assemblies,test_property_formulations,test_determinism_hashes
-        steps=test_unit_tableaus,test_property_between_steps,test_property_gauss,test_property_rattle,test_order-of-accuracy_methods,test_order-of-accuracy_bdf
+        steps=test_unit_tableaus,test_unit_tyre_steps,test_property_kinks_dynamics,test_property_between_steps
+        steps=$steps,test_property_gauss,test_property_rattle,test_order-of-accuracy_methods,test_order-of-accuracy_bdf
         steps=$steps,test_order-of-accuracy_integrators,test_golden_convex,test_determinism_hashes
         shapes=test_unit_narrow,test_unit_shapes,test_unit_depth,test_unit_separation,test_golden_mesh_contact
         shapes=$shapes,test_golden_mesh_on_mesh,test_determinism_hashes
