@@ -219,7 +219,7 @@ static void values_that_jump_are_refused_in_every_method(void)
     }
 }
 
-/* Where a kink is less than two steps ahead, two shorter ones lead to it. */
+/* If a kink is less than two steps ahead, two shorter ones lead to it. */
 static void no_step_before_a_kink_is_longer_than_it_was_given(void)
 {
     static const int32_t methods[] = {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT,

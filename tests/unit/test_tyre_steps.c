@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Where a step ends at tyres, against polynomials whose zeros are known. */
+/* The places at which steps end for tyres, against polynomials whose zeros are known. */
 #include "check.h"
 #include "integrator/tyre_steps.h"
 #include "se3d/se3d.h"
