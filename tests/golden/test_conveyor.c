@@ -345,6 +345,32 @@ static void particles_and_bodies_feel_of_a_surface_what_is_tangential(void)
     }
 }
 
+/* A ball that stands where a turntable turns is turned by torsional friction alone, with the constant
+ * moment M, up to the table's rate: half of the work of the drive is lost. */
+static void a_turntable_gives_work_by_torsional_friction(void)
+{
+    const double w = 4.0, r = 0.05, m = 1.0, spin[3] = {0.0, 0.0, w}, stiffness = 1e5;
+    for (size_t k = 1; k < WAYS; ++k) { /* convex has no such friction */
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.2, stiffness);
+        const double at[3] = {0.0, 0.0, r - m * G / (2.0 * stiffness)}, J = 0.4 * m * r * r;
+        double turn[3];
+        se3d_work work;
+        se3d_material_def stuff = scene_stuff(0.5, 0.2, stiffness);
+        stuff.torsional_friction = 0.1;
+        CHECK(se3d_material_set(s.system, s.material, &stuff) == SE3D_OK);
+        (void)belt(&s, no_motion, spin);
+        se3d_body ball = scene_ball(&s, r, m, at, scene_zero);
+        solve(&s, &ways[k]);
+        CHECK(scene_run(&s, 1.0));
+        CHECK(se3d_body_get_angular_velocity(s.system, ball, turn) == SE3D_OK);
+        CHECK(se3d_system_get_work(s.system, &work) == SE3D_OK);
+        CHECK_NEAR(turn[2], w, 5e-3 * w);
+        CHECK_NEAR(work.actuators, J * w * w, 0.02 * J * w * w);
+        CHECK_NEAR(work.dissipated, 0.5 * J * w * w, 0.02 * J * w * w);
+        scene_end(&s);
+    }
+}
+
 int main(void)
 {
     RUN(a_belt_carries_particles);
@@ -355,6 +381,7 @@ int main(void)
     RUN(a_ball_on_a_turntable_comes_back);
     RUN(a_box_lies_on_rollers_that_turn);
     RUN(a_box_stays_where_a_surface_that_moves_and_turns_is_at_rest);
+    RUN(a_turntable_gives_work_by_torsional_friction);
     RUN(a_belt_of_a_file_goes_on_from_a_snapshot);
     return check_finish();
 }
