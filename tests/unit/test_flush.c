@@ -332,6 +332,9 @@ static void frames_on_each_other_touch_in_corners_and_crossings(void)
         se3di_narrow_find(&frame, &at, &frame, &of, &m);
         CHECK(m.count == row->count);
         check_upright(&m, depth, 0.0);
+        for (uint32_t n = 0; n < m.count; ++n) {
+            CHECK_NEAR(m.points[n].point[1], HALF - 0.5 * depth, 1e-15);
+        }
         at.x[0] += 1e-10;
         se3di_narrow_find(&frame, &at, &frame, &of, &again);
         CHECK(have_the_same(&m, &again));
