@@ -128,6 +128,21 @@ static void lid_comes_at_its_speed_and_follows_its_load(void)
     bed_close(&p.b);
 }
 
+static void the_load_is_that_of_the_middle_of_a_step(void)
+{
+    const double h = 1e-5;
+    press p;
+    open_press(&p, 3, SE3D_CONTACT_LAW_HOOKE);
+    p.def.function = function_of(&p, "500*t");
+    add_lid(&p, 6.0 * R + 0.005);
+    CHECK(!se3d_particles_set_step(p.b.particles, h));
+    for (int k = 1; k <= 3; ++k) {
+        run(&p, 20.0 * h * k);
+        CHECK_NEAR(get(&p).wanted, 500.0 * (20.0 * k - 0.5) * h, 1e-12);
+    }
+    bed_close(&p.b);
+}
+
 static void make_box(press *p, se3d_shape_def *def)
 {
     def->size[0] = def->size[1] = 0.05;
@@ -364,6 +379,7 @@ int main(void)
 {
     RUN(row_is_pressed_as_wanted_and_stores_the_work);
     RUN(lid_comes_at_its_speed_and_follows_its_load);
+    RUN(the_load_is_that_of_the_middle_of_a_step);
     RUN(walls_of_a_body_that_moves_keep_their_force);
     RUN(snapshots_hold_the_axis_of_a_servo);
     RUN(snapshots_of_other_servos_are_refused);
