@@ -29,15 +29,16 @@ typedef struct se3d_cell_def {
     int32_t reserved;
     double stress[3];    /* servo: normal stress, positive where particles press [Pa] */
     double rate_max[3];  /* servo: largest abs(rate) [1/s] > 0; default 1 */
-    double gain[3];      /* servo: rate over excess of stress [1/(Pa s)] >= 0; 0: rate_max over
-                         * abs(stress), which then must not be 0 */
+    double gain[3];      /* servo: rate over excess of stress [1/(Pa s)] >= 0; 0: by the stiffness
+                         * of contacts, rate_max over abs(stress) while there are none, which then
+                         * must not be 0 */
     int32_t volume[3];   /* not 0: the length along this axis keeps the volume: several share it */
     int32_t shear_servo; /* not 0: the shear keeps the stress; without shear_rate */
     double shear_stress; /* shear_servo: along flow, on the plane across gradient [Pa]: < 0 where
                             * a positive shear_rate is resisted */
     double shear_rate_max; /* shear_servo: largest abs(shear_rate) [1/s] > 0; default 1 */
-    double shear_gain;     /* shear_servo: shear_rate over excess of stress [1/(Pa s)] >= 0; 0:
-                            * shear_rate_max over abs(shear_stress), which then must not be 0 */
+    double shear_gain;     /* shear_servo: shear_rate over excess of stress [1/(Pa s)] >= 0; 0: as
+                            * gain, with shear_rate_max and shear_stress */
 } se3d_cell_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_cell_def_default. @since 0.1 */

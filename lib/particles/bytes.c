@@ -188,6 +188,7 @@ static void code_cell(se3di_coder *c, se3di_particles *set)
     code_map(c, &cell->since);
     se3di_code_numbers(c, &cell->strained, 1);
     se3di_code_numbers(c, cell->virial, 9);
+    se3di_code_numbers(c, &cell->touching, 1);
     se3di_code_numbers(c, cell->kinetic, 6);
     se3di_code_numbers(c, &cell->work, 1);
 }

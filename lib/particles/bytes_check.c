@@ -89,7 +89,8 @@ static int is_map(const se3di_domain_map *map)
 static int is_cell(const se3di_particles *set)
 {
     const se3di_domain *cell = &set->cell;
-    const double numbers[] = {cell->offset, cell->shear, cell->strained, cell->work};
+    const double numbers[] = {cell->offset, cell->shear, cell->strained, cell->work,
+                              cell->touching};
     int good =
         cell->count == 0 || (are_finite(numbers, sizeof numbers / sizeof *numbers) &&
                              is_map(&cell->rates) && is_map(&cell->field) && is_map(&cell->since) &&

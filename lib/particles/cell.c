@@ -10,13 +10,20 @@
  * middle of the step, seen from its end, are M = L (1 + h L)^-1: the images move with them while
  * the forces are evaluated, M becomes L in the half kick that ends a step, and the next L in that
  * which begins the next one. So a lattice that moves with the cell stays one, to rounding, and
- * sum m u stays zero.                                                     docs/theory/cells.md */
+ * sum m u stays zero.
+ *
+ * Servos: e = gain (stress - wanted), abs(e) <= most; by default e = (stress - wanted + C e_before)
+ * / (4 K h + C), as the stress answers to a rate in a step: with springs K h, dampers C.
+ *                                                                         docs/theory/cells.md */
 #include "particles/cell.h"
 
+#include "math/elementary.h"
 #include "math/larger.h"
 
 #include <math.h>
 #include <string.h>
+
+#define STEPS 4.0 /* in which springs would bring what is missing */
 
 static double length_of(const se3di_particles *set, int axis)
 {
@@ -191,6 +198,93 @@ static void keep_volume(const se3di_domain_stage *stage, double h, double rate[3
     }
 }
 
+/* What a stress answers to a rate of strain with, times the volume: in a step, [Pa m^3 s]. */
+typedef struct answer {
+    double springs, dampers;
+} answer;
+
+/* The stiffest and the most damped of what a material's contacts may be. */
+static se3di_pair hardest(const se3di_particles *set, size_t material)
+{
+    se3di_pair out = {0.0};
+    for (size_t b = 0; b < set->stuff_count; ++b) {
+        const se3di_pair *pair = &set->pairs[material * set->stuff_count + b];
+        if (set->stuffs[b].held) {
+            out.kn = fmax(out.kn, pair->kn);
+            out.kt = fmax(out.kt, pair->kt);
+            out.dn = fmax(out.dn, fmax(pair->dn, pair->dt));
+        }
+    }
+    return out;
+}
+
+/* Stiffness and damping of a contact of two particles like this one that carry `load`. Of Hertz
+ * s = (R* delta)^(1/2), where load = kn s delta. */
+static answer contact_answer(const se3di_particles *set, const se3di_particle *particle,
+                             double load)
+{
+    const se3di_pair pair = hardest(set, set->spins[particle - set->particles].material);
+    double s = 1.0, normal = pair.kn;
+    if (set->law == SE3DI_LAW_HERTZ_MINDLIN) {
+        s = se3di_pow(0.5 * particle->radius * load / pair.kn, 1.0 / 3.0);
+        normal *= 1.5;
+    }
+    return (answer){s * fmax(normal, pair.kt), pair.dn * sqrt(0.5 * s / particle->inverse_mass)};
+}
+
+/* Contacts lie in all directions; each particle has as many, with others like it, and carries by
+ * its area. */
+static void add_contacts(const se3di_particles *set, double pressure, double h, answer *sum)
+{
+    const double contacts = set->cell.touching / (double)set->count;
+    double size = 0.0;
+    for (size_t k = 0; k < set->count; ++k) {
+        const double R = set->particles[k].radius;
+        size += R * R * R;
+    }
+    const double each = 1.5 * pressure * se3di_domain_volume(set) / (contacts * size);
+    for (size_t k = 0; k < set->count; ++k) {
+        const double area = set->particles[k].radius * set->particles[k].radius;
+        const answer one = contact_answer(set, &set->particles[k], each * area);
+        sum->springs += 4.0 / 3.0 * area * contacts * h * one.springs;
+        sum->dampers += 4.0 / 3.0 * area * contacts * one.dampers;
+    }
+}
+
+static answer cell_answer(const se3di_particles *set, double pressure, double h)
+{
+    answer sum = {0.0, 0.0};
+    if (set->cell.touching > 0.0 && set->count > 0) {
+        add_contacts(set, pressure, h, &sum);
+    }
+    for (size_t k = 0; k < set->bond_count; ++k) {
+        const se3di_bond *bond = &set->bonds[k];
+        const double part = bond->length * bond->length / 3.0;
+        sum.springs += part * h * fmax(bond->stiffness[0], bond->stiffness[1]);
+        sum.dampers += part * fmax(bond->damping[0], bond->damping[1]);
+    }
+    return sum;
+}
+
+/* The rate of a servo that is off by `excess`; of the rate before, the stress has answered to. */
+static double servo_rate(const se3di_particles *set, double excess, double wanted, double gain,
+                         double most, double before, double h)
+{
+    if (!(gain > 0.0)) {
+        double stress[6];
+        se3di_domain_stress(set, stress);
+        const double mean = fabs(stress[0] + stress[1] + stress[2]) / 3.0;
+        const answer of = cell_answer(set, fmax(fabs(wanted), mean), fabs(h));
+        const double V = se3di_domain_volume(set);
+        if (of.springs > 0.0) {
+            return clamp((V * excess + of.dampers * before) / (STEPS * of.springs + of.dampers),
+                         most);
+        }
+        gain = most / fabs(wanted);
+    }
+    return clamp(gain * excess, most);
+}
+
 se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
 {
     se3di_domain *cell = &set->cell;
@@ -204,12 +298,14 @@ se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
         for (int a = 0; a < 3; ++a) {
             if (stage->servo[a]) {
                 const double excess = stress[a] - stage->stress[a];
-                cell->rates.along[a] = clamp(stage->gain[a] * excess, stage->most[a]);
+                cell->rates.along[a] = servo_rate(set, excess, stage->stress[a], stage->gain[a],
+                                                  stage->most[a], before.along[a], h);
             }
         }
         if (stage->shear_servo) {
             const double excess = shear_stress(cell, stress) - stage->shear_stress;
-            cell->rates.shear = clamp(stage->shear_gain * excess, stage->shear_most);
+            cell->rates.shear = servo_rate(set, excess, stage->shear_stress, stage->shear_gain,
+                                           stage->shear_most, before.shear, h);
         }
         keep_volume(stage, h, cell->rates.along);
     }

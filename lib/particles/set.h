@@ -341,6 +341,7 @@ typedef struct se3di_domain {
     se3di_domain_map since; /* the map from the places where the list was built */
     double strained;        /* the sum of the largest strains of the steps since then */
     double virial[9];       /* of the last forces, */
+    double touching;        /* how many contacts there were, */
     double kinetic[6];      /* and the sum m u u of the last step: xx, yy, zz, xy, yz, xz */
     double work;
 } se3di_domain;

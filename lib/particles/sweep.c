@@ -490,7 +490,7 @@ static void sum_powers(se3di_particles *set)
 
 static void sum_slabs(se3di_particles *set)
 {
-    double sum[9] = {0.0};
+    double sum[9] = {0.0}, touching = 0.0;
     if (set->audits && se3di_share_is_spread(set)) {
         sum_powers(set);
         return;
@@ -503,8 +503,10 @@ static void sum_slabs(se3di_particles *set)
         for (int k = 0; k < 9; ++k) {
             sum[k] += set->slabs[s].virial[k];
         }
+        touching += (double)set->slabs[s].touching;
     }
     memcpy(set->cell.virial, sum, sizeof sum);
+    set->cell.touching = touching;
 }
 
 void se3di_particles_sweep(se3di_particles *set, const se3di_force_task *task,

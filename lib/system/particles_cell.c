@@ -161,18 +161,13 @@ static se3di_domain_stage make_stage(const se3d_cell_def *def)
                                 .shear_stress = def->shear_stress,
                                 .shear_most = def->shear_rate_max,
                                 .shear_gain = def->shear_gain};
-    if (stage.shear_servo && !(def->shear_gain > 0.0)) {
-        stage.shear_gain = def->shear_rate_max / fabs(def->shear_stress);
-    }
     for (int a = 0; a < 3; ++a) {
         stage.rates.along[a] = def->rate[a];
         stage.servo[a] = def->servo[a] != 0;
         stage.volume[a] = def->volume[a] != 0;
         stage.stress[a] = def->stress[a];
         stage.most[a] = def->rate_max[a];
-        stage.gain[a] = def->gain[a] > 0.0 || !stage.servo[a]
-                            ? def->gain[a]
-                            : def->rate_max[a] / fabs(def->stress[a]);
+        stage.gain[a] = def->gain[a];
     }
     return stage;
 }

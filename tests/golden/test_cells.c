@@ -333,7 +333,6 @@ static void press(bed *b, const cell_case *c, size_t count, double pressure, con
     def.start = times[1];
     def.servo[2] = 0;
     def.rate[2] = -0.4;
-    def.gain[0] = def.gain[1] = 2e-3;
     add_stage(b, &def);
 }
 
@@ -365,9 +364,37 @@ static void packings_keep_pressure_and_yield_at_their_angle(void)
         sides += n < 25 ? 0.0 : side / 25.0;
     }
     const double angle = sum * 180.0 / PI;
-    CHECK_NEAR(sides, pressure, 0.07 * pressure); /* rate / gain = 5 % more */
+    CHECK_NEAR(sides, pressure, 0.01 * pressure);
     CHECK(angle > 18.0 && angle < 25.0);
     bed_close(&b);
+}
+
+/* A gain of rate_max over this pressure would let them chatter at more, and slip out of it. */
+static void keep_a_low_pressure(int32_t law, double friction)
+{
+    static const double times[2] = {0.06, 2.0};
+    cell_case c = cube(0.177);
+    bed b;
+    const double pressure = 100.0;
+    c.law = law;
+    c.friction = friction;
+    c.restitution = 0.3;
+    press(&b, &c, 240, pressure, times);
+    for (int n = 0; n < 3; ++n) {
+        CHECK(se3d_particles_run(b.particles, 0.25 + 0.05 * n) == SE3D_OK);
+        const se3d_cell_state s = state_of(&b);
+        for (int a = 0; a < 3; ++a) {
+            CHECK_NEAR(s.stress[a], pressure, 0.04 * pressure);
+        }
+        CHECK(s.solid_fraction > 0.55 && s.solid_fraction < 0.64);
+    }
+    bed_close(&b);
+}
+
+static void hard_packings_keep_a_low_pressure(void)
+{
+    keep_a_low_pressure(SE3D_CONTACT_LAW_HOOKE, 0.0);
+    keep_a_low_pressure(SE3D_CONTACT_LAW_HERTZ_MINDLIN, 0.5);
 }
 
 /* In pieces, from a copy, on several threads, by all kernels. */
@@ -479,7 +506,6 @@ static void shear_keeps_its_stress_and_cells_their_volume(void)
     def.shear_servo = 1;
     def.shear_stress = -30.0;
     def.shear_rate_max = 0.5;
-    def.shear_gain = 5e-4;
     def.servo[2] = 1;
     def.stress[2] = 3000.0;
     add_stage(&b, &def);
@@ -515,6 +541,7 @@ int main(void)
     RUN(nobody_sees_where_the_border_is);
     RUN(energy_comes_from_the_work_of_the_cell);
     RUN(packings_keep_pressure_and_yield_at_their_angle);
+    RUN(hard_packings_keep_a_low_pressure);
     RUN(shear_keeps_its_stress_and_cells_their_volume);
     RUN(threads_cuts_and_kernels_do_not_change_bits);
     RUN(cells_hold_spheres_alone);

@@ -33,7 +33,7 @@ static const se3di_key stage_keys[] = {
     {"rate_max", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, rate_max), .standard = "[1, 1, 1]",
      .text = "of servo: the largest rate [1/s]"},
     {"gain", SE3DI_KIND_VECTOR, SE3DI_INTO(se3d_cell_def, gain),
-     .standard = "rate_max / abs(stress)",
+     .standard = "by the stiffness of contacts",
      .text = "of servo: rate over excess of stress [1/(Pa s)]"},
     {"volume", SE3DI_KIND_TEXT, .standard = "no axis",
      .text = "the axes whose length keeps the volume, as of servo: one or two"},
@@ -44,7 +44,7 @@ static const se3di_key stage_keys[] = {
      SE3DI_INTO(se3d_cell_def, shear_rate_max), .standard = "1",
      .text = "of shear_stress: the largest rate [1/s]"},
     {"shear_gain", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_cell_def, shear_gain),
-     .standard = "shear_rate_max / abs(shear_stress)",
+     .standard = "the same",
      .text = "of shear_stress: rate over excess of stress [1/(Pa s)]"},
     {.key = NULL}};
 const se3di_object se3di_object_stage = {
