@@ -32,8 +32,9 @@ SE3D_API const char *se3d_analysis_get_name(int32_t analysis);
  * no tolerance is given and no step above 5 ms; radau with strong dampers; gauss where nothing but
  * constant gravity acts on an open tree of joints, or, at tolerances from 2.3e-10 on, on loops of
  * plane pins and balls, in joint coordinates (single steps of given length: dop853); else dop853,
- * which it leaves for radau if stability limits the steps; both for convex if contacts of three
- * free bodies or more alone make their steps very short. @since 0.1 */
+ * which it leaves for radau if stability limits the steps, and radau for it where they would be
+ * stable; both for convex if contacts of three free bodies or more alone make their steps very
+ * short. @since 0.1 */
 typedef enum se3d_method {
     SE3D_METHOD_AUTO = 0,
     SE3D_METHOD_GENERALIZED_ALPHA = 1,
@@ -260,7 +261,7 @@ SE3D_API se3d_status se3d_solver_get_method(const se3d_solver *solver, const cha
 SE3D_API se3d_status se3d_solver_get_formulation(const se3d_solver *solver, const char **name);
 
 /* Get when AUTO changed the method during a run, the last time, because stability or what touches
- * kept its steps short, or many bodies came together.
+ * kept its steps short, or did no more, or many bodies came together.
  * @param[out] time  [s]; NaN: it did not
  * @param[out] left  the method that it left, "": none; static
  * @return OK, NULL.

@@ -182,12 +182,38 @@ static se3d_status renew(se3di_run *run, int whole)
     return SE3D_OK;
 }
 
+/* auto: what the method has left that another one takes over from; none: zero. */
+static se3di_adaptive_history get_left(const se3di_run *run)
+{
+    const se3di_model *model = run->model;
+    const se3di_integrator *left = se3di_integrator_of_history(model->history_tag);
+    return run->automatic && left && left->advance
+               ? *(const se3di_adaptive_history *)(const void *)model->history
+               : (se3di_adaptive_history){0};
+}
+
+/* The method under way has started where another one was left. Back from radau, its first step is
+ * none that radau would not make. */
+static void take_over(const se3di_run *run, const se3di_adaptive_history *left, int returns)
+{
+    se3di_adaptive_history *at = (se3di_adaptive_history *)(void *)run->model->history;
+    if (run->integration.method->advance) {
+        at->returns = left->returns + returns;
+        at->next = returns ? fmin(at->next, left->next) : at->next;
+    }
+}
+
 /* The method starts from a consistent state, where the audit of energy begins if it is void. */
 static se3d_status start_method(se3di_run *run, double h)
 {
     se3di_model *model = run->model;
+    const se3di_adaptive_history left = get_left(run);
+    const se3di_integrator *past = se3di_integrator_of_history(model->history_tag);
+    const int returns =
+        run->automatic && run->integration.method->is_explicit && past && past->takes_stiff;
     SE3DI_TRY(se3di_work_accept(model, 0.0));
     SE3DI_TRY(run->integration.method->start(&run->integration, h));
+    take_over(run, &left, returns);
     model->history_count = run->integration.method->history_count(&run->equations.assembly);
     model->history_tag = se3di_run_get_history_tag(run);
     mark_history(model);
@@ -369,8 +395,8 @@ static int must_switch(const se3di_run *run)
     return has_history(run) && se3di_integration_must_leave(&run->integration);
 }
 
-/* From the present state by a method for stiff motions, or for many bodies at each other; by the
- * same one if rounding alone brought them together. */
+/* From the present state by a method for stiff motions, or back from it, or for many bodies at each
+ * other; by the same one if rounding alone brought them together. */
 static se3d_status switch_method(se3di_run *run)
 {
     if (se3di_run_is_crowded(run)) {
@@ -387,11 +413,14 @@ static se3d_status switch_method(se3di_run *run)
     }
     run->left = run->integration.method;
     run->left_at = run->model->time;
-    se3di_run_use_method(run, se3di_integrator_find(SE3D_METHOD_RADAU));
-    se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
-                    "t = %g s: stability limits the steps of %s, %s takes over", run->left_at,
-                    run->left->name, run->integration.method->name);
+    const int returns = run->left->takes_stiff;
+    se3di_run_use_method(run, returns ? se3di_run_find_explicit(run) : &se3di_integrator_radau);
     SE3DI_TRY(se3di_run_build(run));
+    const char *const now = run->integration.method->name, *const left = run->left->name;
+    se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
+                    returns ? "t = %g s: steps of %s are stable by %s, which takes over"
+                            : "t = %g s: stability limits the steps of %s, %s takes over",
+                    run->left_at, left, now);
     return se3di_run_prepare(run);
 }
 

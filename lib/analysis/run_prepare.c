@@ -79,7 +79,7 @@ static size_t largest_history(const se3di_run *run)
 void se3di_run_use_method(se3di_run *run, const se3di_integrator *method)
 {
     run->integration.method = method;
-    run->integration.settings.leaves_stiff = method->leaves_stiff;
+    run->integration.settings.leaves_stiff = method->leaves_stiff || method->takes_stiff;
 }
 
 /* Below, accelerations of loops come from the equations of the bodies (lib/integrator/state.c). */
@@ -212,9 +212,9 @@ static int may_take_lanes(const se3di_run *run)
            !is_given(model);
 }
 
-static int32_t choose_explicit(const se3di_run *run)
+const se3di_integrator *se3di_run_find_explicit(const se3di_run *run)
 {
-    return may_take_lanes(run) ? SE3D_METHOD_GAUSS : SE3D_METHOD_DOP853;
+    return may_take_lanes(run) ? &se3di_integrator_gauss : &se3di_integrator_dop853;
 }
 
 /* auto: particles move by verlet only, heaps by convex; strong dampers hold explicit methods to
@@ -231,13 +231,13 @@ static se3d_status choose_method(se3di_run *run)
     if (run->analysis == SE3D_ANALYSIS_DYNAMICS && !stiff && !(past && past->leaves_stiff)) {
         SE3DI_TRY(se3di_stiffness_is_stiff(run->model, run->error, &stiff));
     }
-    int32_t method = stiff ? SE3D_METHOD_RADAU : choose_explicit(run);
+    const se3di_integrator *method = stiff ? &se3di_integrator_radau : se3di_run_find_explicit(run);
     if (model->sets) {
-        method = SE3D_METHOD_VERLET;
+        method = &se3di_integrator_verlet;
     } else if (se3di_run_is_crowded(run)) {
-        method = SE3D_METHOD_CONVEX;
+        method = &se3di_integrator_convex;
     }
-    se3di_run_use_method(run, se3di_integrator_find(method));
+    se3di_run_use_method(run, method);
     return SE3D_OK;
 }
 
@@ -430,8 +430,7 @@ se3d_status se3di_run_take_method(se3di_run *run, const se3di_integrator *method
     }
     const int is_of_lanes = method == &se3di_integrator_dop853 || method == &se3di_integrator_gauss;
     if (!is_of_lanes || !run->in_lanes) {
-        se3di_run_use_method(run,
-                             is_of_lanes ? se3di_integrator_find(choose_explicit(run)) : method);
+        se3di_run_use_method(run, is_of_lanes ? se3di_run_find_explicit(run) : method);
         SE3DI_TRY(se3di_run_build(run));
     }
     if (run->in_lanes) {

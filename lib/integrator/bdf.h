@@ -26,7 +26,7 @@ typedef struct se3di_bdf_past {
 } se3di_bdf_past;
 
 #define SE3DI_BDF_PAST (sizeof(se3di_bdf_past) / sizeof(double))
-_Static_assert(sizeof(se3di_bdf_past) == (18 + SE3DI_BDF_POINTS_MAX) * sizeof(double),
+_Static_assert(sizeof(se3di_bdf_past) == (19 + SE3DI_BDF_POINTS_MAX) * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_bdf {

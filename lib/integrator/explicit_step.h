@@ -45,7 +45,7 @@ typedef struct se3di_explicit_past {
     double wide;     /* 1: redundant rows are so by geometry alone (linsol/kkt.h) */
     double narrow;   /* how often it was tried whether they are, in vain */
 } se3di_explicit_past;
-_Static_assert(sizeof(se3di_explicit_past) == 27 * sizeof(double),
+_Static_assert(sizeof(se3di_explicit_past) == 28 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_explicit se3di_explicit;

@@ -22,7 +22,7 @@ typedef struct se3di_integrator_settings {
     double alpha;           /* hht */
     int32_t iterations_max;
     int32_t order;
-    int32_t leaves_stiff; /* a run ends if the method is held by stability, */
+    int32_t leaves_stiff; /* a run ends if stability holds the method, or needs radau no more, */
     int32_t leaves_crowd; /* or where bodies are at each other: SE3DI_CROWD_ */
     int32_t sleeps;       /* convex: islands at rest sleep */
 } se3di_integrator_settings;
@@ -41,8 +41,9 @@ typedef struct se3di_adaptive_history {
     double error;    /* of the last step, relative to the tolerance */
     double rejected; /* 1: an attempt at the step under way was rejected */
     double renewed;  /* 1: something else acts since the last step */
+    double returns;  /* auto: how often stiffness was over, and an explicit method went on */
 } se3di_adaptive_history;
-_Static_assert(sizeof(se3di_adaptive_history) == 6 * sizeof(double),
+_Static_assert(sizeof(se3di_adaptive_history) == 7 * sizeof(double),
                "it is an array of double in the model");
 
 /* The tag of a history is that of its method times this, plus the number of its formulation. */
@@ -81,7 +82,8 @@ typedef struct se3di_integrator {
     /* The state at t within the step, y [se3di_state_count], as the interpolation has it. */
     void (*interpolate)(const se3di_integration *integration, double t, double *y);
     /* Whether stability, not accuracy, has held its last steps so short; NULL: it never does. With
-     * settings.leaves_stiff or leaves_crowd `run` then ends where that was seen. */
+     * settings.leaves_stiff or leaves_crowd `run` then ends where that was seen. Of radau:
+     * whether it is not needed any more, or has followed contacts for too long. */
     int (*is_held)(const se3di_integration *integration);
     /* Whether `run`, which left the history that the model has, ended for what touches; and that it
      * is to go on all the same. NULL: settings.leaves_crowd is not looked at. */

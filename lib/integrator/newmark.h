@@ -41,7 +41,7 @@ typedef struct se3di_newmark_header {
 } se3di_newmark_header;
 
 #define SE3DI_NEWMARK_HEADER (sizeof(se3di_newmark_header) / sizeof(double))
-_Static_assert(sizeof(se3di_newmark_header) == (17 + 2 * SE3DI_STATE_WORK) * sizeof(double),
+_Static_assert(sizeof(se3di_newmark_header) == (18 + 2 * SE3DI_STATE_WORK) * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct se3di_newmark_history {

@@ -13,6 +13,7 @@
 #include "integrator/adaptive.h"
 #include "integrator/crowd_watch.h"
 #include "integrator/memory.h"
+#include "integrator/radau_easy.h"
 
 #include "assembly/energy.h"
 #include "contact/bodies/pace.h"
@@ -59,10 +60,11 @@ typedef struct radau_header {
     double since; /* steps since one did not */
     se3di_crowd_watch watch;
     double leaves; /* 1: to be left for what touches */
+    se3di_radau_ease ease;
 } radau_header;
 
 #define RADAU_HEADER (sizeof(radau_header) / sizeof(double))
-_Static_assert(sizeof(radau_header) == 19 * sizeof(double),
+_Static_assert(sizeof(radau_header) == 24 * sizeof(double),
                "it is an array of double in the model");
 
 typedef struct history {
@@ -513,6 +515,9 @@ static se3d_status take(se3di_adaptive *step, double h, double error)
     step->at->next = next;
     step->at->error = fmax(error, 1e-2);
     watch_crowd(s);
+    if (step->integration->settings.leaves_stiff) {
+        se3di_radau_watch_ease(&s->m, step->at, &s->past.header->ease);
+    }
     return SE3D_OK;
 }
 
@@ -589,9 +594,11 @@ static se3d_status start(se3di_integration *integration, double h)
 static se3d_status renew(se3di_integration *integration)
 {
     const history past = get_history(&integration->equations->assembly);
-    const se3di_crowd_watch watch = past.header->watch;
+    const radau_header before = *past.header;
     SE3DI_TRY(adopt(integration));
-    past.header->watch = watch;
+    past.header->watch = before.watch;
+    past.header->ease = before.ease;
+    past.header->at.returns = before.at.returns;
     past.header->at.renewed = 1.0;
     return SE3D_OK;
 }
@@ -698,11 +705,13 @@ static void stay(se3di_model *model)
     ((radau_header *)(void *)model->history)->leaves = 0.0;
 }
 
-/* By contacts of which each is followed. */
+/* By contacts of which each is followed; or it is not needed any more. */
 static int is_held(const se3di_integration *integration)
 {
-    return integration->settings.leaves_crowd &&
-           leaves_crowd(integration->equations->assembly.model);
+    const se3di_integrator_settings *settings = &integration->settings;
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    return (settings->leaves_crowd && leaves_crowd(assembly->model)) ||
+           (settings->leaves_stiff && get_history(assembly).header->ease.is_over > 0.0);
 }
 
 static se3d_status run(se3di_integration *integration, double t_end)

@@ -195,9 +195,8 @@ static void auto_sees_what_holds_a_light_body(void)
     CHECK(strcmp(picked, "radau") == 0);
 }
 
-/* The bar alone with a damper on its pin that grows: c = exp(6 t). At 3 s it creeps, and dop853 is
- * held to steps of some 1e-8 s. */
-static se3d_system *build_growing(se3d_constraint *pin)
+/* The bar alone with a damper on its pin that changes with time. */
+static se3d_system *build_damped(const char *damping, se3d_constraint *pin)
 {
     const double at[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 1.0}, gravity[3] = {0.0, -9.81, 0.0};
     se3d_system *system = NULL;
@@ -217,7 +216,7 @@ static se3d_system *build_growing(se3d_constraint *pin)
     CHECK(se3d_joint_def_set_frame(system, &joint, at, axis, NULL) == SE3D_OK);
     CHECK(se3d_joint_create_revolute(system, &joint, pin) == SE3D_OK);
     static const char *const variables[] = {"t", "angle", "rate"};
-    law.expression = "exp(6*t)*rate";
+    law.expression = damping;
     law.variables = variables;
     law.variable_count = 3;
     CHECK(se3d_function_create(system, &law, &damper.h) == SE3D_OK);
@@ -226,22 +225,22 @@ static se3d_system *build_growing(se3d_constraint *pin)
     return system;
 }
 
-typedef struct growing {
+typedef struct damped {
     double angle, left_at;
     uint64_t steps, hash;
     char method[32], left[32];
-} growing;
+} damped;
 
 /* In `parts` runs of equal length to 3 s. */
-static growing run_growing(int32_t method, int32_t formulation, int parts)
+static damped run_damped(const char *damping, int32_t method, int32_t formulation, int parts)
 {
-    growing out = {0};
+    damped out = {0};
     se3d_constraint pin;
     se3d_solver *solver = NULL;
     se3d_solver_stats stats;
     const char *name = "", *left = "";
     se3d_solver_def def = se3d_solver_def_default();
-    se3d_system *system = build_growing(&pin);
+    se3d_system *system = build_damped(damping, &pin);
     def.method = method;
     def.formulation = formulation;
     CHECK(se3d_solver_create(system, &def, &solver) == SE3D_OK);
@@ -262,12 +261,14 @@ static growing run_growing(int32_t method, int32_t formulation, int parts)
     return out;
 }
 
+/* At 3 s it creeps, and dop853 is held to steps of some 1e-8 s. */
 static void auto_leaves_dop853_where_the_motion_becomes_stiff(void)
 {
+    static const char grows[] = "exp(6*t)*rate";
     for (int32_t formulation = 0; formulation < 2; ++formulation) {
-        const growing radau = run_growing(SE3D_METHOD_RADAU, formulation, 1);
-        const growing switches = run_growing(SE3D_METHOD_AUTO, formulation, 1);
-        const growing parts = run_growing(SE3D_METHOD_AUTO, formulation, 97);
+        const damped radau = run_damped(grows, SE3D_METHOD_RADAU, formulation, 1);
+        const damped switches = run_damped(grows, SE3D_METHOD_AUTO, formulation, 1);
+        const damped parts = run_damped(grows, SE3D_METHOD_AUTO, formulation, 97);
         CHECK(strcmp(switches.left, "dop853") == 0 && strcmp(switches.method, "radau") == 0);
         CHECK(switches.left_at > 0.3 && switches.left_at < 2.0);
         CHECK_NEAR(switches.angle, radau.angle, 2e-6);
@@ -275,6 +276,101 @@ static void auto_leaves_dop853_where_the_motion_becomes_stiff(void)
         CHECK(parts.hash == switches.hash && parts.steps == switches.steps);
         CHECK(strcmp(radau.left, "") == 0 && isnan(radau.left_at));
     }
+}
+
+/* The damper holds the bar for a while, by 1e5 N m s/rad, and lets it go. */
+static const char brakes[] = "1e5*exp(-((t - 1)/0.2)^6)*rate";
+
+static void auto_comes_back_to_dop853_where_stiffness_is_over(void)
+{
+    for (int32_t formulation = 0; formulation < 4; ++formulation) {
+        const damped exact = run_damped(brakes, SE3D_METHOD_RADAU, 0, 1);
+        const damped switches = run_damped(brakes, SE3D_METHOD_AUTO, formulation, 1);
+        const damped parts = run_damped(brakes, SE3D_METHOD_AUTO, formulation, 97);
+        CHECK(strcmp(switches.left, "radau") == 0 && strcmp(switches.method, "dop853") == 0);
+        CHECK(switches.left_at > 1.1 && switches.left_at < 2.0);
+        CHECK_NEAR(switches.angle, exact.angle, 2e-6);
+        CHECK(switches.steps < exact.steps + 20);
+        CHECK(parts.hash == switches.hash && parts.steps == switches.steps);
+    }
+}
+
+/* A copy of what is there at `from`, in which the damper holds the bar or has just let it go, with
+ * a solver of its own. */
+static void check_copy(double from)
+{
+    static unsigned char bytes[4096];
+    const char *method[2] = {"", ""};
+    se3d_constraint pin;
+    se3d_system *system[2] = {build_damped(brakes, &pin), NULL};
+    se3d_solver *solver[2] = {NULL, NULL};
+    se3d_solver_stats stats[2];
+    const se3d_solver_def def = se3d_solver_def_default();
+    size_t size = 0;
+    CHECK(!se3d_solver_create(system[0], &def, &solver[0]));
+    CHECK(!se3d_solver_run(solver[0], from));
+    CHECK(!se3d_solver_write(solver[0], bytes, sizeof bytes, &size));
+    CHECK(!se3d_system_clone(system[0], &system[1]));
+    CHECK(!se3d_solver_create(system[1], &def, &solver[1]));
+    CHECK(!se3d_solver_read(solver[1], bytes, size));
+    for (int k = 0; k < 2; ++k) {
+        CHECK(!se3d_solver_run(solver[k], 3.0));
+        CHECK(!se3d_solver_get_stats(solver[k], &stats[k]));
+        CHECK(!se3d_solver_get_method(solver[k], &method[k]));
+        se3d_solver_destroy(solver[k]);
+    }
+    CHECK(strcmp(method[0], "dop853") == 0 && method[0] == method[1]);
+    CHECK(stats[0].steps == stats[1].steps);
+    CHECK(se3d_system_hash(system[0]) == se3d_system_hash(system[1]));
+    se3d_system_destroy(system[0]);
+    se3d_system_destroy(system[1]);
+}
+
+static void copies_come_back_to_dop853_at_the_same_step(void)
+{
+    for (int k = 0; k <= 8; ++k) {
+        check_copy(1.0 + 0.04 * k);
+    }
+}
+
+static void set_damping(se3d_system *system, double c)
+{
+    se3d_force damper;
+    CHECK(!se3d_system_get_force(system, 0, &damper));
+    CHECK(!se3d_force_set_parameter(system, damper, SE3D_FORCE_PARAMETER_C, c));
+}
+
+/* The same damper is taken away after a second, by the caller: radau has been there from the start.
+ * The bar falls from rest as a pendulum does. */
+static void auto_comes_back_from_radau_after_a_change(void)
+{
+    double angle[2];
+    for (int k = 0; k < 2; ++k) {
+        const char *method = "", *left = "";
+        double at = 0.0;
+        se3d_solver_def def = se3d_solver_def_default();
+        se3d_solver *solver = NULL;
+        se3d_constraint pin;
+        se3d_system *system = build_damped("0", &pin);
+        set_damping(system, k == 0 ? 1e6 : 0.0);
+        def.method = k == 0 ? SE3D_METHOD_AUTO : SE3D_METHOD_DOP853;
+        def.tolerance = k == 0 ? def.tolerance : 1e-12;
+        CHECK(!se3d_solver_create(system, &def, &solver));
+        CHECK(k == 1 || !se3d_solver_run(solver, 1.0));
+        CHECK(!se3d_solver_get_method(solver, &method));
+        CHECK(strcmp(method, k == 0 ? "radau" : "dop853") == 0);
+        set_damping(system, 0.0);
+        CHECK(!se3d_solver_run(solver, k == 0 ? 4.0 : 3.0));
+        CHECK(!se3d_solver_get_method(solver, &method));
+        CHECK(!se3d_solver_get_switch(solver, &at, &left));
+        CHECK(strcmp(method, "dop853") == 0 && strcmp(left, k == 0 ? "radau" : "") == 0);
+        CHECK(k == 1 || (at > 1.0 && at < 2.0));
+        CHECK(!se3d_joint_get_coordinate(system, pin, SE3D_JOINT_COORDINATE_ANGLE, &angle[k], NULL,
+                                         NULL));
+        se3d_solver_destroy(solver);
+        se3d_system_destroy(system);
+    }
+    CHECK_NEAR(angle[0], angle[1], 2e-4); /* it has sunk by 6e-5 rad before */
 }
 
 /* A governor at 1 turn/s: arms of 1 m from a spindle, their middles tied to a collar by springs
@@ -505,6 +601,9 @@ int main(void)
     RUN(auto_sees_a_damper_between_any_two_bodies);
     RUN(auto_looks_at_stiffness_and_says_what_it_picked);
     RUN(auto_leaves_dop853_where_the_motion_becomes_stiff);
+    RUN(auto_comes_back_to_dop853_where_stiffness_is_over);
+    RUN(copies_come_back_to_dop853_at_the_same_step);
+    RUN(auto_comes_back_from_radau_after_a_change);
     RUN(auto_leaves_dop853_where_decays_hold_it);
     RUN(new_solvers_of_auto_go_on_by_the_method_under_way);
     RUN(a_solver_that_is_read_goes_on_by_its_method);

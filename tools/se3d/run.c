@@ -113,7 +113,9 @@ static void print_analysis(const se3d_run_analysis *a)
     printf(", CPU time %.3g s\n", a->cpu_time);
     if (a->left[0]) {
         printf("  auto left %s for %s at t = %.9g s: %s\n", a->left, a->method, a->left_at,
-               strcmp(a->method, "convex") != 0 ? "the motion became stiff"
+               strcmp(a->method, "convex") != 0 ? strcmp(a->left, "radau") == 0
+                                                      ? "the motion is stiff no more"
+                                                      : "the motion became stiff"
                : strcmp(a->left, "radau") == 0
                    ? "bodies that touch made it slower than what happens"
                    : "bodies that touch held its steps short, or are many");
