@@ -141,6 +141,26 @@ static void what_touches_is_evaluated_when_few_are_fast(void)
     bed_close(&b);
 }
 
+/* A plane that comes closer by less than the thousandth of a radius in all. */
+static void a_slow_plane_leaves_lists_as_they_are(void)
+{
+    bed b;
+    open_cloud(&b, 100, 0.0);
+    const se3d_body floor = add_plate(&b, -0.01, 0);
+    const se3di_particles *set = &b.particles->set;
+    uint64_t last = 0;
+    int made = 0;
+    for (int k = 0; k < 200; ++k) {
+        const double low[3] = {0.0, 0.0, -0.01 + 1e-8 * k};
+        CHECK(se3d_body_set_position(b.system, floor, low) == SE3D_OK);
+        CHECK(se3d_particles_step(b.particles, 1) == SE3D_OK);
+        made += set->steps_near != last;
+        last = set->steps_near;
+    }
+    CHECK(made < 20);
+    bed_close(&b);
+}
+
 /* One particle flies past a lattice at rest, whose gaps are a fifth of the skin. */
 static void one_fast_particle_leaves_the_blocks_of_others_alone(void)
 {
@@ -157,6 +177,7 @@ static void one_fast_particle_leaves_the_blocks_of_others_alone(void)
 
 int main(void)
 {
+    RUN(a_slow_plane_leaves_lists_as_they_are);
     RUN(what_touches_is_evaluated_when_few_are_fast);
     RUN(one_fast_particle_leaves_the_blocks_of_others_alone);
     return check_finish();
