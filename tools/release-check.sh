@@ -149,8 +149,8 @@ mutation() {
         steps=test_unit_tableaus,test_unit_tyre_steps,test_property_kinks_dynamics,test_property_between_steps
         steps=$steps,test_property_gauss,test_property_rattle,test_order-of-accuracy_methods,test_order-of-accuracy_bdf
         steps=$steps,test_order-of-accuracy_integrators,test_golden_convex,test_determinism_hashes
-        shapes=test_unit_narrow,test_unit_shapes,test_unit_depth,test_unit_separation,test_golden_mesh_contact
-        shapes=$shapes,test_golden_mesh_on_mesh,test_determinism_hashes
+        shapes=test_unit_narrow,test_unit_shapes,test_unit_depth,test_unit_depth_pieces,test_unit_separation
+        shapes=$shapes,test_unit_flush,test_golden_mesh_contact,test_golden_mesh_on_mesh,test_determinism_hashes
         mutants "$count" $joints lib/joint/*.c
         mutants "$count" $forces lib/force/*.c
         mutants "$count" $assemblies lib/assembly/*.c
