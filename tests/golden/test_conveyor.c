@@ -345,8 +345,8 @@ static void particles_and_bodies_feel_of_a_surface_what_is_tangential(void)
     }
 }
 
-/* A ball that stands where a turntable turns is turned by torsional friction alone, with the constant
- * moment M, up to the table's rate: half of the work of the drive is lost. */
+/* A ball that stands where a turntable turns is turned by torsional friction alone, with a constant
+ * moment, up to the table's rate: half of the work of the drive is lost. */
 static void a_turntable_gives_work_by_torsional_friction(void)
 {
     const double w = 4.0, r = 0.05, m = 1.0, spin[3] = {0.0, 0.0, w}, stiffness = 1e5;
