@@ -267,6 +267,33 @@ static void a_ball_lands_alike_at_tight_tolerances(void)
     }
 }
 
+/* What it hits is one line, from end to end of it, whatever way the edge looks. */
+static void a_wheel_that_climbs_a_kerb_keeps_its_direction(void)
+{
+    const double R = 0.1, v[3] = {0.0, 2.5, 0.0}, w[3] = {0.0, 0.0, -v[1] / R};
+    const double start[3] = {0.0, 0.0, R}, size[3] = {1.0, 1.0, 0.08}, at[3] = {0.0, 1.0, 0.0};
+    double first[3] = {0.0, 0.0, 0.0};
+    for (size_t n = 0; n < CHOICES; ++n) {
+        scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.9, 0.1, 1e5);
+        double now[3];
+        scene_floor(&s, 0.0);
+        scene_box_on(&s, scene_ground(&s), size, at);
+        const se3d_body wheel = scene_disk(&s, 1.5, R, 0.05, start, 0.5 * PI, w);
+        CHECK(se3d_body_set_velocity(s.system, wheel, v) == SE3D_OK);
+        scene_solve(&s, choices[n].method, choices[n].formulation, 0.0, 1e-6);
+        scene_run(&s, 0.5);
+        CHECK(se3d_body_get_position(s.system, wheel, now) == SE3D_OK);
+        CHECK(now[1] > 0.7 && now[2] > R + 0.039); /* on it */
+        CHECK_NEAR(now[0], 0.0, 1e-5);
+        if (n == 0) {
+            memcpy(first, now, sizeof first);
+        }
+        CHECK_NEAR(now[1], first[1], 2e-3);
+        CHECK_NEAR(now[2], first[2], 2e-3);
+        scene_end(&s);
+    }
+}
+
 int main(void)
 {
     RUN(a_ball_on_a_turntable_goes_round_a_circle);
@@ -276,5 +303,6 @@ int main(void)
     RUN(a_cart_rolls_down_a_slope);
     RUN(a_ball_rolls_on_in_long_steps);
     RUN(a_ball_lands_alike_at_tight_tolerances);
+    RUN(a_wheel_that_climbs_a_kerb_keeps_its_direction);
     return check_finish();
 }

@@ -91,21 +91,30 @@ static void show(const se3di_shape *i, const se3di_shape *j, double wanted, cons
     }
 }
 
-/* Two round sides that are nearly parallel: their points have normals of their own, which lean from
- * that of the least translation by what the axes do, and are as deep as the two. */
+/* An axis of the one, of a round one that of its side, is nearly parallel to the other's side. */
+static int is_along(const se3di_solid *one, const se3di_solid *two)
+{
+    double u[3], w[3], across[3];
+    int along = 0;
+    const int is_round = se3di_shape_class_of(one->shape)->lines == SE3DI_AXES_Z;
+    se3di_solid_axis(two, 2, w);
+    for (int axis = is_round ? 2 : 0; axis < 3; ++axis) {
+        se3di_solid_axis(one, axis, u);
+        se3di_cross(u, w, across);
+        along |= se3di_norm(across) < 1e-2;
+    }
+    return along && (is_round || one->shape->kind == SE3DI_SHAPE_BOX) &&
+           se3di_shape_class_of(two->shape)->lines == SE3DI_AXES_Z;
+}
+
+/* Two round sides that are nearly parallel, or one and an edge of a box: their points have normals
+ * of their own, which lean from that of the least translation by what the two do, and are as deep
+ * as the two. */
 static int are_along(const se3di_shape *i, const se3di_shape_pose *at, const se3di_shape *j,
                      const se3di_shape_pose *of)
 {
     const se3di_solid one = {i, at}, two = {j, of};
-    double u[3], w[3], across[3];
-    if (se3di_shape_class_of(i)->lines != SE3DI_AXES_Z ||
-        se3di_shape_class_of(j)->lines != SE3DI_AXES_Z) {
-        return 0;
-    }
-    se3di_solid_axis(&one, 2, u);
-    se3di_solid_axis(&two, 2, w);
-    se3di_cross(u, w, across);
-    return se3di_norm(across) < 1e-2;
+    return is_along(&one, &two) || is_along(&two, &one);
 }
 
 static double rim_of(const se3di_shape *shape)

@@ -246,6 +246,15 @@ static int is_over(const pose_pair *p, const pieces *all, int piece, const doubl
     return 0;
 }
 
+/* What the normals at both ends of what a round side has on an edge may be off: they are across the
+ * edge or the axis, where these are nearly parallel. */
+static double turn_on_edges(const pose_pair *p, const double n[3])
+{
+    double axis[3];
+    se3di_solid_axis(&(se3di_solid){p->solid, &p->at}, 2, axis);
+    return p->solid->kind == SE3DI_SHAPE_CYLINDER && fabs(se3di_dot(axis, n)) < 1e-2 ? 1e-4 : 0.0;
+}
+
 /* One contact is that of the piece; those along its normals, between its faces, are no deeper. */
 static void check_piece(const pose_pair *p, const pieces *all, int piece, const se3di_manifold *m,
                         tally *t)
@@ -262,10 +271,11 @@ static void check_piece(const pose_pair *p, const pieces *all, int piece, const 
         (all->count > 1 && !is_over(p, all, piece, n, wanted))) {
         return;
     }
+    const double slack = turn_on_edges(p, n);
     int found = 0, deeper = 0, less = 0;
     for (uint32_t k = 0; k < m->count; ++k) {
         se3di_sub(m->points[k].normal, n, turn);
-        found |= se3di_norm(turn) < SAME && fabs(m->points[k].overlap - wanted) < SAME;
+        found |= se3di_norm(turn) < SAME + slack && fabs(m->points[k].overlap - wanted) < SAME;
         less |= m->points[k].overlap < wanted - SAME && comes_off(p, &m->points[k]);
         deeper |= all->count == 1 && m->points[k].overlap > wanted + SAME;
     }

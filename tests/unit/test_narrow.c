@@ -369,6 +369,51 @@ static void points_are_at_different_places(void)
     }
 }
 
+/* Above an edge of a box, from the one face that ends there to the other. `lean`: by how little the
+ * two are not parallel. */
+static void lie_on_edge(int kind, double turn, double lean, int first)
+{
+    se3di_shape box = shape_of(SE3DI_SHAPE_BOX), round = shape_of(kind);
+    const se3di_shape_pose at = {.R = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
+    const double n[3] = {sin(turn), 0.0, cos(turn)}, deep = 1e-3;
+    const double q[4] = {sqrt(0.5), sqrt(0.5), lean, -lean};
+    double unit[4];
+    se3di_shape_pose of = {.x = {box.half[0], 0.1, box.half[2]}};
+    se3di_manifold m;
+    se3di_quat_normalize(q, unit);
+    se3di_quat_to_matrix(unit, of.R);
+    se3di_add_scaled(round.radius - deep, n, of.x);
+    if (first) {
+        se3di_narrow_find(&round, &of, &box, &at, &m);
+    } else {
+        se3di_narrow_find(&box, &at, &round, &of, &m);
+    }
+    CHECK(m.count == 2);
+    for (uint32_t k = 0; k < m.count; ++k) {
+        const se3di_contact_point *p = &m.points[k];
+        const double side = first ? -1.0 : 1.0;
+        CHECK_NEAR(p->overlap, deep, 1e-9 + 2.0 * fabs(lean));
+        CHECK_NEAR(side * se3di_dot(p->normal, n), 1.0, 1e-9);
+        CHECK_NEAR(p->point[0] + 0.5 * deep * n[0], box.half[0], 1e-5);
+        CHECK_NEAR(p->point[2] + 0.5 * deep * n[2], box.half[2], 1e-5);
+    }
+    CHECK_NEAR(fabs(m.points[0].point[1] - m.points[1].point[1]), 0.9, 1e-4); /* in common */
+}
+
+static void a_round_side_on_an_edge_touches_at_both_ends(void)
+{
+    static const double leans[] = {0.0, 1e-15, -1e-12, 1e-9, -1e-6};
+    for (int k = 1; k < 18; ++k) {
+        const double turn = 0.087 * k;
+        for (size_t l = 0; l < sizeof leans / sizeof *leans; ++l) {
+            for (int first = 0; first < 2; ++first) {
+                lie_on_edge(SE3DI_SHAPE_CYLINDER, turn, leans[l], first);
+                lie_on_edge(SE3DI_SHAPE_CAPSULE, turn, leans[l], first);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     RUN(overlaps_equal_brute_force_for_all_pairs);
@@ -379,5 +424,6 @@ int main(void)
     RUN(boxes_on_each_other_touch_at_four_corners);
     RUN(what_begins_to_touch_flat_has_all_corners);
     RUN(cylinders_stand_on_four_and_lie_on_two_points);
+    RUN(a_round_side_on_an_edge_touches_at_both_ends);
     return check_finish();
 }

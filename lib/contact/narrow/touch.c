@@ -3,9 +3,9 @@
  *
  * All points of a pair have that normal, and their overlaps are measured along it: those of flat
  * parts that lean little from it where the other part is cut off at the sides. Only those of two
- * round sides, at the ends of what they have in common, have their own. Directions that differ
- * little, as those of two faces that lie on each other and of their edges, so give nearly the same
- * points, and the least overlap is never left for another one. */
+ * round sides, or of one and an edge, at the ends of what they have in common, have their own.
+ * Directions that differ little, as those of two faces that lie on each other and of their edges,
+ * so give nearly the same points, and the least overlap is never left for another one. */
 #include "contact/narrow/internal.h"
 #include "math/vec3.h"
 
@@ -21,6 +21,7 @@
 #define CERTAIN     1e-12 /* of the size: boxes that are apart by more are */
 #define ASKEW       0.999 /* cosine; edges that are so, or less parallel have a product */
 #define WITNESS     0x20000001u
+#define EDGE        4u /* features of the points on an edge are its number times this, and more */
 #define EDGES       0x40000000u /* features of edges, by their axes */
 
 /* How two shapes come apart. */
@@ -151,16 +152,18 @@ static void point_touches(const parting *p, uint32_t feature, se3di_manifold *ma
     bend_side(p->j, p->n, &c->bend_j);
 }
 
-/* The axes of two round shapes that touch along what they have in common. */
+/* Two lines that touch along what they have in common: axes of round sides, or one and an edge. */
 typedef struct lines {
     double a[3], b[3];     /* their beginnings */
     double u[3], w[3];     /* unit */
     double long_a, long_b; /* lengths */
+    double r_a, r_b;       /* radii, of an edge 0 */
+    uint32_t feature;      /* which edge it is, 0: none */
     double low, high;      /* what they have in common, along a */
     double from, to;       /* where b begins and ends, seen along a */
 } lines;
 
-static double line_of(const se3di_solid *solid, double begin[3], double u[3])
+static double axis_of(const se3di_solid *solid, double begin[3], double u[3])
 {
     const double half = solid->shape->half_length;
     se3di_solid_axis(solid, 2, u);
@@ -169,13 +172,54 @@ static double line_of(const se3di_solid *solid, double begin[3], double u[3])
     return 2.0 * half;
 }
 
+/* The edge of a face that is farthest along n. */
+static double edge_of(const se3di_face *face, const double n[3], double begin[3], double u[3],
+                      uint32_t *feature)
+{
+    double farthest = -HUGE_VAL;
+    int edge = 0;
+    for (int k = 0; k < face->count; ++k) {
+        const double *next = face->corner[(k + 1) % face->count];
+        const double along = se3di_dot(face->corner[k], n) + se3di_dot(next, n);
+        edge = along > farthest ? k : edge;
+        farthest = fmax(along, farthest);
+    }
+    se3di_copy(face->corner[edge], begin);
+    se3di_sub(face->corner[(edge + 1) % face->count], begin, u);
+    const double length = se3di_norm(u);
+    se3di_scale(length > 0.0 ? 1.0 / length : 0.0, u, u);
+    *feature = EDGE * (1u + face->id * SE3DI_FACE_CORNERS + (uint32_t)edge);
+    return length;
+}
+
+/* The lines of a round side and of another one, or of an edge that n is across. Returns 0 if there
+ * are none. */
+static int find_lines(const parting *p, const se3di_face *face_i, const se3di_face *face_j,
+                      lines *l)
+{
+    const int is_axis_i = face_i->count == 2, is_axis_j = face_j->count == 2;
+    const se3di_solid *other = is_axis_i ? p->j : p->i;
+    const int is_edge = (is_axis_i ? face_j : face_i)->count > 2 && !se3di_solid_has_rims(other);
+    if (!(is_axis_i || is_axis_j) || !(is_edge || (is_axis_i && is_axis_j))) {
+        return 0;
+    }
+    double back[3];
+    se3di_scale(-1.0, p->n, back);
+    l->feature = 0;
+    l->r_a = is_axis_i ? p->i->shape->radius : 0.0;
+    l->r_b = is_axis_j ? p->j->shape->radius : 0.0;
+    l->long_a =
+        is_axis_i ? axis_of(p->i, l->a, l->u) : edge_of(face_i, p->n, l->a, l->u, &l->feature);
+    l->long_b =
+        is_axis_j ? axis_of(p->j, l->b, l->w) : edge_of(face_j, back, l->b, l->w, &l->feature);
+    return 1;
+}
+
 /* Returns 0 if they cross at an angle, or lie end to end. If they cross nearly parallel, the
  * overlap falls off to either side. */
 static int lines_meet(const parting *p, lines *l)
 {
     double across[3], d[3];
-    l->long_a = line_of(p->i, l->a, l->u);
-    l->long_b = line_of(p->j, l->b, l->w);
     se3di_cross(l->u, l->w, across);
     if (!(se3di_norm(across) < PARALLEL && fabs(se3di_dot(l->u, p->n)) < PARALLEL)) {
         return 0;
@@ -183,7 +227,7 @@ static int lines_meet(const parting *p, lines *l)
     se3di_sub(l->b, l->a, d);
     l->from = se3di_dot(d, l->u);
     l->to = l->from + l->long_b * se3di_dot(l->w, l->u);
-    const double round = p->i->shape->radius + p->j->shape->radius;
+    const double round = l->r_a + l->r_b;
     const double turn = fabs(se3di_dot(across, p->n));
     const double far = sqrt(2.0 * LOSS * p->depth * round);
     l->low = fmax(0.0, fmin(l->from, l->to));
@@ -234,7 +278,6 @@ static void bend_along(const double axis[3], double radius, const double n[3], s
  * other would be pushed to and fro, and not come to rest. The deeper one is as deep as the two. */
 static void lines_touch(const parting *p, const lines *l, se3di_manifold *manifold)
 {
-    const double r_i = p->i->shape->radius, r_j = p->j->shape->radius;
     double x[2][3], n[2][3], overlap[2];
     for (int k = 0; k < 2; ++k) {
         double q[3];
@@ -245,16 +288,17 @@ static void lines_touch(const parting *p, const lines *l, se3di_manifold *manifo
             return;
         }
         se3di_scale(1.0 / distance, n[k], n[k]);
-        overlap[k] = r_i + r_j - distance;
+        overlap[k] = l->r_a + l->r_b - distance;
     }
     const double more = p->depth - fmax(overlap[0], overlap[1]);
     for (uint32_t k = 0; k < 2; ++k) {
         overlap[k] += more;
         if (overlap[k] > 0.0) {
-            se3di_add_scaled(r_i - 0.5 * overlap[k], n[k], x[k]);
-            se3di_contact_point *c = se3di_manifold_add(manifold, x[k], n[k], overlap[k], k + 1u);
-            bend_along(l->u, r_i, n[k], &c->bend_i);
-            bend_along(l->w, r_j, n[k], &c->bend_j);
+            se3di_add_scaled(l->r_a - 0.5 * overlap[k], n[k], x[k]);
+            se3di_contact_point *c =
+                se3di_manifold_add(manifold, x[k], n[k], overlap[k], l->feature + k + 1u);
+            bend_along(l->u, l->r_a, n[k], &c->bend_i);
+            bend_along(l->w, l->r_b, n[k], &c->bend_j);
         }
     }
 }
@@ -340,7 +384,7 @@ static void touch(const parting *p, se3di_manifold *manifold)
         se3di_narrow_clip(&face_i, &face_j, p->n, p->radius, p->depth, 0, manifold);
     } else if (flat_j) {
         se3di_narrow_clip(&face_j, &face_i, back, p->radius, p->depth, 1, manifold);
-    } else if (face_i.count == 2 && face_j.count == 2 && lines_meet(p, &both)) {
+    } else if (find_lines(p, &face_i, &face_j, &both) && lines_meet(p, &both)) {
         lines_touch(p, &both, manifold);
     }
     if (flat_i || flat_j) {
