@@ -453,7 +453,10 @@ static double longest_step(const se3di_integration *integration)
     const int is_controlled =
         integration->method->is_implicit || integration->method->explicit_class;
     const double stable = is_controlled ? HUGE_VAL : se3di_stiffness_step(model);
-    return se3di_equal_steps_are_chosen(integration) ? stable : fmin(STEP_DEFAULT, stable);
+    const int is_chosen =
+        se3di_equal_steps_are_chosen(integration) ||
+        (!(integration->settings.step > 0.0) && se3di_equal_steps_given(integration, model) > 0.0);
+    return is_chosen ? stable : fmin(STEP_DEFAULT, stable);
 }
 
 /* Equal steps, chosen before the first one. */

@@ -62,14 +62,27 @@ static double shorter(double a, double b)
     return a > 0.0 && !(b > 0.0 && b < a) ? a : b;
 }
 
+static int moves_bodies(const se3di_model *model)
+{
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        if (!model->bodies[k].fixed) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 double se3di_equal_steps_given(const se3di_integration *integration, const se3di_model *model)
 {
     const se3di_integrator *method = integration->method;
     const double step =
         method->fixes_step || method->chooses_step ? integration->settings.step : 0.0;
-    return method->takes_particles
-               ? shorter(shorter(step, model->contact.step), se3di_sets_step(model))
-               : step;
+    if (!method->takes_particles) {
+        return step;
+    }
+    const double asked = shorter(step, model->contact.step);
+    const double all = shorter(asked, se3di_sets_step(model));
+    return asked > 0.0 || !moves_bodies(model) ? all : fmin(all, STEP_LONG);
 }
 
 double se3di_equal_steps_get(const se3di_integration *integration, const se3di_model *model)
@@ -77,7 +90,8 @@ double se3di_equal_steps_get(const se3di_integration *integration, const se3di_m
     const se3di_integrator *method = integration->method;
     const double given = se3di_equal_steps_given(integration, model);
     if (given > 0.0) {
-        return given;
+        const double most = integration->settings.step_most;
+        return integration->settings.step > 0.0 || !(most > 0.0) ? given : fmin(given, most);
     }
     return are_chosen(integration, model) &&
                    se3di_integrator_of_history(model->history_tag) == method

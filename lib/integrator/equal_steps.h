@@ -50,7 +50,8 @@ void se3di_equal_steps_watch(struct se3di_integration *integration, double h);
  * changes if it is short enough for that. */
 double se3di_equal_steps_review(const struct se3di_integration *integration, double h,
                                 double *most);
-/* The length of equal steps as given, of verlet also by contacts or particles [s]; 0: it is not. */
+/* The length of equal steps as given, of verlet also by contacts or particles [s]; 0: it is not.
+ * If bodies move, particles alone ask for no more than 0.001 s. */
 double se3di_equal_steps_given(const struct se3di_integration *integration,
                                const struct se3di_model *model);
 /* The length of equal steps of a run on the model, given or chosen [s]; 0: none is chosen yet, or

@@ -206,7 +206,7 @@ typedef struct answer {
 /* The stiffest and the most damped of what a material's contacts may be. */
 static se3di_pair hardest(const se3di_particles *set, size_t material)
 {
-    se3di_pair out = {0.0};
+    se3di_pair out = {.kn = 0.0};
     for (size_t b = 0; b < set->stuff_count; ++b) {
         const se3di_pair *pair = &set->pairs[material * set->stuff_count + b];
         if (set->stuffs[b].held) {

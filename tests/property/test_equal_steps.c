@@ -255,6 +255,36 @@ static void a_choice_that_turns_out_wrong_is_mended(void)
     text_model_close(&m);
 }
 
+/* Boulders that take seconds to touch, with what else moves and what is said of the step. */
+static void check_boulders(const char *contact, const char *bodies, double expected)
+{
+    char text[700];
+    double step = 0.0;
+    se3d_solver_stats stats;
+    (void)snprintf(text, sizeof text,
+                   "{se3d: 1, contact: {law: hooke%s}, bodies: [%s],"
+                   "materials: [{name: rock, density: 2000, stiffness: 1e6}],"
+                   "particles: [{material: rock, radius: 10, position: [0, 0, 0]},"
+                   "{material: rock, radius: 10, position: [20, 0, 0]}],"
+                   "analysis: {type: dynamics, duration: 4}}",
+                   contact, bodies);
+    text_model m = text_model_open(text, SE3D_METHOD_VERLET, -1, 0.0);
+    CHECK(!se3d_solver_run(m.solver, 4.0));
+    CHECK(!se3d_solver_get_step(m.solver, &step) && !se3d_solver_get_stats(m.solver, &stats));
+    CHECK_NEAR(step, expected, 2e-3 * expected);
+    CHECK(fabs((double)stats.steps - 4.0 / step) <= 1.0);
+    text_model_close(&m);
+}
+
+static void particles_alone_are_stepped_as_their_contacts_allow(void)
+{
+    static const char body[] = "{name: a, mass: 1, inertia: [1, 1, 1], position: [0, 0, 99]}";
+    check_boulders("", "", 0.08513);
+    check_boulders(", step: 0.05", "", 0.05);
+    check_boulders("", body, 0.001);
+    check_boulders(", step: 0.05", body, 0.05);
+}
+
 /* In frames that do not know of it: steps are short in a pulse and long again behind it, where they
  * stayed as short. */
 static void steps_are_long_again_behind_a_pulse(void)
@@ -359,6 +389,7 @@ int main(void)
     RUN(the_error_falls_with_the_tolerance);
     RUN(the_choice_goes_on_in_clones_and_snapshots);
     RUN(steps_are_equal_and_a_given_one_is_reported);
+    RUN(particles_alone_are_stepped_as_their_contacts_allow);
     RUN(a_choice_that_turns_out_wrong_is_mended);
     RUN(steps_are_long_again_behind_a_pulse);
     return check_finish();
