@@ -131,7 +131,8 @@ typedef struct se3d_fill_def {
     size_t struct_size;
     se3d_material material;        /* of the particles */
     size_t count;                  /* lattice: at most; 0: all that fit */
-    double lower[3], upper[3];     /* region: no part of a particle is outside [m] */
+    double lower[3], upper[3];     /* region: no part of a particle is outside; if the two are
+                                    * the same along an axis, no centre [m] */
     double radius_min, radius_max; /* uniformly distributed [m] */
     double spacing;                /* lattice [m]; 0: 1.1 times the largest diameter */
     double jitter;                 /* lattice: largest displacement along each axis [m] */

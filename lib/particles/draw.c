@@ -43,8 +43,9 @@ double se3di_radii_draw(const se3di_radii *radii, uint64_t *state)
 void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3])
 {
     for (int a = 0; a < 3; ++a) {
-        double room = region->upper[a] - region->lower[a] - 2.0 * radius;
-        x[a] = region->lower[a] + radius + room * se3di_random_draw(state);
+        const double size = se3di_region_is_flat(region->lower, region->upper, a) ? 0.0 : radius;
+        double room = region->upper[a] - region->lower[a] - 2.0 * size;
+        x[a] = region->lower[a] + size + room * se3di_random_draw(state);
     }
 }
 

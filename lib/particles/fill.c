@@ -57,6 +57,9 @@ static double lattice_init(lattice *l, const se3d_fill_def *def)
         if (width < 2.0 * l->margin[a] - slack && width >= 2.0 * least - slack) {
             l->margin[a] = 0.5 * width;
         }
+        if (se3di_region_is_flat(def->lower, def->upper, a)) {
+            l->margin[a] = 0.0;
+        }
         const double room = width - 2.0 * l->margin[a];
         double n = room < -slack ? 0.0 : floor((room + slack) / l->spacing) + 1.0;
         l->n[a] = n < 2e9 ? (size_t)n : (size_t)2e9;
@@ -109,7 +112,8 @@ void se3di_lattice_fill(se3di_particles *set, const se3d_fill_def *def, uint32_t
         if (lattice_point(&l, def, k, x)) {
             double radius = se3di_radii_draw(&radii, &state);
             for (int a = 0; a < 3; ++a) {
-                x[a] += def->jitter * (2.0 * se3di_random_draw(&state) - 1.0);
+                const double by = def->jitter * (2.0 * se3di_random_draw(&state) - 1.0);
+                x[a] += se3di_region_is_flat(def->lower, def->upper, a) ? 0.0 : by;
             }
             se3di_piece piece = piece_of(def, material, radius, number++);
             se3di_copy(x, piece.x);
@@ -122,7 +126,9 @@ double se3di_fill_most(const se3di_particles *set, const se3d_fill_def *def)
 {
     double most = 1.0, volume = 4.0 / 3.0 * 3.1415926535897932384626433832795; /* over radius^3 */
     for (int a = 0; a < 3; ++a) {
-        most *= (def->upper[a] - def->lower[a]) / def->radius_min;
+        const double width = def->upper[a] - def->lower[a];
+        const int flat = se3di_region_is_flat(def->lower, def->upper, a);
+        most *= (flat ? 2.0 * def->radius_max : width) / def->radius_min;
     }
     if (def->clump > 0) {
         const se3di_clump_template *of = &set->templates[def->clump - 1];

@@ -63,9 +63,13 @@ se3d_status se3di_check_region(se3d_particles *p, const double lower[3], const d
                              " = %d, must be 0, 1 or 2", axis);
     }
     for (int a = 0; a < 3; ++a) {
+        const int may_be_flat =
+            region == SE3D_FILL_REGION_BOX || (region == SE3D_FILL_REGION_CYLINDER && a == axis);
         const double least = lower[a] + size - se3di_region_slack(lower[a], size);
         SE3DI_TRY(se3di_check_range(p->system, "lower", lower[a], -1e30, 1e30));
-        SE3DI_TRY(se3di_check_range(p->system, "upper", upper[a], least, 1e30));
+        if (!(may_be_flat && upper[a] >= lower[a] && upper[a] <= lower[a])) {
+            SE3DI_TRY(se3di_check_range(p->system, "upper", upper[a], least, 1e30));
+        }
     }
     return SE3D_OK;
 }

@@ -263,8 +263,64 @@ static void a_region_of_one_diameter_holds_one(void)
     }
 }
 
+static void check_plane(double y)
+{
+    read_bed(&b);
+    for (size_t n = 0; n < b.count; ++n) {
+        CHECK(!(fabs(b.r[3 * n + 1] - y) > 0.0));
+    }
+}
+
+/* A region without width along an axis holds centres in a plane, where disks of all sizes stay. */
+static void flat_regions_hold_models_in_2d(void)
+{
+    static const double y = 0.3, at[3] = {0.0, 0.0, 0.0}, far[3] = {0.22, 0.0, 0.0};
+    static const double up[3] = {0.0, 0.0, 1.0}, right[3] = {1.0, 0.0, 0.0},
+                        left[3] = {-1.0, 0.0, 0.0};
+    for (int packing = 0; packing < 2; ++packing) {
+        size_t added = 0;
+        open_bed(&b);
+        (void)bed_add_plane(&b.bed, at, up);
+        (void)bed_add_plane(&b.bed, at, right);
+        (void)bed_add_plane(&b.bed, far, left);
+        b.fill.radius_min = 0.005;
+        b.fill.radius_max = 0.01;
+        b.fill.jitter = 5e-4;
+        b.fill.lower[1] = b.fill.upper[1] = y;
+        b.fill.upper[0] = b.fill.upper[2] = 0.22;
+        b.fill.count = packing ? 60 : 0;
+        CHECK((packing ? se3d_particles_fill_random(b.bed.particles, &b.fill)
+                       : se3d_particles_fill_lattice(b.bed.particles, &b.fill, &added)) == SE3D_OK);
+        CHECK(se3d_particles_count(b.bed.particles) == (packing ? 60 : 100));
+        check_plane(y);
+        se3d_particles_source_def source = se3d_particles_source_def_default();
+        se3d_fill_def above = b.fill;
+        source.fill = &above;
+        above.lower[2] = 0.24;
+        above.upper[2] = 0.3;
+        source.rate = 200.0;
+        CHECK(se3d_particles_add_source(b.bed.particles, &source, NULL) == SE3D_OK);
+        CHECK(se3d_particles_run(b.bed.particles, 0.2) == SE3D_OK);
+        CHECK(se3d_particles_count(b.bed.particles) > (packing ? 90U : 130U));
+        check_plane(y);
+        b.fill.count = 1;
+        b.fill.upper[1] = y + 1e-3;
+        CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+        b.fill.upper[1] = y;
+        b.fill.region = SE3D_FILL_REGION_CYLINDER;
+        CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(b.bed.system), "upper");
+        b.fill.axis = 1;
+        b.fill.lower[2] = 0.5;
+        b.fill.upper[2] = 0.72;
+        CHECK(se3d_particles_fill_random(b.bed.particles, &b.fill) == SE3D_OK);
+        bed_close(&b.bed);
+    }
+}
+
 int main(void)
 {
+    RUN(flat_regions_hold_models_in_2d);
     RUN(places_across_a_periodic_border_are_taken_once);
     RUN(a_region_of_one_diameter_holds_one);
     RUN(a_lattice_of_too_many_particles_is_refused);
