@@ -198,7 +198,8 @@ static void keep_volume(const se3di_domain_stage *stage, double h, double rate[3
     }
 }
 
-/* What a stress answers to a rate of strain with, times the volume: in a step, [Pa m^3 s]. */
+/* What a stress answers to a rate of strain with in a step, over that [Pa s]; in sums times the
+ * volume, or of a contact [N/m] and [N s/m]. */
 typedef struct answer {
     double springs, dampers;
 } answer;
@@ -251,38 +252,40 @@ static void add_contacts(const se3di_particles *set, double pressure, double h, 
     }
 }
 
-static answer cell_answer(const se3di_particles *set, double pressure, double h)
+static answer cell_answer(const se3di_particles *set, const se3di_domain_stage *stage,
+                          const double stress[6], double h)
 {
     answer sum = {0.0, 0.0};
-    if (set->cell.touching > 0.0 && set->count > 0) {
-        add_contacts(set, pressure, h, &sum);
+    double pressure = fabs(stress[0] + stress[1] + stress[2]) / 3.0;
+    int asked = stage->shear_servo && !(stage->shear_gain > 0.0);
+    pressure = asked ? fmax(pressure, fabs(stage->shear_stress)) : pressure;
+    for (int a = 0; a < 3; ++a) {
+        if (stage->servo[a] && !(stage->gain[a] > 0.0)) {
+            pressure = fmax(pressure, fabs(stage->stress[a]));
+            asked = 1;
+        }
     }
-    for (size_t k = 0; k < set->bond_count; ++k) {
+    if (asked && set->cell.touching > 0.0 && set->count > 0) {
+        add_contacts(set, pressure, fabs(h), &sum);
+    }
+    for (size_t k = 0; asked && k < set->bond_count; ++k) {
         const se3di_bond *bond = &set->bonds[k];
         const double part = bond->length * bond->length / 3.0;
-        sum.springs += part * h * fmax(bond->stiffness[0], bond->stiffness[1]);
+        sum.springs += part * fabs(h) * fmax(bond->stiffness[0], bond->stiffness[1]);
         sum.dampers += part * fmax(bond->damping[0], bond->damping[1]);
     }
-    return sum;
+    const double volume = se3di_domain_volume(set);
+    return (answer){sum.springs / volume, sum.dampers / volume};
 }
 
-/* The rate of a servo that is off by `excess`; of the rate before, the stress has answered to. */
-static double servo_rate(const se3di_particles *set, double excess, double wanted, double gain,
-                         double most, double before, double h)
+/* The rate of a servo that is off by `excess`; to the rate before, the stress has answered. */
+static double servo_rate(const answer *of, double excess, double wanted, double gain, double most,
+                         double before)
 {
-    if (!(gain > 0.0)) {
-        double stress[6];
-        se3di_domain_stress(set, stress);
-        const double mean = fabs(stress[0] + stress[1] + stress[2]) / 3.0;
-        const answer of = cell_answer(set, fmax(fabs(wanted), mean), fabs(h));
-        const double V = se3di_domain_volume(set);
-        if (of.springs > 0.0) {
-            return clamp((V * excess + of.dampers * before) / (STEPS * of.springs + of.dampers),
-                         most);
-        }
-        gain = most / fabs(wanted);
+    if (!(gain > 0.0) && of->springs > 0.0) {
+        return clamp((excess + of->dampers * before) / (STEPS * of->springs + of->dampers), most);
     }
-    return clamp(gain * excess, most);
+    return clamp((gain > 0.0 ? gain : most / fabs(wanted)) * excess, most);
 }
 
 se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
@@ -294,18 +297,19 @@ se3di_domain_map se3di_domain_open(se3di_particles *set, double h)
         const se3di_domain_stage *stage = &cell->stages[cell->stage];
         double stress[6];
         se3di_domain_stress(set, stress);
+        const answer of = cell_answer(set, stage, stress, h);
         cell->rates = stage->rates;
         for (int a = 0; a < 3; ++a) {
             if (stage->servo[a]) {
                 const double excess = stress[a] - stage->stress[a];
-                cell->rates.along[a] = servo_rate(set, excess, stage->stress[a], stage->gain[a],
-                                                  stage->most[a], before.along[a], h);
+                cell->rates.along[a] = servo_rate(&of, excess, stage->stress[a], stage->gain[a],
+                                                  stage->most[a], before.along[a]);
             }
         }
         if (stage->shear_servo) {
             const double excess = shear_stress(cell, stress) - stage->shear_stress;
-            cell->rates.shear = servo_rate(set, excess, stage->shear_stress, stage->shear_gain,
-                                           stage->shear_most, before.shear, h);
+            cell->rates.shear = servo_rate(&of, excess, stage->shear_stress, stage->shear_gain,
+                                           stage->shear_most, before.shear);
         }
         keep_volume(stage, h, cell->rates.along);
     }
@@ -372,7 +376,7 @@ void se3di_domain_move(se3di_particles *set, size_t begin, size_t end,
             spin->w[a] += half * (load->torque[a] * turn);
             u[a] = particle->v[a] - mean[a];
         }
-        for (int c = 0; c < 6; ++c) {
+        for (int c = 0; c < 6 && drift == 0.0; ++c) { /* of the end of a step */
             sums->kinetic[c] += u[row[c]] * u[column[c]] / mobility;
         }
         if (drift != 0.0) {
