@@ -23,6 +23,7 @@ _Static_assert(2 * SE3DI_TYRE_NOTES <= SE3DI_FORCE_STATES,
 #define FORCED_MAX 3
 #define TYRE_TRIES 4     /* of a step that look for changes of tyres, */
 #define CROSSING   4.0   /* and how many of the least steps lead across one */
+#define MISSED     0.5   /* of a length that was cut for a change that was not there */
 #define LEAST_STEP 3e-14 /* of the time */
 #define LARGEST    1e50  /* coordinate or velocity whose squares are far from infinite */
 #define GAP_PART   0.25  /* of what rows may violate, at the quarters of a step; */
@@ -328,6 +329,18 @@ static double seek_tyres(se3di_explicit *m, double h)
     return part > 0.0 && shortest < 1.0 ? fmax(part, shortest) : 0.0;
 }
 
+/* The length that the next step takes up after this one of h, at whose end the frames are, if one
+ * of `resumed` was cut short for a tyre; less if it was to lead across its change and has not. */
+static double resume(se3di_explicit *m, double h, double resumed)
+{
+    const se3di_model *model = m->assembly->model;
+    double *begin = m->memory, *end = begin + SE3DI_TYRE_NOTES * model->force_slots.count;
+    if (!(resumed > 0.0) || se3di_tyres_note(model, m->past->at.time + h, end) < 0) {
+        return 0.0;
+    }
+    return se3di_tyres_miss(model, h / resumed, h, begin, end) ? MISSED * resumed : resumed;
+}
+
 static se3d_status try_step(se3di_adaptive *step, double h, double *error)
 {
     se3di_explicit *m = get_explicit(step);
@@ -335,8 +348,10 @@ static se3d_status try_step(se3di_adaptive *step, double h, double *error)
     step->resumed = 0.0;
     SE3DI_TRY(attempt(m, h, error));
     if (*error <= 1.0) {
-        step->resumed = resumed;
-        return prepare(m, h, error);
+        const double length = resume(m, h, resumed);
+        SE3DI_TRY(prepare(m, h, error));
+        step->resumed = *error <= 1.0 ? length : 0.0; /* elements use the memory of tyres */
+        return SE3D_OK;
     }
     const double part = isfinite(*error) ? seek_tyres(m, h) : 0.0;
     if (part > 0.0) {

@@ -81,6 +81,20 @@ static double find_change(const way *w)
     return high;
 }
 
+int se3di_tyres_miss(const se3di_model *model, double part, double h, const double *begin,
+                     const double *end)
+{
+    int changes = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const way w = {.force = &model->forces[k],
+                       .begin = begin + SE3DI_TYRE_NOTES * k,
+                       .end = end + SE3DI_TYRE_NOTES * k,
+                       .h = h};
+        changes |= is_tyre(w.force) && look(&w, 0.0) != look(&w, 1.0);
+    }
+    return part < NEAR && !changes;
+}
+
 double se3di_tyres_find_part(const se3di_model *model, double h, const double *begin,
                              const double *end)
 {

@@ -16,5 +16,9 @@ se3d_status se3di_tyres_note(const se3di_model *model, double t, double *notes);
  * is as it was. */
 double se3di_tyres_find_part(const se3di_model *model, double h, const double *begin,
                              const double *end);
+/* Whether a step of h, that part of the one that was too long, was to lead across a change and has
+ * not: the long one has told nothing of where tyres change. */
+int se3di_tyres_miss(const se3di_model *model, double part, double h, const double *begin,
+                     const double *end);
 
 #endif
