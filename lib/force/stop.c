@@ -50,6 +50,16 @@ static double penetration(const se3di_force *force, double x)
     return x < force->low ? x - force->low : 0.0;
 }
 
+static double damping_of(const se3di_force *force)
+{
+    return force->c / fmax(force->state[0], SPEED_MIN);
+}
+
+double se3di_stop_get_damper(const se3di_force *force, double delta)
+{
+    return force->k * delta * damping_of(force);
+}
+
 static se3d_status eval_stop(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect)
 {
@@ -57,7 +67,7 @@ static se3d_status eval_stop(const se3di_model *model, const se3di_force *force,
     se3di_measure measure;
     int regular = se3di_measure_force(model, force, effect->wants_derivative, &measure);
     double delta = penetration(force, measure.value);
-    double damping = force->c / fmax(force->state[0], SPEED_MIN);
+    const double damping = damping_of(force);
     se3di_law law = {0};
     if (fabs(delta) > 0.0) {
         if (!regular) {

@@ -12,15 +12,15 @@
 
 #include "contact/bodies/pace_stop.h"
 #include "force/measure.h"
+#include "force/stop.h"
 #include "math/vec3.h"
 
 #include <math.h>
 
-#define NEAR       2.0  /* steps at the speed of a coordinate: its stop may act in this one */
-#define FAST_TIMES 2.0  /* an impact arrives so much faster than a step makes it */
-#define SETTLING   4.0  /* steps in which a coordinate on its stop comes to rest */
-#define RIGID      1e4  /* an impact of one step, over what moves its bodies as one */
-#define SPEED_MIN  1e-3 /* slower impacts are damped as this one [1/s, m/s] */
+#define NEAR       2.0 /* steps at the speed of a coordinate: its stop may act in this one */
+#define FAST_TIMES 2.0 /* an impact arrives so much faster than a step makes it */
+#define SETTLING   4.0 /* steps in which a coordinate on its stop comes to rest */
+#define RIGID      1e4 /* an impact of one step, over what moves its bodies as one */
 
 /* The coordinate of a stop at the start of a step, and what its rate changed by in the one before.
  */
@@ -81,8 +81,7 @@ static void choose_way(se3di_convex_contact *stop, const coordinate *x, double h
     stop->power = 1.0;
     stop->overlap = -gap;
     if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
-        const double damping = force->c * force->k * fmax(0.0, h * speed - gap);
-        stop->damping = damping / fmax(force->state[0], SPEED_MIN) - h * force->k;
+        stop->damping = se3di_stop_get_damper(force, fmax(0.0, h * speed - gap)) - h * force->k;
         return;
     }
     stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;

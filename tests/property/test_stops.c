@@ -231,6 +231,56 @@ static void a_long_step_by_the_caller_into_a_stop_is_refused(void)
     }
 }
 
+/* Most of its force is damping: an explicit step of a third of the impact would throw the body back
+ * several times as fast. What then rests on it needs no short steps, but stable ones. */
+static void a_stop_that_gives_little_back_gives_no_energy(void)
+{
+    static const double restitutions[] = {0.02, 0.1, 0.4, 0.8};
+    static const int32_t explicit_methods[] = {SE3D_METHOD_VERLET, SE3D_METHOD_CONVEX,
+                                               SE3D_METHOD_RATTLE};
+    for (size_t run = 0; run < 12; ++run) {
+        const double e = restitutions[run / 3];
+        const int32_t method = explicit_methods[run % 3];
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "se3d: 1\ngravity: [0, 0, 0]\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1], "
+                 "position: [0, 0, 1], velocity: [0, 0, -4]}]\n"
+                 "joints: [{name: s, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 1], "
+                 "axis: [0, 0, 1]}]\n"
+                 "forces: [{name: buffer, type: stop, joint: s, lower: -1, k: 1.0e+6, "
+                 "restitution: %g}]\n"
+                 "analysis: {type: dynamics, duration: 1}\n"
+                 "output: [{file: r.csv, channels: [b.velocity, energy.balance]}]\n",
+                 e);
+        text_model m = text_model_open(text, method, -1, 0.0);
+        CHECK(text_model_run(&m, 0.3));
+        CHECK_NEAR(text_model_get(&m, 0, 2), 4.0 * e, 0.1);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 8.0, 0.1);
+        text_model_close(&m);
+        m = text_model_open(text, method, -1, 1e-3); /* the impact takes 3.14 ms */
+        if (e < 0.5 && method != SE3D_METHOD_CONVEX) {
+            CHECK(se3d_solver_run(m.solver, 0.6) == SE3D_ERR_STEP_SIZE);
+            CHECK_CONTAINS(se3d_system_get_error(m.system), "impact on the stop buffer");
+        }
+        text_model_close(&m);
+    }
+    for (size_t run = 0; run < 3; ++run) {
+        static const char *const text =
+            "se3d: 1\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1], position: [0, 0, 0.01]}]\n"
+            "joints: [{name: s, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: "
+            "[0, 0, 1]}]\n"
+            "forces: [{type: stop, joint: s, lower: 0, k: 1.0e+5, restitution: 0.2}]\n"
+            "analysis: {type: dynamics, duration: 2}\n"
+            "output: [{file: r.csv, channels: [s.displacement, s.rate, energy.balance]}]\n";
+        text_model m = text_model_open(text, explicit_methods[run], -1, 0.0);
+        CHECK(text_model_run(&m, 2.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), -9.81 / 1e5, 2e-7);
+        CHECK_NEAR(text_model_get(&m, 1, 0), 0.0, 1e-6);
+        CHECK_NEAR(text_model_get(&m, 2, 0), 0.0981, 1e-3);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method);
@@ -240,5 +290,6 @@ int main(void)
     RUN(the_speed_of_an_impact_is_that_where_it_begins);
     RUN(what_falls_onto_a_stop_bounces_as_high_as_the_restitution_says);
     RUN(a_stiff_stop_is_met_as_the_tolerance_asks);
+    RUN(a_stop_that_gives_little_back_gives_no_energy);
     return check_finish();
 }

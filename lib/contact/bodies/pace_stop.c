@@ -19,7 +19,7 @@
 
 #define PARTS        64.0 /* steps in the time of an impact */
 #define LAND_PARTS   16.0 /* if the error is controlled */
-#define STABLE_PARTS 3.0  /* fewer are refused */
+#define STABLE_PARTS 3.0  /* fewer are refused; of explicit methods, see stable_step */
 #define AT_REST      0.1  /* amplitude of a coordinate at rest on its stop over its penetration */
 #define SHORT        1e-6 /* a long step ends so much before an impact begins */
 #define SOFT         1e-9 /* m or rad: arrivals that move less in the time of an impact */
@@ -45,14 +45,17 @@ double se3di_stop_inverse_mass(const se3di_model *model, const se3di_force *forc
 /* One end of the range: `gap` to it, `speed` and `acceleration` towards it. */
 typedef struct arrival {
     double gap, speed, acceleration, time;
+    double stable; /* step */
 } arrival;
 
-/* The impact is followed; if the stop is rested upon, only explicit methods need that. */
+/* The impact is followed; if the stop is rested upon, only explicit methods need that, or what is
+ * stable. */
 static double pace_inside(const arrival *a, se3di_pace_kind kind, double parts, double h)
 {
     const double rate = 3.14159265358979324 / a->time;
     const double amplitude = se3di_hypot(a->speed / rate, a->acceleration / (rate * rate));
     const int rests = amplitude < AT_REST * -a->gap;
+    h = fmin(h, a->stable);
     return kind != SE3DI_PACE_EXPLICIT && rests ? h : fmin(h, a->time / parts);
 }
 
@@ -62,7 +65,21 @@ static double pace_outside(const arrival *a, double parts, double h)
     if (!(a->gap < h * closing) || !(closing * a->time > SOFT)) {
         return h;
     }
-    return fmin(h, fmax((1.0 - SHORT) * a->gap / closing, a->time / parts));
+    return fmin(h, fmax((1.0 - SHORT) * a->gap / closing, fmin(a->time / parts, a->stable)));
+}
+
+/* The force of an explicit step acts on where the speed of the impact carried the coordinate in the
+ * step before: its impulse, k h^2 (1 + d) W of that speed, is to be no more than what stops it. So
+ * is that of the damper beyond the end. A given step beyond that makes what rests on the stop
+ * rattle. */
+static double stable_step(const se3di_force *force, se3di_pace_kind kind, double parts,
+                          const arrival *a, double inverse)
+{
+    const int is_explicit = kind == SE3DI_PACE_EXPLICIT;
+    const int is_damped = is_explicit && parts > STABLE_PARTS;
+    const double h = is_explicit ? a->time / (STABLE_PARTS * sqrt(1.0 + force->c)) : HUGE_VAL;
+    const double damper = se3di_stop_get_damper(force, fmax(-a->gap, 0.0)) * inverse;
+    return is_damped && damper * h > 1.0 ? 1.0 / damper : h;
 }
 
 static double pace_stop(const se3di_model *model, const se3di_force *force, se3di_pace_kind kind,
@@ -76,10 +93,11 @@ static double pace_stop(const se3di_model *model, const se3di_force *force, se3d
     const double acceleration = se3di_measure_acceleration(model, force);
     for (int end = 0; end < 2 && inverse > 0.0; ++end) {
         const double limit = end ? force->high : force->low, way = end ? 1.0 : -1.0;
-        const arrival a = {.gap = way * (limit - measure.value),
-                           .speed = way * measure.rate,
-                           .acceleration = way * acceleration,
-                           .time = 3.14159265358979324 / sqrt(force->k * inverse)};
+        arrival a = {.gap = way * (limit - measure.value),
+                     .speed = way * measure.rate,
+                     .acceleration = way * acceleration,
+                     .time = 3.14159265358979324 / sqrt(force->k * inverse)};
+        a.stable = stable_step(force, kind, parts, &a, inverse);
         if (isfinite(limit)) {
             h = a.gap > 0.0 ? pace_outside(&a, parts, h) : pace_inside(&a, kind, parts, h);
         }
