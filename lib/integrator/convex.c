@@ -209,6 +209,30 @@ static void drift(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* What drives the mechanism does in the step [J]: what rows that change in time press with, along
+ * the mean of their rates at both ends, as impulses of contacts do. */
+static double drive(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    double *mean = c->change, *rate = c->aimed, sum = 0.0;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        mean[k] = 0.5 * (c->start[k] + c->chord[k] + c->v[k]);
+    }
+    se3di_assembly_mul(assembly, mean, rate);
+    for (uint32_t k = 0; k < assembly->timed_count; ++k) {
+        sum -= c->lambda[assembly->timed_rows[k]] * rate[assembly->timed_rows[k]];
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *user = &model->constraints[k];
+        if (se3di_is_user(user) && !se3di_is_broken(user, model->rows)) {
+            for (uint32_t row = user->row_begin; row < user->row_begin + user->row_count; ++row) {
+                sum -= c->lambda[row] * rate[row];
+            }
+        }
+    }
+    return sum;
+}
+
 /* The bodies to the end of the step. */
 static void move(const se3di_convex *c, const se3di_assembly *assembly)
 {
@@ -383,7 +407,9 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(se3di_user_report(model, equations->error));
     model->work[0] += taken + se3di_convex_stopped(c, model);
     model->work[1] += se3di_convex_fed(c);
+    const double driven = model->work_valid > 0 ? model->work[2] + c->driven : 0.0;
     SE3DI_TRY(se3di_work_accept(model, c->h));
+    model->work[2] = driven;
     model->history[0] = c->h;
     se3di_convex_doze(c, &equations->assembly);
     return SE3D_OK;
@@ -416,6 +442,7 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     }
     se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
+    c->driven = assembly->row_count > 0 ? drive(c, assembly) : 0.0;
     move(c, assembly);
     SE3DI_TRY(project(equations, t1));
     keep_chords(c, assembly);

@@ -123,6 +123,7 @@ typedef struct se3di_convex {
     int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
     double gravity[3]; /* at the start of the step */
     double h;
+    double driven; /* in the step, by constraints that change in time [J] */
     uint64_t topology_version; /* that `kkt` was made for */
 } se3di_convex;
 

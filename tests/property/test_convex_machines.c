@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Stops by `convex`, at steps of milliseconds whatever their stiffness: bounces, rest, energy. */
+/* Machines by `convex` at steps of milliseconds: stops of any stiffness that bounce and hold, the
+ * account of energy with stops and drivers. */
 #include "support/text_model.h"
 
 #include <stdio.h>
@@ -159,11 +160,43 @@ static void a_figure_falls_down_within_the_ranges_of_its_joints(void)
     text_model_close(&m);
 }
 
+/* A disc on a shaft beside its middle lifts a slide that a spring presses on it. What the shaft is
+ * driven with beside a contact is counted by the impulses of the step: the account of energy that
+ * is open after a turn is as open after eight. */
+static void what_a_cam_is_driven_with_is_counted(void)
+{
+    static const char *const cam =
+        "se3d: 1\nmaterials: [{name: s, density: 2000, stiffness: 1.0e+6, restitution: 0.1, "
+        "friction: 0.2}]\ncontact: {}\n"
+        "bodies: [{name: disc, position: [0.02, 0, 0], shapes: [{type: cylinder, radius: 0.06, "
+        "length: 0.03, orientation: {axis: [1, 0, 0], angle: 90*deg}, material: s}]},\n"
+        "  {name: slide, position: [0, 0, 0.1101], shapes: [{type: box, size: [0.08, 0.04, 0.1], "
+        "material: s}]}]\n"
+        "joints: [{name: j, type: revolute, body_i: ground, body_j: disc, at: [0, 0, 0], axis: "
+        "[0, 1, 0]},\n"
+        "  {name: k, type: prismatic, body_i: ground, body_j: slide, at: [0, 0, 0.1], axis: [0, 0, "
+        "1]}]\n"
+        "drivers: [{name: m, joint: j, value: 2*pi*t}]\n"
+        "forces: [{name: f, type: tsda, body_i: ground, body_j: slide, point_i: [0, 0, 0.4], "
+        "point_j: [0, 0, 0], k: 300, l0: 0.4}]\n"
+        "analysis: {type: dynamics, duration: 9}\n"
+        "output: [{file: r.csv, channels: [energy.balance, work.drivers]}]\n";
+    text_model m = text_model_open(cam, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+    CHECK(text_model_run(&m, 1.0));
+    const double once = text_model_get(&m, 0, 0), work = text_model_get(&m, 1, 0);
+    CHECK(text_model_run(&m, 8.0));
+    CHECK(work > 1.0);
+    CHECK_NEAR(text_model_get(&m, 1, 0) / work, 8.0, 1.0);
+    CHECK_NEAR(text_model_get(&m, 0, 0), once, 1e-4);
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
     RUN(an_angle_stays_within_its_range);
     RUN(what_hangs_on_strings_pulls_them_tight);
+    RUN(what_a_cam_is_driven_with_is_counted);
     RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
     return check_finish();
 }
