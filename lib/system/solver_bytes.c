@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(8)
+#define VERSION UINT64_C(9)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
