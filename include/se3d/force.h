@@ -191,7 +191,8 @@ SE3D_API se3d_status se3d_force_create_friction(se3d_system *system, const se3d_
 
 /* One-sided spring-damper at the ends of the range of a joint coordinate, or (joint null) of the
  * distance of two points; it pushes only. The damping gives the coefficient of restitution at every
- * impact speed above 1 mm/s (or mrad/s). @since 0.1 */
+ * impact speed above 1 mm/s (or mrad/s); by convex, what arrives no faster than twice what a step
+ * makes it comes to rest. @since 0.1 */
 typedef struct se3d_stop_def {
     size_t struct_size;
     const char *name;      /* copied; NULL or unique among force elements */

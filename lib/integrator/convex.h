@@ -28,9 +28,11 @@ enum {
 /* A point of contact in the step under way. What the passes over all contacts of an island need
  * comes first, and what they need together stands together. */
 typedef struct se3di_convex_contact {
-    int32_t free[2];    /* its bodies, -1: fixed; while a step is solved their places */
-    int32_t coupling;   /* of the two, -1: one is fixed */
-    int32_t way;        /* SE3DI_CONVEX_ */
+    int32_t free[2];  /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling; /* of the two, -1: one is fixed */
+    int32_t way;      /* SE3DI_CONVEX_ */
+    int32_t upper;    /* 1: a stop at the upper end of a range */
+    int32_t reserved;
     double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
     double reach;       /* 1; of a stop of an angle 0: the body's own velocity does not count */
     double v[3], change[3];           /* velocity of the point: now, of the search */
@@ -53,7 +55,9 @@ typedef struct se3di_convex_contact {
     double chord[3];  /* and what the chord before had there more, across the constraints */
     double arm[2][3]; /* from the bodies to the point, ground frame */
     double held;      /* energy of its springs at the start of the step */
-    const se3di_body_contact *record; /* of the state that the step begins with; NULL: a stop */
+    const se3di_body_contact *record; /* of the state that the step begins with; NULL: a stop, */
+    const se3di_force *stop;          /* this one, */
+    double towards;                   /* whose coordinate was accelerated so in the step before */
 } se3di_convex_contact;
 
 /* Bodies that contacts, or constraints, connect: a problem of its own. */
@@ -123,7 +127,7 @@ typedef struct se3di_convex {
     int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
     double gravity[3]; /* at the start of the step */
     double h;
-    double driven; /* in the step, by constraints that change in time [J] */
+    double driven;             /* in the step, by constraints that change in time [J] */
     uint64_t topology_version; /* that `kkt` was made for */
 } se3di_convex;
 
@@ -182,6 +186,10 @@ int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
 /* stops become contacts behind those of shapes. @return OK, NO_MEMORY */
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error);
+/* whether it is so near that it matters how it acts, and how it acts on what an impulse along it
+ * moves so, g W g^T on the constraints; */
+int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h);
+void se3di_convex_choose_stop(se3di_convex_contact *stop, double h, double inverse_mass);
 /* the power that their law dissipates at the state; */
 double se3di_convex_stop_power(const se3di_model *model);
 /* what they took from the bodies in the step and do not hold at its end [J]. */

@@ -798,10 +798,85 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* What an impulse along a stop does to its velocity, of bodies by themselves. */
+static double move_alone(const se3di_convex *c, const se3di_convex_contact *stop)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (stop->free[k] >= 0) {
+            const double *mobility = c->mobility + 10 * (size_t)stop->free[k];
+            double moment[3], turned[3];
+            se3di_mul_transposed(stop->lever[k], stop->normal, moment);
+            se3di_mul(mobility + 1, moment, turned);
+            sum += stop->reach * mobility[0] + se3di_dot(moment, turned);
+        }
+    }
+    return sum;
+}
+
+/* The same on the constraints, whose matrix without contacts is factorised. */
+static se3d_status move_bound(se3di_convex *c, se3di_equations *equations,
+                              const se3di_kkt_values *values, const se3di_convex_contact *stop,
+                              double *moved)
+{
+    const size_t rows = equations->assembly.row_count, unknowns = equations->assembly.unknown_count;
+    memset(equations->b, 0, unknowns * sizeof *equations->b);
+    memset(equations->c, 0, rows * sizeof *equations->c);
+    for (int k = 0; k < 2; ++k) {
+        if (stop->free[k] >= 0) {
+            double *b = equations->b + 6 * (size_t)stop->free[k];
+            se3di_scale((k ? 1.0 : -1.0) * stop->reach, stop->normal, b);
+            se3di_mul_transposed(stop->lever[k], stop->normal, b + 3);
+            se3di_scale(k ? 1.0 : -1.0, b + 3, b + 3);
+        }
+    }
+    memcpy(c->carried, equations->b, unknowns * sizeof *c->carried);
+    ++equations->counters.solves;
+    const se3d_status status =
+        se3di_kkt_solve(c->kkt, values, equations->b, equations->c, c->change, c->lambda, NULL);
+    if (status < 0 && status != SE3D_ERR_NO_CONVERGENCE) { /* of what is driven nothing is left */
+        return status;
+    }
+    *moved = fmax(0.0, dot(c->carried, c->change, 0, unknowns));
+    return SE3D_OK;
+}
+
+/* The matrix of masses and constraints, without contacts. */
+static se3d_status factor_bound(se3di_convex *c, se3di_equations *equations,
+                                const se3di_kkt_values *values)
+{
+    if (c->pair_count > 0) {
+        memset(c->coupling, 0, 36 * c->pair_count * sizeof *c->coupling);
+    }
+    ++equations->counters.factorizations;
+    return se3di_kkt_factor(c->kkt, values, NULL);
+}
+
+/* How stops act: what has no solution here has none in the step either, which tells it. */
+static void choose_stops(se3di_convex *c, se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_kkt_values values = {
+        .body = c->own, .coupling_upper = c->coupling, .joint = assembly->C};
+    int is_factored = 0;
+    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
+        se3di_convex_contact *stop = &c->contacts[k];
+        double moved = move_alone(c, stop);
+        if (assembly->row_count > 0 && se3di_convex_stop_is_near(stop, c->h)) {
+            is_factored = is_factored || factor_bound(c, equations, &values) >= 0;
+            if (is_factored) {
+                (void)move_bound(c, equations, &values, stop, &moved);
+            }
+        }
+        se3di_convex_choose_stop(stop, c->h, moved);
+    }
+}
+
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(prepare(c, equations));
+    choose_stops(c, equations);
     place(c, assembly, c->start, c->gradient);
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);

@@ -10,7 +10,6 @@
  * hits one body drives another onto its stop in the same step.       docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "contact/bodies/pace_stop.h"
 #include "force/measure.h"
 #include "force/stop.h"
 #include "math/vec3.h"
@@ -21,13 +20,13 @@
 #define FAST_TIMES 2.0 /* an impact arrives so much faster than a step makes it */
 #define SETTLING   4.0 /* steps in which a coordinate on its stop comes to rest */
 #define RIGID      1e4 /* an impact of one step, over what moves its bodies as one */
+#define LEAN       0.9 /* of the damping by the implicit step: taken off the damper of the law */
 
-/* The coordinate of a stop at the start of a step, and what its rate changed by in the one before.
- */
+/* The coordinate of a stop at the start of a step, and its acceleration in the one before. */
 typedef struct coordinate {
     const se3di_force *force;
     se3di_measure measure;
-    double change;
+    double acceleration;
 } coordinate;
 
 static int is_stop(const se3di_force *force)
@@ -36,13 +35,13 @@ static int is_stop(const se3di_force *force)
 }
 
 /* Returns 0 where the coordinate has no direction. */
-static int look(const se3di_model *model, const se3di_force *force, double h, coordinate *x)
+static int look(const se3di_model *model, const se3di_force *force, coordinate *x)
 {
     *x = (coordinate){.force = force};
     if (!is_stop(force) || !se3di_measure_force(model, force, 0, &x->measure)) {
         return 0;
     }
-    x->change = h * fabs(se3di_measure_acceleration(model, force));
+    x->acceleration = se3di_measure_acceleration(model, force);
     return 1;
 }
 
@@ -59,10 +58,10 @@ int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model)
     coordinate x;
     double speed;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (!look(model, &model->forces[k], c->h, &x)) {
+        if (!look(model, &model->forces[k], &x)) {
             continue;
         }
-        const double reach = NEAR * c->h * (fabs(x.measure.rate) + x.change);
+        const double reach = NEAR * c->h * (fabs(x.measure.rate) + c->h * fabs(x.acceleration));
         if (gap_to(&x, 0, &speed) < reach || gap_to(&x, 1, &speed) < reach) {
             return 1;
         }
@@ -70,25 +69,40 @@ int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model)
     return 0;
 }
 
-/* How it acts: by its law where that can be followed, else as an impact of one step, or at rest. */
-static void choose_way(se3di_convex_contact *stop, const coordinate *x, double h, double gap,
-                       double speed, double inverse_mass)
+/* What leaves the stop with the restitution times the speed that it meets it with: from a gap d
+ * that closes at the speed u under the acceleration a it moves by v h from where it is, so that
+ *
+ *     v^2 + 2 a (d + h v) = e^2 (u^2 + 2 a d) */
+static double rebound_of(const se3di_convex_contact *stop, double h, double gap, double speed)
 {
-    const se3di_force *force = x->force;
-    const int meets = gap > -h * speed && gap < h * (speed + x->change);
-    stop->way = SE3DI_CONVEX_SPRING;
-    stop->stiffness = force->k;
-    stop->power = 1.0;
-    stop->overlap = -gap;
+    const double e = stop->stop->restitution, a = stop->towards;
+    const double leaves = e * e * fmax(0.0, speed * speed + 2.0 * a * gap);
+    const double square = a * a * h * h - 2.0 * a * gap + leaves;
+    return square > 0.0 ? fmax(0.0, sqrt(square) - a * h) : 0.0;
+}
+
+int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h)
+{
+    const double speed = -se3di_dot(stop->before, stop->normal);
+    return stop->overlap > 0.0 || -stop->overlap < h * (fabs(speed) + h * fabs(stop->towards));
+}
+
+void se3di_convex_choose_stop(se3di_convex_contact *stop, double h, double inverse_mass)
+{
+    const se3di_force *force = stop->stop;
+    const double gap = -stop->overlap, speed = -se3di_dot(stop->before, stop->normal);
+    const double change = h * fabs(stop->towards);
+    const int meets = gap > -h * speed && gap < h * (speed + change);
     if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
-        stop->damping = se3di_stop_get_damper(force, fmax(0.0, h * speed - gap)) - h * force->k;
+        stop->damping =
+            se3di_stop_get_damper(force, fmax(0.0, h * speed - gap)) - LEAN * h * force->k;
         return;
     }
     stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;
-    if (meets && speed > FAST_TIMES * x->change) {
+    if (meets && speed > FAST_TIMES * change) {
         stop->way = SE3DI_CONVEX_IMPACT;
         stop->damping = RIGID / inverse_mass;
-        stop->rebound = force->restitution * speed;
+        stop->rebound = rebound_of(stop, h, gap, speed);
     }
 }
 
@@ -118,15 +132,20 @@ static void set_geometry(se3di_convex_contact *stop, const se3di_assembly *assem
 static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coordinate *x, int upper)
 {
     se3di_convex_contact *stop = &c->contacts[c->contact_count];
-    const double inverse_mass = se3di_stop_inverse_mass(assembly->model, x->force, &x->measure);
     double speed;
     const double gap = gap_to(x, upper, &speed);
-    *stop = (se3di_convex_contact){.coupling = -1};
+    *stop = (se3di_convex_contact){.coupling = -1,
+                                   .stop = x->force,
+                                   .upper = upper,
+                                   .way = SE3DI_CONVEX_SPRING,
+                                   .stiffness = x->force->k,
+                                   .power = 1.0,
+                                   .overlap = -gap,
+                                   .towards = (upper ? 1.0 : -1.0) * x->acceleration};
     set_geometry(stop, assembly, x, upper);
-    if (!(gap < HUGE_VAL) || !(inverse_mass > 0.0)) {
+    if (!(gap < HUGE_VAL) || (stop->free[0] < 0 && stop->free[1] < 0)) {
         return;
     }
-    choose_way(stop, x, c->h, gap, speed, inverse_mass);
     se3di_convex_slip(stop, c->start, stop->before);
     if (assembly->row_count > 0) {
         se3di_convex_velocity(stop, c->chord, stop->chord);
@@ -160,7 +179,7 @@ se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *as
                                model->time);
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (look(model, &model->forces[k], c->h, &x)) {
+        if (look(model, &model->forces[k], &x)) {
             add_end(c, assembly, &x, 0);
             add_end(c, assembly, &x, 1);
         }
@@ -185,13 +204,12 @@ double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model)
 {
     double sum = 0.0;
     for (size_t k = c->shape_count; k < c->contact_count; ++k) {
-        sum += se3di_convex_taken_by(&c->contacts[k]) + c->contacts[k].held;
-    }
-    for (size_t k = 0; c->shape_count < c->contact_count && k < model->force_slots.count; ++k) {
-        const se3di_force *force = &model->forces[k];
+        const se3di_convex_contact *stop = &c->contacts[k];
+        const se3di_force *force = stop->stop;
         double x;
-        if (is_stop(force) && se3di_measure_value(model, force, &x)) {
-            const double depth = fmax(0.0, fmax(x - force->high, force->low - x));
+        sum += se3di_convex_taken_by(stop) + stop->held;
+        if (se3di_measure_value(model, force, &x)) {
+            const double depth = fmax(0.0, stop->upper ? x - force->high : force->low - x);
             sum -= 0.5 * force->k * depth * depth;
         }
     }

@@ -281,6 +281,26 @@ static void a_stop_that_gives_little_back_gives_no_energy(void)
     }
 }
 
+/* The joint breaks, and what it held flies on past the range that it had. */
+static void the_stop_of_a_broken_joint_holds_no_steps(void)
+{
+    static const char *const text =
+        "se3d: 1\nbodies: [{name: b, mass: 1, inertia: [1, 1, 1]}]\n"
+        "joints: [{name: s, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [1, "
+        "0, 0], break: {force: 12}}]\n"
+        "forces: [{name: f, type: stop, joint: s, upper: 0.5, k: 1.0e+9, restitution: 0.5},\n"
+        "  {name: p, type: force, body: b, value: [1, 0, -10*t]}]\n"
+        "analysis: {type: dynamics, duration: 3}\n"
+        "output: [{file: r.csv, channels: [b.position]}]\n";
+    for (size_t k = 0; k < sizeof methods / sizeof methods[0]; ++k) {
+        const double step = has_error_control(methods[k]) ? 0.0 : 1e-3;
+        text_model m = text_model_open(text, methods[k], -1, step);
+        CHECK(text_model_run(&m, 3.0));
+        CHECK_NEAR(text_model_get(&m, 0, 0), 4.5, 1e-2);
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(a_hard_stop_returns_what_it_should_at_the_defaults_of_every_method);
@@ -291,5 +311,6 @@ int main(void)
     RUN(what_falls_onto_a_stop_bounces_as_high_as_the_restitution_says);
     RUN(a_stiff_stop_is_met_as_the_tolerance_asks);
     RUN(a_stop_that_gives_little_back_gives_no_energy);
+    RUN(the_stop_of_a_broken_joint_holds_no_steps);
     return check_finish();
 }

@@ -10,6 +10,7 @@
  * docs/theory/stop.md */
 #include "contact/bodies/pace_stop.h"
 
+#include "force/measure.h"
 #include "force/stop.h"
 #include "math/elementary.h"
 #include "math/inertia.h"
@@ -24,8 +25,9 @@
 #define SHORT        1e-6 /* a long step ends so much before an impact begins */
 #define SOFT         1e-9 /* m or rad: arrivals that move less in the time of an impact */
 
-double se3di_stop_inverse_mass(const se3di_model *model, const se3di_force *force,
-                               const se3di_measure *measure)
+/* g M^-1 g^T of the free bodies of the element. */
+static double inverse_mass(const se3di_model *model, const se3di_force *force,
+                           const se3di_measure *measure)
 {
     const uint32_t body[2] = {force->body_i, force->body_j};
     double sum = 0.0;
@@ -89,7 +91,7 @@ static double pace_stop(const se3di_model *model, const se3di_force *force, se3d
     if (!se3di_measure_force(model, force, 0, &measure)) {
         return h;
     }
-    const double inverse = se3di_stop_inverse_mass(model, force, &measure);
+    const double inverse = inverse_mass(model, force, &measure);
     const double acceleration = se3di_measure_acceleration(model, force);
     for (int end = 0; end < 2 && inverse > 0.0; ++end) {
         const double limit = end ? force->high : force->low, way = end ? 1.0 : -1.0;
@@ -110,7 +112,7 @@ static double pace_all(const se3di_model *model, se3di_pace_kind kind, double pa
                        const se3di_force **which)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_STOP) {
+        if (model->forces[k].type == SE3DI_FORCE_STOP && !model->forces[k].released) {
             const double step = pace_stop(model, &model->forces[k], kind, parts, h);
             *which = step < h ? &model->forces[k] : *which;
             h = step;

@@ -4,11 +4,7 @@
 #define SE3DI_PACE_STOP_H
 
 #include "contact/bodies/pace.h"
-#include "force/measure.h"
 
-/* g M^-1 g^T of the free bodies of the element, g the gradient of its coordinate. */
-double se3di_stop_inverse_mass(const se3di_model *model, const se3di_force *force,
-                               const se3di_measure *measure);
 /* The longest step from the last accepted state, at most h, that no impact on a stop asks to be
  * shorter. */
 double se3di_stops_pace(const se3di_model *model, se3di_pace_kind kind, double h);

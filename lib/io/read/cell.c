@@ -44,7 +44,7 @@ static const se3di_key stage_keys[] = {
      SE3DI_INTO(se3d_cell_def, shear_rate_max), .standard = "1",
      .text = "of shear_stress: the largest rate [1/s]"},
     {"shear_gain", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE, SE3DI_INTO(se3d_cell_def, shear_gain),
-     .standard = "the same",
+     .standard = "by the stiffness of contacts",
      .text = "of shear_stress: rate over excess of stress [1/(Pa s)]"},
     {.key = NULL}};
 const se3di_object se3di_object_stage = {
