@@ -286,30 +286,19 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* The body at a place. */
-static uint32_t body_at(const se3di_convex *c, const se3di_assembly *assembly, int32_t place)
-{
-    uint32_t k = 0;
-    while (c->place[k] != place) {
-        ++k;
-    }
-    return assembly->free_body[k];
-}
-
 /* What the impulses of stops pressed with in the step, on the average. */
 static void push_by_stops(const se3di_convex *c, const se3di_assembly *assembly)
 {
+    double *by_place = c->change;
+    memset(by_place, 0, assembly->unknown_count * sizeof *by_place);
     for (size_t k = c->shape_count; k < c->contact_count; ++k) {
-        const se3di_convex_contact *stop = &c->contacts[k];
-        for (int e = 0; e < 2; ++e) {
-            const double share = (e ? 1.0 : -1.0) / c->h;
-            double moment[3];
-            if (stop->free[e] >= 0 && se3di_dot(stop->impulse, stop->impulse) > 0.0) {
-                double *push = c->push + 6 * (size_t)body_at(c, assembly, stop->free[e]);
-                se3di_mul_transposed(stop->lever[e], stop->impulse, moment);
-                se3di_add_scaled(share * stop->reach, stop->impulse, push);
-                se3di_add_scaled(share, moment, push + 3);
-            }
+        se3di_convex_press(&c->contacts[k], 1.0 / c->h, c->contacts[k].impulse, by_place);
+    }
+    for (size_t k = 0; k < assembly->body_count; ++k) {
+        double *push = c->push + 6 * (size_t)assembly->free_body[k];
+        const double *own = by_place + 6 * (size_t)c->place[k];
+        for (int e = 0; e < 6; ++e) {
+            push[e] += own[e];
         }
     }
 }
@@ -346,7 +335,9 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
     const se3di_model *model = assembly->model;
     if (assembly->row_count > 0) {
         find_push(c, assembly, t1);
-        push_by_stops(c, assembly);
+        if (c->shape_count < c->contact_count) {
+            push_by_stops(c, assembly);
+        }
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
         assembly->push = NULL;

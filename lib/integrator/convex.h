@@ -161,6 +161,20 @@ static inline void se3di_convex_slip(const se3di_convex_contact *contact, const 
     se3di_add(out, contact->drift, out);
     se3di_add(out, contact->shift, out);
 }
+/* out [unknowns] += scale J^T p, J from velocities of the bodies to that of the point. */
+static inline void se3di_convex_press(const se3di_convex_contact *contact, double scale,
+                                      const double p[3], double *out)
+{
+    for (int k = 0; k < 2; ++k) {
+        if (contact->free[k] >= 0) {
+            double *body = out + 6 * (size_t)contact->free[k], turning[3];
+            const double sign = k ? scale : -scale;
+            se3di_mul_transposed(contact->lever[k], p, turning);
+            se3di_add_scaled(sign * contact->reach, p, body);
+            se3di_add_scaled(sign, turning, body + 3);
+        }
+    }
+}
 /* The impulse at a velocity of the point, and minus its derivative [3 x 3]; `slope` may be NULL. */
 void se3di_convex_impulse(const se3di_convex_contact *contact, double h, const double v[3],
                           double impulse[3], double *slope);

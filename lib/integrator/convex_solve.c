@@ -227,15 +227,7 @@ static void add_contact(se3di_convex *c, const se3di_convex_contact *contact, co
 /* gradient -= J^T p */
 static void subtract_impulse(const se3di_convex_contact *contact, double *gradient)
 {
-    for (int k = 0; k < 2; ++k) {
-        if (contact->free[k] >= 0) {
-            double *g = gradient + 6 * (size_t)contact->free[k], turning[3];
-            const double sign = k ? -1.0 : 1.0;
-            se3di_mul_transposed(contact->lever[k], contact->impulse, turning);
-            se3di_add_scaled(sign * contact->reach, contact->impulse, g);
-            se3di_add_scaled(sign, turning, g + 3);
-        }
-    }
+    se3di_convex_press(contact, -1.0, contact->impulse, gradient);
 }
 
 /* Blocks of the matrix without contacts. */
@@ -822,14 +814,7 @@ static se3d_status move_bound(se3di_convex *c, se3di_equations *equations,
     const size_t rows = equations->assembly.row_count, unknowns = equations->assembly.unknown_count;
     memset(equations->b, 0, unknowns * sizeof *equations->b);
     memset(equations->c, 0, rows * sizeof *equations->c);
-    for (int k = 0; k < 2; ++k) {
-        if (stop->free[k] >= 0) {
-            double *b = equations->b + 6 * (size_t)stop->free[k];
-            se3di_scale((k ? 1.0 : -1.0) * stop->reach, stop->normal, b);
-            se3di_mul_transposed(stop->lever[k], stop->normal, b + 3);
-            se3di_scale(k ? 1.0 : -1.0, b + 3, b + 3);
-        }
-    }
+    se3di_convex_press(stop, 1.0, stop->normal, equations->b);
     memcpy(c->carried, equations->b, unknowns * sizeof *c->carried);
     ++equations->counters.solves;
     const se3d_status status =
