@@ -4,6 +4,12 @@
 
 #include "model/model.h"
 
+/* Whether an element is a stop, of a joint that has not broken. */
+static inline int se3di_stop_acts(const se3di_force *force)
+{
+    return force->type == SE3DI_FORCE_STOP && !force->released;
+}
+
 /* The damping d(e) of a stop with the coefficient of restitution e, 0 < e <= 1; see stop.c. */
 double se3di_stop_damping(double e);
 

@@ -29,16 +29,11 @@ typedef struct coordinate {
     double acceleration;
 } coordinate;
 
-static int is_stop(const se3di_force *force)
-{
-    return force->type == SE3DI_FORCE_STOP && !force->released;
-}
-
 /* Returns 0 where the coordinate has no direction. */
 static int look(const se3di_model *model, const se3di_force *force, coordinate *x)
 {
     *x = (coordinate){.force = force};
-    if (!is_stop(force) || !se3di_measure_force(model, force, 0, &x->measure)) {
+    if (!se3di_stop_acts(force) || !se3di_measure_force(model, force, 0, &x->measure)) {
         return 0;
     }
     x->acceleration = se3di_measure_acceleration(model, force);
@@ -163,7 +158,7 @@ static se3d_status reserve(se3di_convex *c, const se3di_model *model)
 {
     size_t count = c->contact_count;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        count += is_stop(&model->forces[k]) ? 2 : 0;
+        count += se3di_stop_acts(&model->forces[k]) ? 2 : 0;
     }
     return se3di_array_reserve_at(&model->allocator, &c->contacts, &c->contact_capacity, count,
                                   sizeof *c->contacts);
@@ -193,7 +188,7 @@ double se3di_convex_stop_power(const se3di_model *model)
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         se3di_effect effect = {.wants_derivative = 0};
-        if (is_stop(force) && se3di_force_eval(model, force, model->time, &effect) >= 0) {
+        if (se3di_stop_acts(force) && se3di_force_eval(model, force, model->time, &effect) >= 0) {
             sum += effect.power[0];
         }
     }

@@ -228,7 +228,7 @@ double se3di_memory_review_stops(const se3di_model *model, double h, double tole
         const se3di_force *force = &model->forces[k];
         const int turns = force->coordinate == SE3D_JOINT_COORDINATE_ANGLE;
         double part = 0.0;
-        if (force->type != SE3DI_FORCE_STOP || force->released) {
+        if (!se3di_stop_acts(force)) {
             continue;
         }
         const double gap = se3di_stop_review(model, force, h, &part);
@@ -247,8 +247,7 @@ int se3di_memory_meets_stop(const se3di_model *model)
     int meets = 0;
     for (size_t k = 0; k < model->force_slots.count && !meets; ++k) {
         const se3di_force *force = &model->forces[k];
-        meets =
-            force->type == SE3DI_FORCE_STOP && !force->released && se3di_stop_changes(model, force);
+        meets = se3di_stop_acts(force) && se3di_stop_changes(model, force);
     }
     return meets;
 }

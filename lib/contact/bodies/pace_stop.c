@@ -112,7 +112,7 @@ static double pace_all(const se3di_model *model, se3di_pace_kind kind, double pa
                        const se3di_force **which)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (model->forces[k].type == SE3DI_FORCE_STOP && !model->forces[k].released) {
+        if (se3di_stop_acts(&model->forces[k])) {
             const double step = pace_stop(model, &model->forces[k], kind, parts, h);
             *which = step < h ? &model->forces[k] : *which;
             h = step;
