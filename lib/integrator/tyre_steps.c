@@ -46,6 +46,15 @@ typedef struct way {
     double h;
 } way;
 
+static way way_of(const se3di_model *model, size_t k, double h, const double *begin,
+                  const double *end)
+{
+    return (way){.force = &model->forces[k],
+                 .begin = begin + SE3DI_TYRE_NOTES * k,
+                 .end = end + SE3DI_TYRE_NOTES * k,
+                 .h = h};
+}
+
 /* 0: it is above the road; 1: it touches, 2: and carries load. */
 static int look(const way *w, double s)
 {
@@ -86,10 +95,7 @@ int se3di_tyres_miss(const se3di_model *model, double part, double h, const doub
 {
     int changes = 0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const way w = {.force = &model->forces[k],
-                       .begin = begin + SE3DI_TYRE_NOTES * k,
-                       .end = end + SE3DI_TYRE_NOTES * k,
-                       .h = h};
+        const way w = way_of(model, k, h, begin, end);
         changes |= is_tyre(w.force) && look(&w, 0.0) != look(&w, 1.0);
     }
     return part < NEAR && !changes;
@@ -100,10 +106,7 @@ double se3di_tyres_find_part(const se3di_model *model, double h, const double *b
 {
     double first = 1.0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        const way w = {.force = &model->forces[k],
-                       .begin = begin + SE3DI_TYRE_NOTES * k,
-                       .end = end + SE3DI_TYRE_NOTES * k,
-                       .h = h};
+        const way w = way_of(model, k, h, begin, end);
         const double change = is_tyre(w.force) ? find_change(&w) : 0.0;
         first = change > 0.0 && change < first ? change : first;
     }
