@@ -124,6 +124,12 @@ static void set_geometry(se3di_convex_contact *stop, const se3di_assembly *assem
     }
 }
 
+/* What its spring holds. */
+static double energy_beyond(const se3di_convex_contact *stop, double depth)
+{
+    return depth > 0.0 ? 0.5 * stop->stiffness * depth * depth : 0.0;
+}
+
 static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coordinate *x, int upper)
 {
     se3di_convex_contact *stop = &c->contacts[c->contact_count];
@@ -145,7 +151,7 @@ static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coord
     if (assembly->row_count > 0) {
         se3di_convex_velocity(stop, c->chord, stop->chord);
     }
-    stop->held = gap < 0.0 ? 0.5 * x->force->k * gap * gap : 0.0;
+    stop->held = energy_beyond(stop, stop->overlap);
     for (int k = 0; k < 2; ++k) {
         if (stop->free[k] >= 0) {
             c->touched[stop->free[k]] = 1;
@@ -204,8 +210,7 @@ double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model)
         double x;
         sum += se3di_convex_taken_by(stop) + stop->held;
         if (se3di_measure_value(model, force, &x)) {
-            const double depth = fmax(0.0, stop->upper ? x - force->high : force->low - x);
-            sum -= 0.5 * force->k * depth * depth;
+            sum -= energy_beyond(stop, stop->upper ? x - force->high : force->low - x);
         }
     }
     return sum;
