@@ -31,8 +31,9 @@
 #define VECTORS     8 /* of unknowns */
 #define KEPT        7 /* numbers of each body in the history */
 #define ROW_VECTORS 2
-#define TURN_MAX    3.0 /* rad, of a body in a step */
-#define HALVINGS    8   /* of a step in which shapes meet too fast */
+#define TURN_MAX    3.0   /* rad, of a body in a step */
+#define PROJECTED   1e-15 /* of lengths: what is left across the constraints */
+#define HALVINGS    8     /* of a step in which shapes meet too fast */
 
 static size_t history_count(const se3di_assembly *assembly)
 {
@@ -255,10 +256,12 @@ static void move(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* Onto the constraints, as near as rounding of the places of bodies lets them. */
 static se3d_status project(se3di_equations *equations, double t1)
 {
     const se3di_model *model = equations->assembly.model;
     se3di_state_scale scale = {.length = se3di_state_length(model), .speed = 1e-12, .spin = 1e-12};
+    double far = scale.length;
     for (uint32_t k = 0; k < equations->assembly.body_count; ++k) {
         const se3di_frame *frame = &model->frames[equations->assembly.free_body[k]];
         if (se3di_state_is_carrier(&equations->assembly, k)) {
@@ -266,8 +269,9 @@ static se3d_status project(se3di_equations *equations, double t1)
         }
         scale.speed = fmax(scale.speed, se3di_norm(frame->v));
         scale.spin = fmax(scale.spin, se3di_norm(frame->w));
+        far = fmax(far, se3di_norm(frame->r));
     }
-    return se3di_state_project(equations, t1, &scale, 1e-15, 0);
+    return se3di_state_project(equations, t1, &scale, PROJECTED * far / scale.length, 0);
 }
 
 /* What is across the constraints in the chord of a step. */

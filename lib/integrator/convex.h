@@ -60,13 +60,34 @@ typedef struct se3di_convex_contact {
     double towards;                   /* whose coordinate was accelerated so in the step before */
 } se3di_convex_contact;
 
-/* Bodies that contacts, or constraints, connect: a problem of its own. */
+/* Bodies that contacts, stops and constraints connect: a problem of its own. */
 typedef struct se3di_convex_island {
     size_t body, body_end;       /* places */
     size_t contact, contact_end; /* of `order` */
     size_t pair, pair_end;
-    double momentum; /* the larger of those of `start` and `aim`, by the mass: 2 T */
+    size_t joint, joint_end; /* places of constraints; none: it is free of them */
+    size_t row, row_end;     /* of theirs */
+    size_t begin, link;      /* where it begins in se3di_convex_rows, */
+    size_t value;            /* also in C */
+    se3di_kkt *kkt;          /* of an island with constraints */
+    double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
 } se3di_convex_island;
+
+/* Constraints, island by island, see convex_rows.c. Bodies count from the first of the island. */
+typedef struct se3di_convex_solver se3di_convex_solver;
+typedef struct se3di_convex_rows {
+    int32_t *joint;         /* [places] of the model */
+    int32_t *count;         /* [places]: rows */
+    int32_t *begin;         /* [places, and one more of each island]: of their bodies, from 0 */
+    int32_t *body;          /* [links] */
+    double *C;              /* blocks of 6 columns: of each link of a constraint */
+    double *lambda, *aimed; /* as those of the assembly */
+    int32_t *key;           /* the pattern of an island */
+    se3di_convex_solver *solvers; /* [free bodies]: of the island that begins with it */
+    size_t joint_capacity, count_capacity, begin_capacity, body_capacity, C_capacity,
+        lambda_capacity, aimed_capacity, key_capacity, solver_capacity;
+    uint64_t topology_version, break_version; /* that the solvers were made for */
+} se3di_convex_rows;
 
 typedef struct se3di_convex {
     se3di_convex_contact *contacts;
@@ -74,10 +95,9 @@ typedef struct se3di_convex {
     size_t shape_count; /* of these: the first ones are of shapes, the others stops */
     int32_t *pairs;     /* couplings: free bodies i < j, increasing */
     size_t pair_count, pair_capacity;
-    int32_t *kkt_pairs; /* those that the solver was made for */
-    size_t kkt_pair_count, kkt_pair_capacity;
-    se3di_kkt *kkt;          /* of models with constraints */
-    se3di_block_cg cg;       /* of others */
+    se3di_convex_rows rows;
+    size_t joint_count;      /* constraints that take part */
+    se3di_block_cg cg;       /* of islands without constraints */
     double *body, *coupling; /* blocks of the matrix, 6 x 6 each */
     size_t body_capacity, coupling_capacity;
     double *work; /* vectors of unknowns and rows */
@@ -100,16 +120,17 @@ typedef struct se3di_convex {
     se3di_convex_island *islands;
     size_t island_count, island_capacity;
     int32_t *place;   /* [free bodies] */
+    int32_t *body_at; /* [places]: the free body */
     int32_t *root;    /* [free bodies]: the first body of its island */
-    int32_t *number;  /* [free bodies]: of its island */
+    int32_t *number;  /* [free bodies]: of its island; -1: it is not solved for */
     int32_t *order;   /* [contacts]: island by island */
     int32_t *stirred; /* [free bodies], by places: the last sweep that changed its velocity */
     double *mobility; /* [10 * free bodies], by places: 1/m, J^-1 */
     double *own;      /* blocks of the mass, by places, 6 x 6 each */
     double
         *spin; /* [6 * free bodies], by places: the w that the step begins with, h w x J w in use */
-    size_t place_capacity, root_capacity, number_capacity, order_capacity, mobility_capacity,
-        own_capacity, spin_capacity, stirred_capacity;
+    size_t place_capacity, body_at_capacity, root_capacity, number_capacity, order_capacity,
+        mobility_capacity, own_capacity, spin_capacity, stirred_capacity;
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
     uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
@@ -127,8 +148,7 @@ typedef struct se3di_convex {
     int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
     double gravity[3]; /* at the start of the step */
     double h;
-    double driven;             /* in the step, by constraints that change in time [J] */
-    uint64_t topology_version; /* that `kkt` was made for */
+    double driven; /* in the step, by constraints that change in time [J] */
 } se3di_convex;
 
 void se3di_convex_destroy(se3di_convex *convex, const se3d_allocator *allocator);
@@ -233,6 +253,20 @@ double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body);
 /* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
 
+/* convex_rows.c: a body of a constraint that acts in steps; -1: it does not, or on none; */
+int32_t se3di_convex_joined(const se3di_assembly *assembly, uint32_t joint);
+/* the constraints of each island; @return OK, NO_MEMORY */
+se3d_status se3di_convex_share_rows(se3di_convex *c, const se3di_assembly *assembly);
+/* the solver of an island; @return OK, NO_MEMORY */
+se3d_status se3di_convex_suit_solver(se3di_convex *c, const se3di_assembly *assembly,
+                                     se3di_convex_island *island);
+/* out [unknowns, by places] += C^T lambda; */
+void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island *island,
+                                double *out);
+/* lambda in the order of the assembly. */
+void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly);
+void se3di_convex_rows_destroy(se3di_convex_rows *rows, const se3d_allocator *allocator);
+
 /* convex_sweep.c: velocities near the optimum of an island without constraints, from v*, by the
  * impulses of one contact after the other. Returns 1 if they hardly changed. */
 int se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island);
@@ -246,6 +280,15 @@ double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact
 static inline int se3di_convex_leaps(const se3di_convex *c, size_t body)
 {
     return c->touched[body] || c->linked[body];
+}
+/* Whether it is solved for: something touches it, or a constraint acts on it. */
+static inline int se3di_convex_takes_part(const se3di_convex *c, size_t body)
+{
+    return c->number[body] >= 0;
+}
+static inline int se3di_convex_is_bound(const se3di_convex_island *island)
+{
+    return island->joint_end > island->joint;
 }
 /* contact by contact, as `c->order` says */
 static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_t k)

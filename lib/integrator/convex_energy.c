@@ -52,7 +52,7 @@ static double taken_by_leap(const se3di_convex *c, const se3di_assembly *assembl
 static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, uint32_t k)
 {
     double sum = taken_by_leap(c, assembly, k);
-    if (c->touched[k] || assembly->row_count > 0) {
+    if (se3di_convex_takes_part(c, k)) {
         sum += se3di_convex_gyration_work(c, k);
     }
     return sum;

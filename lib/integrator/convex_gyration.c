@@ -83,7 +83,7 @@ void se3di_convex_gyrate_begin(se3di_convex *c, const se3di_assembly *assembly)
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const size_t place = (size_t)c->place[k];
         double *spin = c->spin + 6 * place, J[9], w[3], slope[9];
-        if (!c->touched[k] && assembly->row_count == 0) {
+        if (!se3di_convex_takes_part(c, k)) {
             continue;
         }
         inertia_of(c, place, J);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What touches, directly or by others, is an island: each is solved by itself, with its own search
- * along lines and its own end. With constraints all are one. Bodies that nothing touches move as
- * loads say. */
+/* What touches or is jointed, directly or by others, is an island: each is solved by itself, with
+ * its own search along lines and its own end. Bodies that nothing touches or holds move as loads
+ * say. */
 #include "integrator/convex.h"
 
 #include "base/sort.h"
@@ -16,6 +16,7 @@ static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
         size_t *capacity, count, size;
     } arrays[] = {{&c->islands, &c->island_capacity, bodies + 1, sizeof *c->islands},
                   {&c->place, &c->place_capacity, bodies + 1, sizeof *c->place},
+                  {&c->body_at, &c->body_at_capacity, bodies + 1, sizeof *c->body_at},
                   {&c->root, &c->root_capacity, bodies + 1, sizeof *c->root},
                   {&c->number, &c->number_capacity, bodies + 1, sizeof *c->number},
                   {&c->order, &c->order_capacity, contacts + 1, sizeof *c->order},
@@ -46,29 +47,45 @@ static int32_t body_of(const se3di_convex_contact *contact)
     return contact->free[0] >= 0 ? contact->free[0] : contact->free[1];
 }
 
+static void join_two(se3di_convex *c, int32_t one, int32_t other)
+{
+    const int32_t i = find_root(c, one), j = find_root(c, other);
+    c->root[i < j ? j : i] = i < j ? i : j;
+}
+
+/* What constraints hold takes part. */
+static void join_constraints(se3di_convex *c, const se3di_assembly *assembly)
+{
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        const int32_t first = se3di_convex_joined(assembly, j);
+        if (first < 0 || c->asleep[first]) {
+            continue;
+        }
+        for (int32_t e = assembly->joint_begin[j]; e < assembly->joint_begin[j + 1]; ++e) {
+            join_two(c, first, assembly->joint_body[e]);
+            c->number[assembly->joint_body[e]] = 0;
+        }
+    }
+}
+
 /* The first body of each island becomes its root. */
 static void join(se3di_convex *c, const se3di_assembly *assembly)
 {
     const int32_t bodies = (int32_t)assembly->body_count;
     for (int32_t k = 0; k < bodies; ++k) {
-        c->root[k] = assembly->row_count > 0 ? 0 : k;
+        c->root[k] = k;
+        c->number[k] = c->touched[k] ? 0 : -1;
     }
+    join_constraints(c, assembly);
     for (size_t k = 0; k < c->contact_count; ++k) {
         const se3di_convex_contact *contact = &c->contacts[k];
         if (contact->free[0] >= 0 && contact->free[1] >= 0) {
-            const int32_t i = find_root(c, contact->free[0]), j = find_root(c, contact->free[1]);
-            c->root[i < j ? j : i] = i < j ? i : j;
+            join_two(c, contact->free[0], contact->free[1]);
         }
     }
     for (int32_t k = 0; k < bodies; ++k) {
         c->root[k] = find_root(c, k);
     }
-}
-
-/* Whether it is to be solved for. */
-static int takes_part(const se3di_convex *c, const se3di_assembly *assembly, size_t body)
-{
-    return c->touched[body] || assembly->row_count > 0;
 }
 
 static se3di_convex_island *island_of(const se3di_convex *c, const se3di_convex_contact *contact)
@@ -81,7 +98,7 @@ static void count_islands(se3di_convex *c, const se3di_assembly *assembly)
 {
     c->island_count = 0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        if (!takes_part(c, assembly, k)) {
+        if (!se3di_convex_takes_part(c, k)) {
             continue;
         }
         if ((size_t)c->root[k] == k) {
@@ -111,13 +128,14 @@ static size_t lay_out(se3di_convex *c)
     return body;
 }
 
-/* Fill the islands; bodies that nothing touches come last. */
+/* Fill the islands; others come last. */
 static void fill(se3di_convex *c, const se3di_assembly *assembly)
 {
     size_t last = lay_out(c);
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        c->place[k] = takes_part(c, assembly, k) ? (int32_t)c->islands[c->number[k]].body_end++
-                                                 : (int32_t)last++;
+        c->place[k] = se3di_convex_takes_part(c, k) ? (int32_t)c->islands[c->number[k]].body_end++
+                                                    : (int32_t)last++;
+        c->body_at[c->place[k]] = (int32_t)k;
     }
     for (size_t k = 0; k < c->contact_count; ++k) {
         c->order[island_of(c, &c->contacts[k])->contact_end++] = (int32_t)k;
@@ -206,5 +224,5 @@ se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly)
     fill(c, assembly);
     list_pairs(c);
     share_pairs(c);
-    return SE3D_OK;
+    return se3di_convex_share_rows(c, assembly);
 }

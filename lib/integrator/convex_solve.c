@@ -44,9 +44,9 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     }
     se3di_free(allocator, c->contacts, c->contact_capacity, sizeof *c->contacts);
     se3di_free(allocator, c->pairs, c->pair_capacity, 2 * sizeof *c->pairs);
-    se3di_free(allocator, c->kkt_pairs, c->kkt_pair_capacity, 2 * sizeof *c->kkt_pairs);
     se3di_free(allocator, c->islands, c->island_capacity, sizeof *c->islands);
     se3di_free(allocator, c->place, c->place_capacity, sizeof *c->place);
+    se3di_free(allocator, c->body_at, c->body_at_capacity, sizeof *c->body_at);
     se3di_free(allocator, c->root, c->root_capacity, sizeof *c->root);
     se3di_free(allocator, c->number, c->number_capacity, sizeof *c->number);
     se3di_free(allocator, c->order, c->order_capacity, sizeof *c->order);
@@ -63,59 +63,9 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->followed, c->followed_capacity, sizeof *c->followed);
     se3di_free(allocator, c->nest, c->nest_capacity, sizeof *c->nest);
     se3di_free(allocator, c->reach, c->reach_capacity, sizeof *c->reach);
-    se3di_kkt_destroy(c->kkt);
+    se3di_convex_rows_destroy(&c->rows, allocator);
     se3di_block_cg_destroy(&c->cg, allocator);
     se3di_free(allocator, c, 1, sizeof *c);
-}
-
-static se3d_status reserve_pairs(const se3d_allocator *allocator, int32_t **pairs, size_t *capacity,
-                                 size_t count)
-{
-    void *data = *pairs;
-    const se3d_status status =
-        se3di_array_reserve(allocator, &data, capacity, count, 2 * sizeof **pairs);
-    *pairs = data;
-    return status;
-}
-
-static int is_same_pattern(const se3di_convex *c, const se3di_assembly *assembly)
-{
-    return c->kkt && c->topology_version == assembly->topology_version &&
-           c->kkt_pair_count == c->pair_count &&
-           (c->pair_count == 0 ||
-            memcmp(c->kkt_pairs, c->pairs, 2 * c->pair_count * sizeof *c->pairs) == 0);
-}
-
-/* The solver for what touches now. */
-static se3d_status suit_solver(se3di_convex *c, const se3di_assembly *assembly)
-{
-    const se3d_allocator *allocator = &assembly->model->allocator;
-    const se3di_kkt_pattern pattern = {.body_count = assembly->body_count,
-                                       .joint_count = assembly->constraint_count,
-                                       .coupling_count = c->pair_count,
-                                       .joint_rows = assembly->joint_rows,
-                                       .joint_begin = assembly->joint_begin,
-                                       .joint_body = assembly->joint_body,
-                                       .coupling = c->pairs,
-                                       .body_size = 6,
-                                       .symmetric = true,
-                                       .body_kind = SE3DI_KKT_BODY_FULL};
-    if (is_same_pattern(c, assembly)) {
-        return SE3D_OK;
-    }
-    se3di_kkt_destroy(c->kkt);
-    c->kkt = NULL;
-    SE3DI_TRY(reserve_pairs(allocator, &c->kkt_pairs, &c->kkt_pair_capacity, c->pair_count));
-    SE3DI_TRY(se3di_kkt_create(allocator, &pattern, SE3DI_KKT_STRUCTURED, NULL, &c->kkt));
-    se3di_kkt_settings settings = se3di_kkt_get_settings(c->kkt);
-    settings.iterated = true;
-    se3di_kkt_set_settings(c->kkt, &settings);
-    c->kkt_pair_count = c->pair_count;
-    c->topology_version = assembly->topology_version;
-    if (c->pair_count > 0) {
-        memcpy(c->kkt_pairs, c->pairs, 2 * c->pair_count * sizeof *c->pairs);
-    }
-    return SE3D_OK;
 }
 
 static se3d_status reserve_blocks(const se3d_allocator *allocator, double **blocks,
@@ -131,16 +81,16 @@ static se3d_status reserve_blocks(const se3d_allocator *allocator, double **bloc
 /* The mass by places, and its inverse, of what takes part. */
 static void place_mass(se3di_convex *c, const se3di_assembly *assembly)
 {
-    const int is_bound = assembly->row_count > 0;
+    const int has_mass = assembly->row_count > 0;
     for (size_t k = 0; k < assembly->body_count; ++k) {
         const se3di_body *body = &assembly->model->bodies[assembly->free_body[k]];
         const size_t at = (size_t)c->place[k];
         double *M = c->own + 36 * at, *mobility = c->mobility + 10 * at, J[9];
-        if (!c->touched[k] && !is_bound) {
+        if (!se3di_convex_takes_part(c, k)) {
             continue;
         }
         se3di_inertia_matrix(body->J, J);
-        if (is_bound) {
+        if (has_mass) {
             memcpy(M, assembly->H + 36 * k, 36 * sizeof *M);
             for (size_t r = 0; r < 3; ++r) {
                 memcpy(J + 3 * r, M + 6 * (3 + r) + 3, 3 * sizeof *J);
@@ -165,12 +115,14 @@ static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
     const se3di_assembly *assembly = &equations->assembly;
     const se3d_allocator *allocator = &assembly->model->allocator;
     se3d_status status = se3di_convex_group(c, assembly);
-    if (status >= 0) {
-        status =
-            assembly->row_count > 0
-                ? suit_solver(c, assembly)
-                : se3di_block_cg_reserve(&c->cg, allocator, assembly->body_count, c->pair_count);
+    for (size_t k = 0; k < c->island_count && status >= 0; ++k) {
+        status = se3di_convex_is_bound(&c->islands[k])
+                     ? se3di_convex_suit_solver(c, assembly, &c->islands[k])
+                     : SE3D_OK;
     }
+    status = status < 0
+                 ? status
+                 : se3di_block_cg_reserve(&c->cg, allocator, assembly->body_count, c->pair_count);
     status = status < 0
                  ? status
                  : reserve_blocks(allocator, &c->body, &c->body_capacity, assembly->body_count);
@@ -360,14 +312,10 @@ static double weigh(const se3di_convex *c, const se3di_convex_island *island, co
     return sum;
 }
 
-/* out = M x; with constraints, places are those of the assembly, and armatures couple bodies. */
-static void mul_mass(const se3di_convex *c, const se3di_assembly *assembly,
-                     const se3di_convex_island *island, const double *x, double *out)
+/* out = M x */
+static void mul_mass(const se3di_convex *c, const se3di_convex_island *island, const double *x,
+                     double *out)
 {
-    if (assembly->row_count > 0) {
-        se3di_assembly_mul_mass(assembly, x, out);
-        return;
-    }
     for (size_t body = island->body; body < island->body_end; ++body) {
         const double *M = c->own + 36 * body, *v = x + 6 * body;
         double *p = out + 6 * body;
@@ -383,7 +331,6 @@ static void mul_mass(const se3di_convex *c, const se3di_assembly *assembly,
 static double measure(const se3di_convex *c, se3di_equations *equations,
                       const se3di_convex_island *island)
 {
-    const se3di_assembly *assembly = &equations->assembly;
     const size_t begin = 6 * island->body, end = 6 * island->body_end;
     double *sum = equations->b;
     for (size_t k = begin; k < end; ++k) {
@@ -391,9 +338,7 @@ static double measure(const se3di_convex *c, se3di_equations *equations,
     }
     const double size = fmax(island->momentum, weigh(c, island, sum));
     memcpy(sum + begin, c->gradient + begin, (end - begin) * sizeof *sum);
-    if (assembly->row_count > 0) {
-        se3di_assembly_add_transposed(assembly, 1.0, c->lambda, sum);
-    }
+    se3di_convex_add_reactions(c, island, sum);
     const double rest = weigh(c, island, sum);
     return rest <= 0.0 ? 0.0 : sqrt(rest / fmax(size, rest)); /* NaN stays */
 }
@@ -432,40 +377,49 @@ static void solve_free(se3di_convex *c, se3di_equations *equations,
                                c->change + begin);
 }
 
+/* The blocks of an island's equations, with `body` on the diagonal. */
+static se3di_kkt_values values_of(const se3di_convex *c, const se3di_convex_island *island,
+                                  const double *body)
+{
+    return (se3di_kkt_values){.body = body + 36 * island->body,
+                              .coupling_upper = matrix_of(c, island).coupling,
+                              .joint = c->rows.C + island->value};
+}
+
 /* `change`, and lambda. With constraints the velocities themselves are solved for: what is left of
  * them near the end of the iteration is rounding, by which the solver would measure its residual.
  */
 static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
                                const se3di_convex_island *island)
 {
-    const se3di_assembly *assembly = &equations->assembly;
     const se3di_block_matrix A = matrix_of(c, island);
-    const se3di_kkt_values values = {
-        .body = c->body, .coupling_upper = c->coupling, .joint = assembly->C};
+    const se3di_kkt_values values = values_of(c, island, c->body);
+    const size_t first = 6 * island->body;
     se3d_status status = SE3D_OK;
     if (c->changed > 0) {
         ++equations->counters.factorizations;
         c->changed = 0;
-        status = se3di_kkt_factor(c->kkt, &values, NULL);
+        status = se3di_kkt_factor(island->kkt, &values, NULL);
     }
     ++equations->counters.solves;
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+    for (size_t k = first; k < 6 * island->body_end; ++k) {
         equations->b[k] = -c->gradient[k];
     }
-    se3di_block_cg_add_product(&A, c->v, equations->b);
+    se3di_block_cg_add_product(&A, c->v + first, equations->b + first);
     status = status < 0 ? status
-                        : se3di_kkt_solve(c->kkt, &values, equations->b, c->aimed, c->change,
-                                          c->lambda, NULL);
+                        : se3di_kkt_solve(island->kkt, &values, equations->b + first,
+                                          c->rows.aimed + island->row, c->change + first,
+                                          c->rows.lambda + island->row, NULL);
     if (status == SE3D_ERR_NO_CONVERGENCE) { /* where all is at rest; the iteration will tell */
         status = SE3D_OK;
     }
-    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+    for (size_t k = first; k < 6 * island->body_end; ++k) {
         c->change[k] -= c->v[k];
     }
     return status < 0 ? se3di_error_set(equations->error, status,
                                         "t = %g s: the equations of a step of %g s with %zu "
                                         "contacts have no finite solution",
-                                        assembly->model->time, c->h, c->contact_count)
+                                        equations->assembly.model->time, c->h, c->contact_count)
                       : status;
 }
 
@@ -557,18 +511,19 @@ static void place(const se3di_convex *c, const se3di_assembly *assembly, const d
 }
 
 /* v by places, M (v - v*), the momentum. Returns 1 if contacts may be far from the optimum. */
-static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_island *island)
+static int begin(se3di_convex *c, se3di_convex_island *island)
 {
     const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
     double *aim = c->carried, *start = c->gradient;
     int is_far = 0;
-    mul_mass(c, assembly, island, aim, c->moved);
+    mul_mass(c, island, aim, c->moved);
     island->momentum = weigh(c, island, c->moved);
-    mul_mass(c, assembly, island, start, c->moved);
+    mul_mass(c, island, start, c->moved);
     island->momentum = fmax(island->momentum, weigh(c, island, c->moved));
-    if (assembly->row_count > 0) {
+    if (se3di_convex_is_bound(island)) {
         memcpy(c->v + first, start + first, count * sizeof *c->v);
-        memset(c->lambda, 0, assembly->row_count * sizeof *c->lambda);
+        memset(c->rows.lambda + island->row, 0,
+               (island->row_end - island->row) * sizeof *c->rows.lambda);
     } else {
         memcpy(c->v + first, aim + first, count * sizeof *c->v);
         is_far = !se3di_convex_sweep(c, island);
@@ -576,7 +531,7 @@ static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_i
     for (size_t k = first; k < first + count; ++k) {
         c->change[k] = c->v[k] - aim[k];
     }
-    mul_mass(c, assembly, island, c->change, c->moved);
+    mul_mass(c, island, c->change, c->moved);
     clear_blocks(c, island);
     c->changed = island->contact_end - island->contact + 1; /* all */
     see(c, island);
@@ -584,10 +539,9 @@ static int begin(se3di_convex *c, const se3di_assembly *assembly, se3di_convex_i
 }
 
 /* What `change` does to contacts and momenta. */
-static void carry(se3di_convex *c, const se3di_assembly *assembly,
-                  const se3di_convex_island *island)
+static void carry(se3di_convex *c, const se3di_convex_island *island)
 {
-    mul_mass(c, assembly, island, c->change, c->carried);
+    mul_mass(c, island, c->change, c->carried);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         se3di_convex_velocity(contact, c->change, contact->change);
@@ -645,7 +599,7 @@ static void approach(se3di_convex *c, se3di_equations *equations, const se3di_co
         const double far = foresee(c, island);
         solve_free(c, equations, island, SHARE);
         ++equations->counters.iterations;
-        carry(c, &equations->assembly, island);
+        carry(c, island);
         for (size_t k = island->contact; k < island->contact_end; ++k) {
             se3di_convex_contact *contact = se3di_convex_at(c, k);
             double less[3];
@@ -673,7 +627,6 @@ static double unbalanced(se3di_convex *c, const se3di_convex_island *island)
  * more than anything gives a reason for, and v* is nearer to the optimum, begin there. */
 static void doubt(se3di_convex *c, se3di_equations *equations, const se3di_convex_island *island)
 {
-    const se3di_assembly *assembly = &equations->assembly;
     const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
     if (!(weigh(c, island, c->moved) > ASTRAY * ASTRAY * island->momentum)) {
         return;
@@ -682,11 +635,8 @@ static void doubt(se3di_convex *c, se3di_equations *equations, const se3di_conve
     memcpy(c->carried + first, c->moved + first, count * sizeof *c->moved);
     memcpy(equations->b + first, c->v + first, count * sizeof *c->v);
     memset(c->moved + first, 0, count * sizeof *c->moved);
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const size_t at = 6 * (size_t)c->place[k];
-        if (at >= first && at < first + count) {
-            memcpy(c->v + at, c->aim + 6 * k, 6 * sizeof *c->v);
-        }
+    for (size_t k = island->body; k < island->body_end; ++k) {
+        memcpy(c->v + 6 * k, c->aim + 6 * (size_t)c->body_at[k], 6 * sizeof *c->v);
     }
     if (unbalanced(c, island) > guessed) {
         memcpy(c->moved + first, c->carried + first, count * sizeof *c->moved);
@@ -706,15 +656,15 @@ static se3d_status fail(const se3di_convex *c, se3di_equations *equations, doubl
 static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
                            const se3di_convex_island *island, int is_first, double share)
 {
-    const se3di_assembly *assembly = &equations->assembly;
-    if (assembly->row_count > 0) {
+    const int is_bound = se3di_convex_is_bound(island);
+    if (is_bound) {
         SE3DI_TRY(solve_bound(c, equations, island));
     } else {
         solve_free(c, equations, island, share);
     }
     ++equations->counters.iterations;
-    carry(c, assembly, island);
-    move(c, island, is_first && assembly->row_count > 0 ? 1.0 : search(c, island));
+    carry(c, island);
+    move(c, island, is_first && is_bound ? 1.0 : search(c, island));
     return SE3D_OK;
 }
 
@@ -751,10 +701,9 @@ static void follow_in_time(se3di_convex *c, const se3di_convex_island *island, i
 static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
                                 se3di_convex_island *island)
 {
-    const se3di_assembly *assembly = &equations->assembly;
     following f = {.looks = 0};
     double rest = HUGE_VAL;
-    if (begin(c, assembly, island)) {
+    if (begin(c, island)) {
         approach(c, equations, island);
         doubt(c, equations, island);
     }
@@ -766,7 +715,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         const double before = rest;
         rest = measure(c, equations, island);
         const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
-        if ((k > 0 || assembly->row_count == 0) && (rest <= ACCURACY || stays) &&
+        if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= ACCURACY || stays) &&
             !(f.waits && f.goes_on)) {
             return SE3D_OK;
         }
@@ -779,14 +728,17 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
     return rest <= ENOUGH ? SE3D_OK : fail(c, equations, rest);
 }
 
-/* The velocities back in the order of the assembly; those that nothing touches as loads say. */
+/* The velocities back in the order of the assembly; those that are not solved for as loads say. */
 static void take_back(se3di_convex *c, const se3di_assembly *assembly)
 {
     memcpy(c->change, c->v, assembly->unknown_count * sizeof *c->v);
     for (size_t k = 0; k < assembly->body_count; ++k) {
-        const int is_free = !c->touched[k] && assembly->row_count == 0;
-        const double *from = is_free ? c->aim + 6 * k : c->change + 6 * (size_t)c->place[k];
+        const double *from =
+            se3di_convex_takes_part(c, k) ? c->change + 6 * (size_t)c->place[k] : c->aim + 6 * k;
         memcpy(c->v + 6 * k, from, 6 * sizeof *from);
+    }
+    if (assembly->row_count > 0) {
+        se3di_convex_take_back_rows(c, assembly);
     }
 }
 
@@ -808,49 +760,54 @@ static double move_alone(const se3di_convex *c, const se3di_convex_contact *stop
 
 /* The same on the constraints, whose matrix without contacts is factorised. */
 static se3d_status move_bound(se3di_convex *c, se3di_equations *equations,
-                              const se3di_kkt_values *values, const se3di_convex_contact *stop,
+                              const se3di_convex_island *island, const se3di_convex_contact *stop,
                               double *moved)
 {
-    const size_t rows = equations->assembly.row_count, unknowns = equations->assembly.unknown_count;
-    memset(equations->b, 0, unknowns * sizeof *equations->b);
-    memset(equations->c, 0, rows * sizeof *equations->c);
-    se3di_convex_press(stop, 1.0, stop->normal, equations->b);
-    memcpy(c->carried, equations->b, unknowns * sizeof *c->carried);
+    const se3di_kkt_values values = values_of(c, island, c->own);
+    const size_t begin = 6 * island->body, end = 6 * island->body_end;
+    double *p = equations->b;
+    memset(p + begin, 0, (end - begin) * sizeof *p);
+    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
+    se3di_convex_press(stop, 1.0, stop->normal, p);
     ++equations->counters.solves;
     const se3d_status status =
-        se3di_kkt_solve(c->kkt, values, equations->b, equations->c, c->change, c->lambda, NULL);
+        se3di_kkt_solve(island->kkt, &values, p + begin, equations->c, c->change + begin,
+                        c->rows.lambda + island->row, NULL);
     if (status < 0 && status != SE3D_ERR_NO_CONVERGENCE) { /* of what is driven nothing is left */
         return status;
     }
-    *moved = fmax(0.0, dot(c->carried, c->change, 0, unknowns));
+    *moved = fmax(0.0, dot(p, c->change, begin, end));
     return SE3D_OK;
 }
 
 /* The matrix of masses and constraints, without contacts. */
 static se3d_status factor_bound(se3di_convex *c, se3di_equations *equations,
-                                const se3di_kkt_values *values)
+                                const se3di_convex_island *island)
 {
-    if (c->pair_count > 0) {
-        memset(c->coupling, 0, 36 * c->pair_count * sizeof *c->coupling);
+    const se3di_kkt_values values = values_of(c, island, c->own);
+    if (island->pair_end > island->pair) {
+        memset(c->coupling + 36 * island->pair, 0,
+               36 * (island->pair_end - island->pair) * sizeof *c->coupling);
     }
     ++equations->counters.factorizations;
-    return se3di_kkt_factor(c->kkt, values, NULL);
+    return se3di_kkt_factor(island->kkt, &values, NULL);
 }
 
 /* How stops act: what has no solution here has none in the step either, which tells it. */
-static void choose_stops(se3di_convex *c, se3di_equations *equations)
+static void choose_stops(se3di_convex *c, se3di_equations *equations,
+                         const se3di_convex_island *island)
 {
-    const se3di_assembly *assembly = &equations->assembly;
-    const se3di_kkt_values values = {
-        .body = c->own, .coupling_upper = c->coupling, .joint = assembly->C};
     int is_factored = 0;
-    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
-        se3di_convex_contact *stop = &c->contacts[k];
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *stop = se3di_convex_at(c, k);
+        if (!stop->stop) {
+            continue;
+        }
         double moved = move_alone(c, stop);
-        if (assembly->row_count > 0 && se3di_convex_stop_is_near(stop, c->h)) {
-            is_factored = is_factored || factor_bound(c, equations, &values) >= 0;
+        if (se3di_convex_is_bound(island) && se3di_convex_stop_is_near(stop, c->h)) {
+            is_factored = is_factored || factor_bound(c, equations, island) >= 0;
             if (is_factored) {
-                (void)move_bound(c, equations, &values, stop, &moved);
+                (void)move_bound(c, equations, island, stop, &moved);
             }
         }
         se3di_convex_choose_stop(stop, c->h, moved);
@@ -861,11 +818,11 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(prepare(c, equations));
-    choose_stops(c, equations);
     place(c, assembly, c->start, c->gradient);
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);
     for (size_t k = 0; k < c->island_count; ++k) {
+        choose_stops(c, equations, &c->islands[k]);
         SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
     }
     take_back(c, assembly);

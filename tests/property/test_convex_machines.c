@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Machines by `convex` at steps of milliseconds: stops of any stiffness that bounce and hold, the
- * account of energy with stops and drivers. */
+ * account of energy with stops and drivers; machines side by side. */
 #include "support/text_model.h"
 
 #include <stdio.h>
@@ -247,6 +247,86 @@ static void what_a_cam_is_driven_with_is_counted(void)
     text_model_close(&m);
 }
 
+/* Legs of two parts with a range, which fall over: `count` from number `first` on; and a ball on
+ * the plane, so that steps are those in which something touches from the beginning. */
+static text_model open_legs(int first, int count)
+{
+    char text[8192];
+    int n = snprintf(text, sizeof text,
+                     "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, friction: "
+                     "0.5, restitution: 0.1}]\ncontact: {}\nbodies:\n"
+                     "  - {name: ground, shapes: [{type: plane, material: m}]}\n"
+                     "  - {name: ball, position: [-5, 0, 0.0999], shapes: [{type: sphere, "
+                     "radius: 0.1, material: m}]}\n");
+    for (int pass = 0; pass < 3; ++pass) {
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s",
+                      pass == 0   ? ""
+                      : pass == 1 ? "joints:\n"
+                                  : "forces:\n");
+        for (int k = first; k < first + count; ++k) {
+            const double x = 2.0 * k, z = 0.5 + 0.05 * k;
+            char *end = text + n;
+            const size_t room = sizeof text - (size_t)n;
+            n += pass == 0
+                     ? snprintf(end, room,
+                                "  - {name: u%d, position: [%g, 0, %g], angular_velocity: [0, %g, "
+                                "0], shapes: [{type: capsule, radius: 0.05, length: 0.3, material: "
+                                "m}]}\n  - {name: l%d, position: [%g, 0, %g], shapes: [{type: "
+                                "capsule, radius: 0.04, length: 0.3, material: m}]}\n",
+                                k, x, z + 0.4, 1.0 + 0.3 * k, k, x, z)
+                 : pass == 1
+                     ? snprintf(end, room,
+                                "  - {name: j%d, type: revolute, body_i: u%d, body_j: l%d, at: "
+                                "[%g, 0, %g], axis: [0, 1, 0]}\n",
+                                k, k, k, x, z + 0.2)
+                     : snprintf(end, room,
+                                "  - {name: s%d, type: stop, joint: j%d, lower: -0.1, upper: 1.2, "
+                                "k: 1.0e+5, restitution: 0.1}\n",
+                                k, k);
+        }
+    }
+    n += snprintf(text + n, sizeof text - (size_t)n,
+                  "analysis: {type: dynamics, duration: 2}\noutput: [{file: r.csv, channels: [");
+    for (int k = first; k < first + count; ++k) {
+        n += snprintf(text + n, sizeof text - (size_t)n, "%su%d.position, l%d.position",
+                      k > first ? ", " : "", k, k);
+    }
+    (void)snprintf(text + n, sizeof text - (size_t)n, "]}]\n");
+    return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+}
+
+/* Each machine is a problem of its own: together they take the iterations that they take one by
+ * one, and move as they do alone. */
+static void machines_that_do_not_touch_are_solved_apart(void)
+{
+    enum { LEGS = 3 };
+    double alone[LEGS][2][3];
+    uint64_t iterations = 0;
+    se3d_solver_stats stats;
+    for (int k = 0; k < LEGS; ++k) {
+        text_model m = open_legs(k, 1);
+        CHECK(text_model_run(&m, 0.6));
+        for (size_t part = 0; part < 6; ++part) {
+            alone[k][part / 3][part % 3] = text_model_get(&m, part / 3, part % 3);
+        }
+        CHECK(!se3d_solver_get_stats(m.solver, &stats));
+        iterations += stats.iterations;
+        text_model_close(&m);
+    }
+    text_model m = open_legs(0, LEGS);
+    CHECK(text_model_run(&m, 0.6));
+    for (size_t k = 0; k < LEGS; ++k) {
+        for (size_t part = 0; part < 6; ++part) {
+            const double together = text_model_get(&m, 2 * k + part / 3, part % 3);
+            CHECK_NEAR(together, alone[k][part / 3][part % 3], 1e-9);
+        }
+        CHECK(alone[k][1][2] < 0.2); /* it has hit the plane */
+    }
+    CHECK(!se3d_solver_get_stats(m.solver, &stats));
+    CHECK_NEAR((double)stats.iterations / (double)iterations, 1.0, 0.02); /* the ball's are few */
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
@@ -256,5 +336,6 @@ int main(void)
     RUN(what_hangs_on_strings_pulls_them_tight);
     RUN(what_a_cam_is_driven_with_is_counted);
     RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
+    RUN(machines_that_do_not_touch_are_solved_apart);
     return check_finish();
 }
