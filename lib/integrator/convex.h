@@ -22,7 +22,8 @@
 /* How a contact acts in a step. */
 enum {
     SE3DI_CONVEX_SPRING, /* by its law */
-    SE3DI_CONVEX_IMPACT  /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
+    SE3DI_CONVEX_IMPACT, /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
+    SE3DI_CONVEX_TRACED  /* an impact whose impulse is known: p_n = rise, p_t = -xi */
 };
 
 /* A point of contact in the step under way. What the passes over all contacts of an island need
@@ -70,6 +71,7 @@ typedef struct se3di_convex_island {
     size_t begin, link;      /* where it begins in se3di_convex_rows, */
     size_t value;            /* also in C */
     se3di_kkt *kkt;          /* of an island with constraints */
+    int is_traced;           /* nothing acts but impacts whose impulses are known */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
 } se3di_convex_island;
 
@@ -207,6 +209,8 @@ double se3di_convex_along(const se3di_convex_contact *contact, double h, const d
 int se3di_convex_is_short(double k, double inverse_mass, double h);
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
+/* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */
+double se3di_convex_hertz_depth(double k, double inverse_mass, double u);
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
 /* Lists of contacts are in the order of their pairs of shapes. */
@@ -266,6 +270,21 @@ void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island
 /* lambda in the order of the assembly. */
 void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly);
 void se3di_convex_rows_destroy(se3di_convex_rows *rows, const se3d_allocator *allocator);
+
+/* convex_impact.c: impacts that are followed within the step, */
+#define SE3DI_CONVEX_TRACED_MOST 8
+typedef struct se3di_convex_traced {
+    se3di_convex_contact *contacts[SE3DI_CONVEX_TRACED_MOST];
+    int count;
+    /* what an impulse at the second makes of the velocity of the first */
+    double W[SE3DI_CONVEX_TRACED_MOST][SE3DI_CONVEX_TRACED_MOST][9];
+} se3di_convex_traced;
+/* those of an island, 1 if they are all that acts there; */
+int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
+                           se3di_convex_traced *traced);
+/* their impulses. Returns 1 if they are known. */
+int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced,
+                       const se3di_model *model);
 
 /* convex_sweep.c: velocities near the optimum of an island without constraints, from v*, by the
  * impulses of one contact after the other. Returns 1 if they hardly changed. */

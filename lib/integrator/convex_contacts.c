@@ -27,6 +27,9 @@
 double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, double *slope)
 {
     *slope = 0.0;
+    if (c->way == SE3DI_CONVEX_TRACED) {
+        return c->rise;
+    }
     if (c->way == SE3DI_CONVEX_IMPACT) {
         *slope = c->rebound > vn ? c->damping : 0.0;
         return fmax(0.0, c->damping * (c->rebound - vn));
@@ -103,12 +106,15 @@ typedef struct collecting {
     se3di_error *error;
 } collecting;
 
+double se3di_convex_hertz_depth(double k, double inverse_mass, double u)
+{
+    return u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0;
+}
+
 /* The stiffness of a Hertzian spring that meets an approach u, or carries an overlap. */
 static double hertz_stiffness(double k, double overlap, double inverse_mass, double u)
 {
-    const double depth =
-        u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0; /* k sqrt(R) */
-    return 1.5 * k * sqrt(fmax(overlap, depth));
+    return 1.5 * k * sqrt(fmax(overlap, se3di_convex_hertz_depth(k, inverse_mass, u)));
 }
 
 /* How it acts, and its dampers, for an approach `u` at the start of the step and what loads alone

@@ -30,7 +30,7 @@ double se3di_convex_taken_by(const se3di_convex_contact *c)
 static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
 {
     const int lifted = (c->free[1] >= 0) - (c->free[0] >= 0);
-    const int lifts = c->way == SE3DI_CONVEX_IMPACT && lifted != 0;
+    const int lifts = c->way != SE3DI_CONVEX_SPRING && lifted != 0;
     return se3di_convex_taken_by(c) +
            (lifts ? 0.5 * lifted * convex->h * se3di_dot(c->impulse, convex->gravity) : 0.0);
 }

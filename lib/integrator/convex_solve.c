@@ -526,7 +526,7 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
                (island->row_end - island->row) * sizeof *c->rows.lambda);
     } else {
         memcpy(c->v + first, aim + first, count * sizeof *c->v);
-        is_far = !se3di_convex_sweep(c, island);
+        is_far = !island->is_traced && !se3di_convex_sweep(c, island);
     }
     for (size_t k = first; k < first + count; ++k) {
         c->change[k] = c->v[k] - aim[k];
@@ -758,26 +758,31 @@ static double move_alone(const se3di_convex *c, const se3di_convex_contact *stop
     return sum;
 }
 
-/* The same on the constraints, whose matrix without contacts is factorised. */
-static se3d_status move_bound(se3di_convex *c, se3di_equations *equations,
-                              const se3di_convex_island *island, const se3di_convex_contact *stop,
-                              double *moved)
+/* What an impulse at a point makes of the velocities of an island, in `change`; its constraints'
+ * matrix without contacts is factorised. */
+static se3d_status answer(se3di_convex *c, se3di_equations *equations,
+                          const se3di_convex_island *island, const se3di_convex_contact *contact,
+                          const double impulse[3])
 {
     const se3di_kkt_values values = values_of(c, island, c->own);
     const size_t begin = 6 * island->body, end = 6 * island->body_end;
     double *p = equations->b;
     memset(p + begin, 0, (end - begin) * sizeof *p);
+    se3di_convex_press(contact, 1.0, impulse, p);
+    if (!se3di_convex_is_bound(island)) {
+        for (size_t k = island->body; k < island->body_end; ++k) {
+            const double *mobility = c->mobility + 10 * k;
+            se3di_scale(mobility[0], p + 6 * k, c->change + 6 * k);
+            se3di_mul(mobility + 1, p + 6 * k + 3, c->change + 6 * k + 3);
+        }
+        return SE3D_OK;
+    }
     memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
-    se3di_convex_press(stop, 1.0, stop->normal, p);
     ++equations->counters.solves;
     const se3d_status status =
         se3di_kkt_solve(island->kkt, &values, p + begin, equations->c, c->change + begin,
                         c->rows.lambda + island->row, NULL);
-    if (status < 0 && status != SE3D_ERR_NO_CONVERGENCE) { /* of what is driven nothing is left */
-        return status;
-    }
-    *moved = fmax(0.0, dot(p, c->change, begin, end));
-    return SE3D_OK;
+    return status == SE3D_ERR_NO_CONVERGENCE ? SE3D_OK : status; /* of what is driven, nothing */
 }
 
 /* The matrix of masses and constraints, without contacts. */
@@ -795,9 +800,8 @@ static se3d_status factor_bound(se3di_convex *c, se3di_equations *equations,
 
 /* How stops act: what has no solution here has none in the step either, which tells it. */
 static void choose_stops(se3di_convex *c, se3di_equations *equations,
-                         const se3di_convex_island *island)
+                         const se3di_convex_island *island, int *is_factored)
 {
-    int is_factored = 0;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *stop = se3di_convex_at(c, k);
         if (!stop->stop) {
@@ -805,13 +809,52 @@ static void choose_stops(se3di_convex *c, se3di_equations *equations,
         }
         double moved = move_alone(c, stop);
         if (se3di_convex_is_bound(island) && se3di_convex_stop_is_near(stop, c->h)) {
-            is_factored = is_factored || factor_bound(c, equations, island) >= 0;
-            if (is_factored) {
-                (void)move_bound(c, equations, island, stop, &moved);
+            *is_factored = *is_factored || factor_bound(c, equations, island) >= 0;
+            if (*is_factored && answer(c, equations, island, stop, stop->normal) >= 0) {
+                moved =
+                    fmax(0.0, dot(equations->b, c->change, 6 * island->body, 6 * island->body_end));
             }
         }
         se3di_convex_choose_stop(stop, c->h, moved);
     }
+}
+
+/* Impacts beside which nothing acts: their impulses are known before. */
+static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island,
+                          int *is_factored)
+{
+    se3di_convex_traced t;
+    if (!se3di_convex_may_trace(c, island, &t)) {
+        return;
+    }
+    if (se3di_convex_is_bound(island) && !*is_factored) {
+        *is_factored = factor_bound(c, equations, island) >= 0;
+        if (!*is_factored) {
+            return;
+        }
+    }
+    for (int j = 0; j < 3 * t.count; ++j) {
+        const double one[3] = {j % 3 == 0, j % 3 == 1, j % 3 == 2};
+        if (answer(c, equations, island, t.contacts[j / 3], one) < 0) {
+            return;
+        }
+        for (int i = 0; i < t.count; ++i) {
+            double v[3];
+            se3di_convex_velocity(t.contacts[i], c->change, v);
+            for (int r = 0; r < 3; ++r) {
+                t.W[i][j / 3][3 * r + j % 3] = v[r];
+            }
+        }
+    }
+    island->is_traced = se3di_convex_trace(c, &t, equations->assembly.model);
+}
+
+/* How what acts in an island acts. */
+static void choose(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
+{
+    int is_factored = 0;
+    choose_stops(c, equations, island, &is_factored);
+    trace_impacts(c, equations, island, &is_factored);
 }
 
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
@@ -822,7 +865,7 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);
     for (size_t k = 0; k < c->island_count; ++k) {
-        choose_stops(c, equations, &c->islands[k]);
+        choose(c, equations, &c->islands[k]);
         SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
     }
     take_back(c, assembly);

@@ -24,10 +24,8 @@
 #include <math.h>
 #include <string.h>
 
-#define FAINT       1e-9 /* of R*: overlaps that do not yet share a load, nor their rounding */
 #define MASS_STEP   2e-3 /* by which the effective mass of a contact changes */
 #define LEAST_SHARE 0.01 /* of a step in contact: w does not grow further */
-#define SHARE_MIN   0.25 /* of the inverse of a point's own effective mass */
 
 double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j)
 {
@@ -92,11 +90,11 @@ void se3di_encounter_share(se3di_encounter *points, uint32_t count)
         se3di_encounter *e = &points[i];
         e->shared = e->alone;
         for (uint32_t j = 0; j < count; ++j) {
-            double weight =
-                fmin(points[j].at->overlap, e->at->overlap) / (e->at->overlap + FAINT * e->radius);
+            const double weight =
+                se3di_encounter_weight(e->at->overlap, points[j].at->overlap, e->radius);
             e->shared += i == j ? 0.0 : weight * response(e, &points[j]);
         }
-        e->shared = fmax(e->shared, SHARE_MIN * e->alone);
+        e->shared = fmax(e->shared, SE3DI_SHARE_MIN * e->alone);
         e->inverse_mass =
             e->memory && e->model->contacts.step > 0.0 ? e->memory->inverse_mass : e->shared;
         e->root_mass = se3di_over(1.0, sqrt(e->inverse_mass));

@@ -7,6 +7,8 @@
 #include "contact/narrow/narrow.h"
 #include "model/model.h"
 
+#include <math.h>
+
 typedef struct se3di_encounter {
     const se3di_model *model;
     const se3di_contact_point *at;
@@ -56,6 +58,15 @@ double se3di_shapes_contact_radius(const se3di_shape *i, const se3di_shape *j);
 /* Begin an encounter of which model, at, memory, shape_i and shape_j are set: all but the forces.
  */
 void se3di_encounter_place(se3di_encounter *e);
+/* How much a point with the overlap `other` shares the load of one with the overlap `own`; of R* as
+ * much is an overlap that shares nothing yet, nor its rounding; */
+static inline double se3di_encounter_weight(double own, double other, double radius)
+{
+    const double faint = 1e-9;
+    return fmin(other, own) / (own + faint * radius);
+}
+/* what 1/m* at least is of that of the point alone. */
+#define SE3DI_SHARE_MIN 0.25
 /* The effective masses of the points of one pair of shapes, which share the load. */
 void se3di_encounter_share(se3di_encounter *points, uint32_t count);
 /* The forces. */

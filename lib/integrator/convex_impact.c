@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* Impacts at few points, beside which nothing rests, follow the laws of their contacts within the
+ * step, on arms and normals that stay:
+ *
+ *     delta' = -v_n,    xi' = v_t, no longer than friction holds,    v_i' = sum W_ij F_j
+ *
+ * with W_ij what an impulse at point j makes of the velocity of point i, from where the first of
+ * them touched until all part (leapfrog). A slip so turns round within an impact, and what a corner
+ * does to another comes before or after what that does, as their laws have it. What the forces add
+ * up to are the impulses of the step.                                 docs/theory/convex.md */
+#include "integrator/convex.h"
+
+#include "contact/bodies/encounter.h"
+#include "contact/bodies/law.h"
+#include "math/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEPS_MOST 4000
+#define PHASE      0.15 /* of the fastest swing of all springs together, in a step */
+
+typedef struct point {
+    const se3di_convex_contact *contact;
+    const se3di_pair *pair;
+    double radius;    /* R* */
+    double root_mass; /* sqrt(m*) of now */
+    double delta, xi[3], v[3];
+    double impulse[3];
+} point;
+
+typedef struct tracing {
+    const se3di_convex_traced *traced;
+    point points[SE3DI_CONVEX_TRACED_MOST];
+    /* what an impulse along the second normal makes of the velocity along the first one, of bodies
+     * by themselves; 0 for points of other shapes */
+    double alone[SE3DI_CONVEX_TRACED_MOST][SE3DI_CONVEX_TRACED_MOST];
+    int count, hertz;
+} tracing;
+
+/* W_ij, [3 x 3]. */
+static const double *block_of(const tracing *t, int i, int j)
+{
+    return t->traced->W[i][j];
+}
+
+/* A step that follows the stiffest swing of all springs together, of the greatest overlap that the
+ * approaches can make. */
+static double step_of(const tracing *t)
+{
+    double rate2 = 0.0;
+    for (int k = 0; k < t->count; ++k) {
+        const point *p = &t->points[k];
+        const double *W = block_of(t, k, k);
+        const double kn = p->pair->kn, speed = se3di_norm(p->v);
+        const double s = t->hertz
+                             ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
+                                                                         t->alone[k][k], speed))
+                             : 1.0;
+        const double stiffest = fmax(kn * (t->hertz ? 1.5 : 1.0), p->pair->kt) * s;
+        rate2 += stiffest * (W[0] + W[4] + W[8]);
+    }
+    return PHASE / sqrt(rate2);
+}
+
+/* The law: the force on j, and what friction leaves of a stretch xi. Returns whether they press. */
+static int press_by_law(const point *p, int hertz, double xi[3], double force[3])
+{
+    const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
+    const double s = hertz ? sqrt(p->radius * fmax(0.0, p->delta)) : 1.0;
+    const double root = p->root_mass * sqrt(s), kt = p->pair->kt * s;
+    const double normal = p->pair->kn * s * p->delta - p->pair->dn * root * vn;
+    double pull[3];
+    memset(force, 0, 3 * sizeof *force);
+    if (!(p->delta > 0.0 && normal > 0.0)) {
+        memset(xi, 0, 3 * sizeof *xi);
+        return 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        pull[k] = -kt * xi[k] - p->pair->dt * root * (p->v[k] - vn * n[k]);
+    }
+    const double size = se3di_norm(pull), cap = p->pair->friction * normal;
+    const double held = kt * se3di_norm(xi);
+    if (size > cap) {
+        se3di_scale(cap / size, pull, force);
+        if (held > size) {
+            se3di_add_scaled((1.0 - cap / size) / kt, pull, xi);
+        } else if (held > cap) {
+            se3di_scale(cap / held, xi, xi);
+        }
+    } else {
+        se3di_copy(pull, force);
+    }
+    se3di_add_scaled(normal, n, force);
+    return 1;
+}
+
+/* Points by a time with the velocities that they have. */
+static void approach(tracing *t, double time)
+{
+    for (int k = 0; k < t->count; ++k) {
+        point *p = &t->points[k];
+        const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
+        p->delta -= time * vn;
+        se3di_add_scaled(time, p->v, p->xi);
+        se3di_add_scaled(-time * vn, n, p->xi);
+    }
+}
+
+/* Points of the same shapes share the load; joints do not count in the law. */
+static void share(tracing *t)
+{
+    for (int i = 0; i < t->count; ++i) {
+        point *p = &t->points[i];
+        double sum = t->alone[i][i];
+        for (int j = 0; j < t->count && p->delta > 0.0; ++j) {
+            const double other = fmax(0.0, t->points[j].delta);
+            sum +=
+                i == j ? 0.0 : t->alone[i][j] * se3di_encounter_weight(p->delta, other, p->radius);
+        }
+        p->root_mass = 1.0 / sqrt(fmax(sum, SE3DI_SHARE_MIN * t->alone[i][i]));
+    }
+}
+
+/* Impulses of the forces of now in a time. Returns whether any press. */
+static int find_impulses(tracing *t, double time, double impulse[][3], int is_expected)
+{
+    int presses = 0;
+    for (int k = 0; k < t->count; ++k) {
+        point *p = &t->points[k];
+        double xi[3];
+        se3di_copy(p->xi, xi);
+        presses |= press_by_law(p, t->hertz, xi, impulse[k]);
+        se3di_scale(time, impulse[k], impulse[k]);
+        if (!is_expected) {
+            se3di_copy(xi, p->xi);
+        }
+    }
+    return presses;
+}
+
+/* v += scale W p */
+static void push(tracing *t, double scale, double impulse[][3])
+{
+    for (int i = 0; i < t->count; ++i) {
+        for (int j = 0; j < t->count; ++j) {
+            double change[3];
+            se3di_mul(block_of(t, i, j), impulse[j], change);
+            se3di_add_scaled(scale, change, t->points[i].v);
+        }
+    }
+}
+
+/* A step of the leapfrog, whose forces take the velocities to be expected in its middle. Returns
+ * whether any press there. */
+static int advance(tracing *t, double h)
+{
+    double impulse[SE3DI_CONVEX_TRACED_MOST][3];
+    double before[SE3DI_CONVEX_TRACED_MOST][3];
+    approach(t, 0.5 * h);
+    share(t);
+    for (int k = 0; k < t->count; ++k) {
+        se3di_copy(t->points[k].v, before[k]);
+    }
+    (void)find_impulses(t, 0.5 * h, impulse, 1);
+    push(t, 1.0, impulse);
+    const int presses = find_impulses(t, h, impulse, 0);
+    for (int k = 0; k < t->count; ++k) {
+        se3di_copy(before[k], t->points[k].v);
+        se3di_add(t->points[k].impulse, impulse[k], t->points[k].impulse);
+    }
+    push(t, 1.0, impulse);
+    approach(t, 0.5 * h);
+    return presses;
+}
+
+/* The time until the next two touch that do not yet, HUGE_VAL if none come nearer. */
+static double time_to_touch(const tracing *t)
+{
+    double time = HUGE_VAL;
+    for (int k = 0; k < t->count; ++k) {
+        const point *p = &t->points[k];
+        const double speed = -se3di_dot(p->v, p->contact->normal);
+        if (speed > 0.0) {
+            time = fmin(time, fmax(0.0, -p->delta) / speed);
+        }
+    }
+    return time;
+}
+
+/* To where all part. Returns whether they do. */
+static int trace(tracing *t)
+{
+    const double h = step_of(t);
+    for (int k = 0; k < STEPS_MOST; ++k) {
+        if (!advance(t, h)) {
+            const double time = time_to_touch(t);
+            if (!(time < HUGE_VAL)) {
+                return 1;
+            }
+            approach(t, time);
+        }
+    }
+    return 0;
+}
+
+int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
+                           se3di_convex_traced *traced)
+{
+    int meets = 0;
+    traced->count = 0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        if (!contact->record && !se3di_convex_stop_is_near(contact, c->h)) {
+            continue;
+        }
+        if (!contact->record || contact->way != SE3DI_CONVEX_IMPACT ||
+            traced->count == SE3DI_CONVEX_TRACED_MOST) {
+            return 0;
+        }
+        meets |= contact->rebound > 0.0;
+        traced->contacts[traced->count++] = contact;
+    }
+    return meets;
+}
+
+/* The state in which the first of them touched; those that part from an impact before may touch
+ * again. */
+static void begin(tracing *t, const se3di_model *model)
+{
+    double since = 0.0;
+    for (int k = 0; k < t->count; ++k) {
+        const se3di_convex_contact *contact = t->traced->contacts[k];
+        const se3di_body_contact *record = contact->record;
+        t->points[k] =
+            (point){.contact = contact,
+                    .pair = se3di_pair_of(model, record->shape_i, record->shape_j),
+                    .radius = se3di_shapes_contact_radius(&model->shapes[record->shape_i],
+                                                          &model->shapes[record->shape_j]),
+                    .delta = contact->rebound > 0.0 ? record->overlap : 0.0};
+        se3di_copy(contact->before, t->points[k].v);
+        if (contact->rebound > 0.0) {
+            since = fmax(since, -record->overlap / se3di_dot(contact->before, contact->normal));
+        }
+    }
+    for (int k = 0; k < t->count; ++k) {
+        point *p = &t->points[k];
+        p->delta = fmin(0.0, p->delta + since * se3di_dot(p->v, p->contact->normal));
+    }
+}
+
+static double respond(const se3di_convex *c, const se3di_convex_contact *i,
+                      const se3di_convex_contact *j)
+{
+    double sum = 0.0;
+    if (i->record->shape_i != j->record->shape_i || i->record->shape_j != j->record->shape_j) {
+        return 0.0;
+    }
+    for (int k = 0; k < 2; ++k) {
+        if (i->free[k] >= 0) {
+            const double *mobility = c->mobility + 10 * (size_t)i->free[k];
+            double moment[2][3], turned[3];
+            se3di_mul_transposed(i->lever[k], i->normal, moment[0]);
+            se3di_mul_transposed(j->lever[k], j->normal, moment[1]);
+            se3di_mul(mobility + 1, moment[1], turned);
+            sum += mobility[0] * se3di_dot(i->normal, j->normal) + se3di_dot(moment[0], turned);
+        }
+    }
+    return sum;
+}
+
+int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const se3di_model *model)
+{
+    tracing t = {.traced = traced,
+                 .count = traced->count,
+                 .hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN};
+    begin(&t, model);
+    for (int k = 0; k < t.count * t.count; ++k) {
+        const int i = k / t.count, j = k % t.count;
+        t.alone[i][j] = respond(c, traced->contacts[i], traced->contacts[j]);
+    }
+    if (!trace(&t)) {
+        return 0;
+    }
+    for (int k = 0; k < t.count; ++k) {
+        const double *impulse = t.points[k].impulse;
+        se3di_convex_contact *contact = traced->contacts[k];
+        contact->way = SE3DI_CONVEX_TRACED;
+        contact->rise = se3di_dot(impulse, contact->normal);
+        contact->drag = 0.0;
+        contact->tangential = 1.0 / c->h;
+        se3di_scale(-1.0, impulse, contact->xi);
+        se3di_add_scaled(contact->rise, contact->normal, contact->xi);
+        contact->bound = contact->friction * contact->rise;
+    }
+    return 1;
+}
