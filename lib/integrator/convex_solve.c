@@ -26,6 +26,8 @@
 #define GO_AHEAD    1e-3 /* of impulses: what is left where caps go on as they went, */
 #define AHEAD_MOST  4.0  /* at most so many times */
 #define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
+#define GIVEN_MOST  1e-6 /* of twice the kinetic energy: what an impact gives and may */
+#define TAMED_MOST  8    /* times */
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
 #define SAME        1e-2 /* of a slope: changes that the matrix need not know */
 #define SOLVES_MOST 500
@@ -679,9 +681,38 @@ static double share_of(double rest, double before)
     return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
-/* Whether caps and gyration follow, and how often they have, or wait. */
+/* Impacts together give no energy. If they did, those that do on the average of their velocities
+ * before and after, since others have turned a slip round or have stopped what was parting, leave
+ * more slowly, or come as near as they were parting. Returns whether any are to. */
+static int tame(const se3di_convex *c, const se3di_convex_island *island)
+{
+    double sum = 0.0;
+    int is_tamed = 0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        const se3di_convex_contact *contact = se3di_convex_at(c, k);
+        sum -= contact->record && contact->way == SE3DI_CONVEX_IMPACT
+                   ? se3di_convex_taken_by(contact)
+                   : 0.0;
+    }
+    for (size_t k = island->contact; k < island->contact_end && sum > GIVEN_MOST * island->momentum;
+         ++k) {
+        se3di_convex_contact *contact = se3di_convex_at(c, k);
+        const double least = fmin(0.0, -se3di_dot(contact->before, contact->normal));
+        const double normal = se3di_dot(contact->impulse, contact->normal);
+        const double given = -se3di_convex_taken_by(contact);
+        if (contact->record && contact->way == SE3DI_CONVEX_IMPACT && contact->rebound > least &&
+            normal > 0.0 && given > 0.0) {
+            contact->rebound = fmax(least, contact->rebound - 2.0 * given / normal);
+            is_tamed = 1;
+        }
+    }
+    return is_tamed;
+}
+
+/* Whether caps and gyration follow, and how often they have, or wait; how often impacts were tamed.
+ */
 typedef struct following {
-    int looks, waited;
+    int looks, waited, tamed;
     int goes_on, waits;
 } following;
 
@@ -716,7 +747,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         rest = measure(c, equations, island);
         const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
         if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= ACCURACY || stays) &&
-            !(f.waits && f.goes_on)) {
+            !(f.waits && f.goes_on) && !(f.tamed++ < TAMED_MOST && tame(c, island))) {
             return SE3D_OK;
         }
         if (!with_slopes) {
