@@ -18,6 +18,7 @@
 #include <string.h>
 
 #define STEPS_MOST 4000
+#define LIGHT      0.02 /* of the speed of an impact: what rests may come out with */
 #define PHASE      0.15 /* of the fastest swing of all springs together, in a step */
 
 typedef struct point {
@@ -204,28 +205,44 @@ static int trace(tracing *t)
     return 0;
 }
 
+/* Whether it begins now; what parts from an impact before may only touch again. */
+static int meets(const se3di_convex_contact *contact)
+{
+    return contact->way == SE3DI_CONVEX_IMPACT && contact->rebound > 0.0;
+}
+
+/* The speed at which it would come out of the overlap that it rests in. */
+static double speed_of_rest(const se3di_convex_contact *contact)
+{
+    const double delta = contact->record->overlap;
+    const double k = contact->stiffness * (contact->power > 1.0 ? sqrt(delta) : 1.0);
+    return delta * sqrt(k * contact->record->inverse_mass);
+}
+
 int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
                            se3di_convex_traced *traced)
 {
-    int meets = 0;
+    double speed = 0.0, rest = 0.0;
     traced->count = 0;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         if (!contact->record && !se3di_convex_stop_is_near(contact, c->h)) {
             continue;
         }
-        if (!contact->record || contact->way != SE3DI_CONVEX_IMPACT ||
-            traced->count == SE3DI_CONVEX_TRACED_MOST) {
+        if (!contact->record || traced->count == SE3DI_CONVEX_TRACED_MOST) {
             return 0;
         }
-        meets |= contact->rebound > 0.0;
+        if (meets(contact)) {
+            speed = fmax(speed, -se3di_dot(contact->before, contact->normal));
+        } else if (contact->way == SE3DI_CONVEX_SPRING) {
+            rest = fmax(rest, speed_of_rest(contact));
+        }
         traced->contacts[traced->count++] = contact;
     }
-    return meets;
+    return speed > 0.0 && rest <= LIGHT * speed;
 }
 
-/* The state in which the first of them touched; those that part from an impact before may touch
- * again. */
+/* The state in which the first of them touched. */
 static void begin(tracing *t, const se3di_model *model)
 {
     double since = 0.0;
@@ -236,16 +253,20 @@ static void begin(tracing *t, const se3di_model *model)
             (point){.contact = contact,
                     .pair = se3di_pair_of(model, record->shape_i, record->shape_j),
                     .radius = se3di_shapes_contact_radius(&model->shapes[record->shape_i],
-                                                          &model->shapes[record->shape_j]),
-                    .delta = contact->rebound > 0.0 ? record->overlap : 0.0};
+                                                          &model->shapes[record->shape_j])};
         se3di_copy(contact->before, t->points[k].v);
-        if (contact->rebound > 0.0) {
+        if (meets(contact)) {
             since = fmax(since, -record->overlap / se3di_dot(contact->before, contact->normal));
         }
     }
     for (int k = 0; k < t->count; ++k) {
         point *p = &t->points[k];
-        p->delta = fmin(0.0, p->delta + since * se3di_dot(p->v, p->contact->normal));
+        const double overlap = p->contact->record->overlap;
+        if (meets(p->contact)) {
+            p->delta = fmin(0.0, overlap + since * se3di_dot(p->v, p->contact->normal));
+        } else if (p->contact->way == SE3DI_CONVEX_SPRING) {
+            p->delta = overlap;
+        }
     }
 }
 

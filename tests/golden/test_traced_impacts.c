@@ -202,10 +202,49 @@ static void machines_leave_a_plane_as_their_law_says(void)
     check_all((impact){.seed = 6, .law = SE3D_CONTACT_LAW_HERTZ_MINDLIN, .trails = 1}, 20);
 }
 
+/* Five that touch without pressing, hit by one: the speeds of all. */
+static void row(int32_t method, int32_t law, double v[6])
+{
+    const double still[3] = {0}, to[3] = {1.0, 0.0, 0.0};
+    se3d_body balls[6];
+    se3d_material_def stuff = scene_stuff(0.3, 0.9, 1e8);
+    stuff.young = 1e10;
+    scene s = scene_begin_with(NULL, law, &stuff);
+    CHECK(se3d_system_set_gravity(s.system, still) == SE3D_OK);
+    for (int k = 0; k < 6; ++k) {
+        const double r[3] = {SIZE * k - (k ? 1e-8 * k : 1e-6), 0.0, 0.0};
+        balls[k] = scene_ball(&s, 0.5 * SIZE, 1.0, r, k ? still : to);
+    }
+    scene_solve(&s, method, SE3D_FORMULATION_ROMEGA, method == SE3D_METHOD_CONVEX ? STEP : 0.0,
+                0.0);
+    scene_run(&s, 0.02);
+    for (int k = 0; k < 6; ++k) {
+        double u[3];
+        CHECK(se3d_body_get_velocity(s.system, balls[k], u) == SE3D_OK);
+        v[k] = u[0];
+    }
+    scene_end(&s);
+}
+
+static void a_row_of_balls_sends_off_the_last_one(void)
+{
+    for (int k = 0; k < 2; ++k) {
+        const int32_t law = k ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
+        double exact[6], ours[6];
+        row(SE3D_METHOD_DOP853, law, exact);
+        row(SE3D_METHOD_CONVEX, law, ours);
+        for (int b = 0; b < 6; ++b) {
+            CHECK_NEAR(ours[b], exact[b], 0.02);
+        }
+        CHECK(ours[5] > 0.6);
+    }
+}
+
 int main(void)
 {
     RUN(boxes_on_a_plane_leave_as_their_law_says);
     RUN(boxes_that_meet_part_as_their_law_says);
     RUN(machines_leave_a_plane_as_their_law_says);
+    RUN(a_row_of_balls_sends_off_the_last_one);
     return check_finish();
 }
