@@ -38,8 +38,7 @@ static int has_element(const se3di_model *model, int32_t type)
 /* Elements that convex refuses or that are contacts of their own. */
 static int has_other_elements(const se3di_model *model)
 {
-    return has_element(model, SE3DI_FORCE_FRICTION) || has_element(model, SE3DI_FORCE_ARMATURE) ||
-           has_element(model, SE3DI_FORCE_TYRE);
+    return has_element(model, SE3DI_FORCE_ARMATURE) || has_element(model, SE3DI_FORCE_TYRE);
 }
 
 int se3di_crowd_may_touch(const se3di_model *model)

@@ -98,10 +98,11 @@ se3d_status se3di_callbacks_energy(const se3di_model *model, double t, double *p
 se3d_status se3di_forces_eval(const se3di_model *model, double t, double *wrench, uint32_t *failed);
 /* Whether an element is an effort that needs nothing but its number. */
 int se3di_force_is_number(const se3di_force *force);
-/* A stop that is a contact of the step under way, no element. */
+/* A stop or friction that is a contact of the step under way, no element. */
 static inline int se3di_force_is_apart(const se3di_model *model, const se3di_force *force)
 {
-    return model->stops_apart && force->type == SE3DI_FORCE_STOP;
+    return model->steps_apart &&
+           (force->type == SE3DI_FORCE_STOP || force->type == SE3DI_FORCE_FRICTION);
 }
 
 /* Elements with a memory (friction, stops). After a trial step from the last accepted state:

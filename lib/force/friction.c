@@ -39,11 +39,14 @@ double se3di_friction_limit(const se3di_force *force, int slips)
     return force->released ? 0.0 : mu * force->state[LOAD] + force->limit;
 }
 
+double se3di_friction_get_damper(const se3di_force *force, double s)
+{
+    return force->presliding < RIGID ? 2.0 * sqrt(force->presliding / CALM) * s : 0.0;
+}
+
 static double stick_damping(const se3di_force *force)
 {
-    return force->presliding < RIGID
-               ? 2.0 * sqrt(force->presliding / CALM) * force->state[STIFFNESS]
-               : 0.0;
+    return se3di_friction_get_damper(force, force->state[STIFFNESS]);
 }
 
 static double spring_force(const se3di_force *force, double x)
@@ -81,8 +84,7 @@ double se3di_friction_get(const se3di_model *model, const se3di_force *force)
     return force->state[SET] > 0.0 ? spring_force(force, x) : 0.0;
 }
 
-/* Hold on to x with n. */
-static void anchor(se3di_force *force, double x, double n)
+void se3di_friction_anchor(se3di_force *force, double x, double n)
 {
     if (se3di_friction_sticks(force) && force->state[SET] > 0.0) {
         force->state[ENERGY] += stick_energy(force, x);
@@ -95,7 +97,7 @@ static void anchor(se3di_force *force, double x, double n)
 void se3di_friction_set(const se3di_model *model, se3di_force *force, double mode, double n)
 {
     double rate;
-    anchor(force, coordinate(model, force, &rate), n);
+    se3di_friction_anchor(force, coordinate(model, force, &rate), n);
     force->state[MODE] = mode;
     force->state[SET] = 1.0;
     force->state[RATE] = rate;
@@ -179,7 +181,7 @@ void se3di_friction_begin(const se3di_model *model, se3di_force *force)
     const double x = coordinate(model, force, &rate);
     if (!(force->state[SET] > 0.0)) {
         const double mode = fabs(rate) > SE3DI_FRICTION_REST ? copysign(1.0, rate) : 0.0;
-        anchor(force, x, mode * se3di_friction_limit(force, 1));
+        se3di_friction_anchor(force, x, mode * se3di_friction_limit(force, 1));
         force->state[MODE] = mode;
         force->state[SET] = 1.0;
         force->state[RATE] = rate;
@@ -200,14 +202,14 @@ static void accept_friction(const se3di_model *model, se3di_force *force)
     se3di_friction_begin(model, force);
     force->state[RATE] = rate;
     if (!se3di_friction_sticks(force)) {
-        anchor(force, x, force->state[MODE] * se3di_friction_limit(force, 1));
+        se3di_friction_anchor(force, x, force->state[MODE] * se3di_friction_limit(force, 1));
         force->state[MODE] = has_turned(model, force, rate) ? 0.0 : force->state[MODE];
         return;
     }
     const double n = spring_force(force, x), limit = se3di_friction_limit(force, 0);
     const double fresh = limit / force->presliding;
     if (force->state[STIFFNESS] > STALE * fresh || force->state[STIFFNESS] < fresh / STALE) {
-        anchor(force, x, n);
+        se3di_friction_anchor(force, x, n);
     }
 }
 

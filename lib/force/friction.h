@@ -41,6 +41,10 @@ static inline int se3di_friction_sticks(const se3di_force *force)
     return !(force->state[SE3DI_FRICTION_MODE] > 0.0 || force->state[SE3DI_FRICTION_MODE] < 0.0);
 }
 
+/* What damps it while it sticks with a spring s [N s/m, N m s/rad], besides the viscous part. */
+double se3di_friction_get_damper(const se3di_force *force, double s);
+/* Hold on to x with n. */
+void se3di_friction_anchor(se3di_force *force, double x, double n);
 /* The loads of all elements follow from these multipliers [rows]. */
 void se3di_frictions_take_loads(se3di_model *model, const double *lambda);
 /* The state has moved a little since it was accepted: what slips goes with it. */

@@ -15,6 +15,7 @@
 #include "assembly/user.h"
 #include "contact/bodies/pace.h"
 #include "force/force.h"
+#include "force/friction.h"
 #include "integrator/kink_step.h"
 #include "integrator/state.h"
 #include "integrator/turns.h"
@@ -30,7 +31,7 @@
 
 #define VECTORS     8 /* of unknowns */
 #define KEPT        7 /* numbers of each body in the history */
-#define ROW_VECTORS 2
+#define ROW_VECTORS 3
 #define TURN_MAX    3.0   /* rad, of a body in a step */
 #define PROJECTED   1e-15 /* of lengths: what is left across the constraints */
 #define HALVINGS    8     /* of a step in which shapes meet too fast */
@@ -58,7 +59,8 @@ static void share_work(se3di_convex *c, const se3di_assembly *assembly)
     }
     c->lambda = next;
     c->aimed = next + assembly->row_count;
-    c->push = c->aimed + assembly->row_count;
+    c->recoil = c->aimed + assembly->row_count;
+    c->push = c->recoil + assembly->row_count;
 }
 
 /* The room of a step, which lasts as long as the run is prepared. */
@@ -97,7 +99,6 @@ static se3d_status open_convex(se3di_integration *integration)
     se3di_equations *equations = integration->equations;
     const se3di_model *model = equations->assembly.model;
     const char *what = model->sets                                ? "particles beside bodies"
-                       : equations->friction.count > 0            ? "friction in joints"
                        : model->contact.law == SE3DI_LAW_CALLBACK ? "user-defined laws of contact"
                                                                   : NULL;
     if (what) {
@@ -290,8 +291,8 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* What the impulses of stops pressed with in the step, on the average. */
-static void push_by_stops(const se3di_convex *c, const se3di_assembly *assembly)
+/* What the impulses of stops and friction pressed with in the step, on the average. */
+static void push_by_elements(const se3di_convex *c, const se3di_assembly *assembly)
 {
     double *by_place = c->change;
     memset(by_place, 0, assembly->unknown_count * sizeof *by_place);
@@ -340,16 +341,17 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
     if (assembly->row_count > 0) {
         find_push(c, assembly, t1);
         if (c->shape_count < c->contact_count) {
-            push_by_stops(c, assembly);
+            push_by_elements(c, assembly);
         }
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
         assembly->push = NULL;
+        se3di_frictions_take_loads(assembly->model, assembly->model->lambda);
         return status;
     }
     if (c->shape_count < c->contact_count) {
         memset(c->push, 0, 6 * (size_t)assembly->dense_count * sizeof *c->push);
-        push_by_stops(c, assembly);
+        push_by_elements(c, assembly);
         assembly->push = c->push;
     }
     const se3d_status status = se3di_assembly_eval_wrenches(assembly, t1, equations->error);
@@ -394,13 +396,14 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(status);
     model->time = t1;
     se3di_angles_accept(model);
+    se3di_convex_accept_friction(c, &equations->assembly);
     se3di_loads_accept(model);
     model->contacts.frozen = c->asleep_count > 0 ? c->frozen : NULL;
     const se3d_status accelerated = accelerate(c, equations, t1);
     model->contacts.frozen = NULL;
     SE3DI_TRY(accelerated);
     SE3DI_TRY(se3di_user_report(model, equations->error));
-    model->work[0] += taken + se3di_convex_stopped(c, model);
+    model->work[0] += taken + se3di_convex_stopped(c, model) + se3di_convex_rubbed(c, model);
     model->work[1] += se3di_convex_fed(c);
     const double driven = model->work_valid > 0 ? model->work[2] + c->driven : 0.0;
     SE3DI_TRY(se3di_work_accept(model, c->h));
@@ -421,10 +424,12 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
 {
     const se3di_assembly *assembly = &equations->assembly;
     const double t0 = assembly->model->time;
+    c->model = assembly->model;
     c->drifts =
         assembly->model->contacts.count == 0 && !se3di_convex_nears_stops(c, assembly->model);
     begin(c, assembly);
     recall_chords(c, assembly);
+    c->gripped = se3di_convex_grip_energy(assembly->model);
     if (c->drifts) {
         drift(c, assembly);
     }
@@ -435,6 +440,8 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     if (!c->drifts) {
         SE3DI_TRY(se3di_convex_collect_stops(c, assembly, equations->error));
     }
+    c->stop_end = c->contact_count;
+    SE3DI_TRY(se3di_convex_collect_friction(c, assembly, equations->error));
     se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
     c->driven = assembly->row_count > 0 ? drive(c, assembly) : 0.0;
@@ -456,9 +463,9 @@ static se3d_status advance(se3di_integration *integration, double t1)
         return SE3D_OK;
     }
     se3d_status status = se3di_equations_keep(equations);
-    equations->assembly.model->stops_apart = 1;
+    equations->assembly.model->steps_apart = 1;
     status = status < 0 ? status : try_step(c, equations, t1);
-    equations->assembly.model->stops_apart = 0;
+    equations->assembly.model->steps_apart = 0;
     if (status < 0) {
         se3di_equations_come_back(equations);
         return status;
@@ -545,13 +552,13 @@ static void rouse(se3di_integration *integration)
     memset(assembly->model->history + 1, 0, KEPT * (size_t)assembly->body_count * sizeof(double));
 }
 
-/* What contacts do is counted by steps, not by powers. */
+/* What contacts, stops and friction do is counted by steps, not by powers. */
 static se3d_status renew(se3di_integration *integration)
 {
     se3di_model *model = integration->equations->assembly.model;
     double into, fed;
     se3di_contacts_power(model, model->time, &into, &fed);
-    model->power[0] -= into + se3di_convex_stop_power(model);
+    model->power[0] -= into + se3di_convex_apart_power(model);
     model->power[1] -= fed;
     rouse(integration);
     return SE3D_OK;

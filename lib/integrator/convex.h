@@ -21,9 +21,10 @@
 
 /* How a contact acts in a step. */
 enum {
-    SE3DI_CONVEX_SPRING, /* by its law */
-    SE3DI_CONVEX_IMPACT, /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
-    SE3DI_CONVEX_TRACED  /* an impact whose impulse is known: p_n = rise, p_t = -xi */
+    SE3DI_CONVEX_SPRING,  /* by its law */
+    SE3DI_CONVEX_IMPACT,  /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
+    SE3DI_CONVEX_TRACED,  /* an impact whose impulse is known: p_n = rise, p_t = -xi */
+    SE3DI_CONVEX_FRICTION /* of a joint: |rise - steepness v_n| <= bound, plus d (rebound - v_n) */
 };
 
 /* A point of contact in the step under way. What the passes over all contacts of an island need
@@ -35,7 +36,7 @@ typedef struct se3di_convex_contact {
     int32_t upper;    /* 1: a stop at the upper end of a range */
     int32_t reserved;
     double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
-    double reach;       /* 1; of a stop of an angle 0: the body's own velocity does not count */
+    double reach;       /* 1; of an angle 0: the body's own velocity does not count */
     double v[3], change[3];           /* velocity of the point: now, of the search */
     double normal[3], xi[3];          /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
@@ -56,9 +57,9 @@ typedef struct se3di_convex_contact {
     double chord[3];  /* and what the chord before had there more, across the constraints */
     double arm[2][3]; /* from the bodies to the point, ground frame */
     double held;      /* energy of its springs at the start of the step */
-    const se3di_body_contact *record; /* of the state that the step begins with; NULL: a stop, */
-    const se3di_force *stop;          /* this one, */
-    double towards;                   /* whose coordinate was accelerated so in the step before */
+    const se3di_body_contact *record; /* of the state that the step begins with; NULL: a stop */
+    const se3di_force *element;       /* or friction, this one; */
+    double towards; /* a stop's coordinate was accelerated so in the step before */
 } se3di_convex_contact;
 
 /* Bodies that contacts, stops and constraints connect: a problem of its own. */
@@ -94,7 +95,8 @@ typedef struct se3di_convex_rows {
 typedef struct se3di_convex {
     se3di_convex_contact *contacts;
     size_t contact_count, contact_capacity;
-    size_t shape_count; /* of these: the first ones are of shapes, the others stops */
+    size_t shape_count; /* of these: the first ones are of shapes, */
+    size_t stop_end;    /* from there to here they are stops, then friction */
     int32_t *pairs;     /* couplings: free bodies i < j, increasing */
     size_t pair_count, pair_capacity;
     se3di_convex_rows rows;
@@ -114,6 +116,7 @@ typedef struct se3di_convex {
     double *chord;    /* of the step before, less `start` [unknowns] */
     double *lambda;   /* impulses of constraints [rows] */
     double *aimed;    /* c [rows] */
+    double *recoil;   /* what they have taken of the chord of the step before [rows] */
     double *push;     /* of the impulses, less that of the records at the end [6 * bodies] */
     uint8_t *touched; /* [free bodies] a contact acts on it */
     size_t touched_capacity;
@@ -150,6 +153,11 @@ typedef struct se3di_convex {
     int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
     double gravity[3]; /* at the start of the step */
     double h;
+    size_t reacts;   /* iterations in this island that lambda is of */
+    int32_t recoils; /* `recoil` is known */
+    int32_t unused;
+    double gripped; /* energy that friction of joints holds at the start of the step [J] */
+    const se3di_model *model;
     double driven; /* in the step, by constraints that change in time [J] */
 } se3di_convex;
 
@@ -221,17 +229,42 @@ static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3d
 
 /* convex_stops.c: whether a stop may act in a step from the state under way; */
 int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
-/* stops become contacts behind those of shapes. @return OK, NO_MEMORY */
+/* stops become contacts behind those of shapes; room for `more`. @return OK, NO_MEMORY */
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error);
+se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,
+                                 se3di_error *error);
+/* a contact along a coordinate whose gradient is `g`, times `way`; 0 if both bodies are fixed; */
+int se3di_convex_set_row(se3di_convex *c, const se3di_assembly *assembly, const double g[12],
+                         double way, se3di_convex_contact *contact);
 /* whether it is so near that it matters how it acts, and how it acts on what an impulse along it
  * moves so, g W g^T on the constraints; */
 int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h);
-void se3di_convex_choose_stop(se3di_convex_contact *stop, double h, double inverse_mass);
-/* the power that their law dissipates at the state; */
-double se3di_convex_stop_power(const se3di_model *model);
+void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
+                              double inverse_mass);
+/* the power that the laws of stops and friction dissipate at the state; */
+double se3di_convex_apart_power(const se3di_model *model);
 /* what they took from the bodies in the step and do not hold at its end [J]. */
 double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model);
+
+/* convex_friction.c: friction of joints at the start of a step, behind stops; @return OK, NO_MEMORY
+ */
+se3d_status se3di_convex_collect_friction(se3di_convex *c, const se3di_assembly *assembly,
+                                          se3di_error *error);
+/* how it acts on what an impulse along it moves so; */
+void se3di_convex_choose_friction(const se3di_convex *c, se3di_convex_contact *contact,
+                                  double inverse_mass);
+/* the most that it holds or slips with, by the multipliers that are known: what is wanted next;
+ * whether it needs no other iteration, all momentum being as much as `momentum`; */
+int se3di_convex_look(const se3di_convex *c, se3di_convex_contact *contact, double momentum);
+/* whether what slips would do so with another cap by far, though caps have followed enough; */
+int se3di_convex_jams(const se3di_convex *c, const se3di_convex_island *island);
+/* whether a load is to be known at all; what elements remember of the step; */
+int se3di_convex_has_loads(const se3di_convex *c);
+void se3di_convex_accept_friction(const se3di_convex *c, const se3di_assembly *assembly);
+/* the energy that they hold; what they took from the bodies in the step and do not hold [J]. */
+double se3di_convex_grip_energy(const se3di_model *model);
+double se3di_convex_rubbed(const se3di_convex *c, const se3di_model *model);
 
 /* convex_energy.c: what an impulse takes from the bodies in a step [J]; what all on shapes and the
  * step itself do; the work of what moves the surfaces on their bodies. */
@@ -267,8 +300,9 @@ se3d_status se3di_convex_suit_solver(se3di_convex *c, const se3di_assembly *asse
 /* out [unknowns, by places] += C^T lambda; */
 void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island *island,
                                 double *out);
-/* lambda in the order of the assembly. */
-void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly);
+/* lambda of an island in the order of the assembly. */
+void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly,
+                                 const se3di_convex_island *island, double *out);
 void se3di_convex_rows_destroy(se3di_convex_rows *rows, const se3d_allocator *allocator);
 
 /* convex_impact.c: impacts that are followed within the step, */

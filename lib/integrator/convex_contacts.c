@@ -30,9 +30,16 @@ double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, d
     if (c->way == SE3DI_CONVEX_TRACED) {
         return c->rise;
     }
-    if (c->way == SE3DI_CONVEX_IMPACT) {
-        *slope = c->rebound > vn ? c->damping : 0.0;
-        return fmax(0.0, c->damping * (c->rebound - vn));
+    if (c->way != SE3DI_CONVEX_SPRING) {
+        const double rest = c->damping * (c->rebound - vn);
+        const double pull = c->rise - c->steepness * vn;
+        const int slips = fabs(pull) > c->bound;
+        if (c->way == SE3DI_CONVEX_IMPACT) {
+            *slope = c->rebound > vn ? c->damping : 0.0;
+            return fmax(0.0, rest);
+        }
+        *slope = c->damping + (slips ? 0.0 : c->steepness);
+        return (slips ? copysign(c->bound, pull) : pull) + rest;
     }
     const double depth = c->overlap - h * vn;
     double force = c->stiffness * depth, rate = c->stiffness;

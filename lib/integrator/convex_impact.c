@@ -226,7 +226,8 @@ int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
     traced->count = 0;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        if (!contact->record && !se3di_convex_stop_is_near(contact, c->h)) {
+        if (contact->way == SE3DI_CONVEX_FRICTION ||
+            (!contact->record && !se3di_convex_stop_is_near(contact, c->h))) {
             continue;
         }
         if (!contact->record || traced->count == SE3DI_CONVEX_TRACED_MOST) {

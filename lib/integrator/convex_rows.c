@@ -270,13 +270,13 @@ void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island
     }
 }
 
-void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly)
+void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly,
+                                 const se3di_convex_island *island, double *out)
 {
-    const double *lambda = c->rows.lambda;
-    memset(c->lambda, 0, assembly->row_count * sizeof *c->lambda);
-    for (size_t k = 0; k < c->joint_count; ++k) {
+    const double *lambda = c->rows.lambda + island->row;
+    for (size_t k = island->joint; k < island->joint_end; ++k) {
         const uint32_t j = (uint32_t)c->rows.joint[k];
-        memcpy(c->lambda + assembly->model->constraints[j].row_begin, lambda,
+        memcpy(out + assembly->model->constraints[j].row_begin, lambda,
                (size_t)assembly->joint_rows[j] * sizeof *lambda);
         lambda += assembly->joint_rows[j];
     }

@@ -273,8 +273,13 @@ static void evaluate_slopes(se3di_convex *c, const se3di_convex_island *island)
 static double look_at_caps(se3di_convex *c, const se3di_convex_island *island, int *is_near)
 {
     double largest = 0.0, gap = 0.0, change = 0.0, product = 0.0, slope;
+    *is_near = 1;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
+        if (contact->way == SE3DI_CONVEX_FRICTION) {
+            *is_near &= se3di_convex_look(c, contact, island->momentum);
+            continue;
+        }
         const double vn = se3di_dot(contact->v, contact->normal), before = contact->gap;
         contact->wanted_before = contact->wanted;
         contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, vn, &slope);
@@ -284,7 +289,7 @@ static double look_at_caps(se3di_convex *c, const se3di_convex_island *island, i
         product += contact->gap * (contact->gap - before);
         change += (contact->gap - before) * (contact->gap - before);
     }
-    *is_near = !(gap > CAP_CHANGE * largest);
+    *is_near &= !(gap > CAP_CHANGE * largest);
     return change > 0.0 ? fmax(-AHEAD_MOST, fmin(0.0, product / change)) : 0.0;
 }
 
@@ -295,7 +300,8 @@ static void follow(se3di_convex *c, const se3di_convex_island *island, int goes_
     const double ahead = look_at_caps(c, island, &is_near);
     for (size_t k = island->contact; k < island->contact_end && !is_near; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
-        const double change = goes_ahead ? contact->wanted - contact->wanted_before : 0.0;
+        const int goes_on = goes_ahead && contact->way != SE3DI_CONVEX_FRICTION;
+        const double change = goes_on ? contact->wanted - contact->wanted_before : 0.0;
         contact->bound = fmax(0.0, contact->wanted - ahead * change);
     }
 }
@@ -412,6 +418,10 @@ static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
                         : se3di_kkt_solve(island->kkt, &values, equations->b + first,
                                           c->rows.aimed + island->row, c->change + first,
                                           c->rows.lambda + island->row, NULL);
+    ++c->reacts;
+    if (c->stop_end < c->contact_count) {
+        se3di_convex_take_back_rows(c, &equations->assembly, island, c->lambda);
+    }
     if (status == SE3D_ERR_NO_CONVERGENCE) { /* where all is at rest; the iteration will tell */
         status = SE3D_OK;
     }
@@ -535,6 +545,7 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     }
     mul_mass(c, island, c->change, c->moved);
     clear_blocks(c, island);
+    c->reacts = 0;
     c->changed = island->contact_end - island->contact + 1; /* all */
     see(c, island);
     return is_far;
@@ -729,6 +740,15 @@ static void follow_in_time(se3di_convex *c, const se3di_convex_island *island, i
     }
 }
 
+/* Velocities are found; where caps of friction in joints do not follow any more they may jam. */
+static se3d_status finish(se3di_convex *c, se3di_equations *equations,
+                          const se3di_convex_island *island, int follows)
+{
+    return !follows && se3di_convex_jams(c, island)
+               ? se3di_friction_refuse(equations, equations->assembly.model->time)
+               : SE3D_OK;
+}
+
 static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
                                 se3di_convex_island *island)
 {
@@ -748,7 +768,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
         if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= ACCURACY || stays) &&
             !(f.waits && f.goes_on) && !(f.tamed++ < TAMED_MOST && tame(c, island))) {
-            return SE3D_OK;
+            return finish(c, equations, island, f.goes_on);
         }
         if (!with_slopes) {
             evaluate_slopes(c, island);
@@ -756,7 +776,8 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         SE3DI_TRY(iterate(c, equations, island, k == 0, share_of(rest, before)));
     }
     evaluate(c, island, 0);
-    return rest <= ENOUGH ? SE3D_OK : fail(c, equations, rest);
+    return rest <= ENOUGH || se3di_convex_jams(c, island) ? finish(c, equations, island, 0)
+                                                          : fail(c, equations, rest);
 }
 
 /* The velocities back in the order of the assembly; those that are not solved for as loads say. */
@@ -768,8 +789,9 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
             se3di_convex_takes_part(c, k) ? c->change + 6 * (size_t)c->place[k] : c->aim + 6 * k;
         memcpy(c->v + 6 * k, from, 6 * sizeof *from);
     }
-    if (assembly->row_count > 0) {
-        se3di_convex_take_back_rows(c, assembly);
+    memset(c->lambda, 0, assembly->row_count * sizeof *c->lambda);
+    for (size_t k = 0; k < c->island_count; ++k) {
+        se3di_convex_take_back_rows(c, assembly, &c->islands[k], c->lambda);
     }
 }
 
@@ -829,16 +851,44 @@ static se3d_status factor_bound(se3di_convex *c, se3di_equations *equations,
     return se3di_kkt_factor(island->kkt, &values, NULL);
 }
 
-/* How stops act: what has no solution here has none in the step either, which tells it. */
-static void choose_stops(se3di_convex *c, se3di_equations *equations,
-                         const se3di_convex_island *island, int *is_factored)
+/* Velocities that a step begins with are on the constraints, and its chord is half a step before
+ * and half a step after them: what constraints take of the chord before belongs to the load of
+ * friction, too. */
+static void find_recoil(se3di_convex *c, se3di_equations *equations,
+                        const se3di_convex_island *island, int *is_factored)
+{
+    const se3di_kkt_values values = values_of(c, island, c->own);
+    const size_t begin = 6 * island->body;
+    *is_factored = *is_factored || factor_bound(c, equations, island) >= 0;
+    if (!*is_factored) {
+        return;
+    }
+    for (size_t k = island->body; k < island->body_end; ++k) {
+        memcpy(c->change + 6 * k, c->chord + 6 * (size_t)c->body_at[k], 6 * sizeof *c->change);
+    }
+    mul_mass(c, island, c->change, equations->b);
+    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
+    ++equations->counters.solves;
+    if (se3di_kkt_solve(island->kkt, &values, equations->b + begin, equations->c, c->change + begin,
+                        c->rows.lambda + island->row, NULL) >= 0) {
+        se3di_convex_take_back_rows(c, &equations->assembly, island, c->recoil);
+    }
+}
+
+/* How stops and friction act: what has no solution here has none in the step, which tells it. */
+static void choose_elements(se3di_convex *c, se3di_equations *equations,
+                            const se3di_convex_island *island, int *is_factored)
 {
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *stop = se3di_convex_at(c, k);
-        if (!stop->stop) {
+        if (!stop->element) {
             continue;
         }
         double moved = move_alone(c, stop);
+        if (stop->way == SE3DI_CONVEX_FRICTION) {
+            se3di_convex_choose_friction(c, stop, moved);
+            continue;
+        }
         if (se3di_convex_is_bound(island) && se3di_convex_stop_is_near(stop, c->h)) {
             *is_factored = *is_factored || factor_bound(c, equations, island) >= 0;
             if (*is_factored && answer(c, equations, island, stop, stop->normal) >= 0) {
@@ -846,7 +896,10 @@ static void choose_stops(se3di_convex *c, se3di_equations *equations,
                     fmax(0.0, dot(equations->b, c->change, 6 * island->body, 6 * island->body_end));
             }
         }
-        se3di_convex_choose_stop(stop, c->h, moved);
+        se3di_convex_choose_stop(c, stop, moved);
+    }
+    if (c->recoils && se3di_convex_is_bound(island)) {
+        find_recoil(c, equations, island, is_factored);
     }
 }
 
@@ -884,7 +937,7 @@ static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_con
 static void choose(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
 {
     int is_factored = 0;
-    choose_stops(c, equations, island, &is_factored);
+    choose_elements(c, equations, island, &is_factored);
     trace_impacts(c, equations, island, &is_factored);
 }
 
@@ -892,6 +945,10 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(prepare(c, equations));
+    c->recoils = !c->drifts && assembly->row_count > 0 && se3di_convex_has_loads(c);
+    if (c->recoils) {
+        memset(c->recoil, 0, assembly->row_count * sizeof *c->recoil);
+    }
     place(c, assembly, c->start, c->gradient);
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);

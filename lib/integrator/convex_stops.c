@@ -10,6 +10,7 @@
  * hits one body drives another onto its stop in the same step.       docs/theory/convex.md */
 #include "integrator/convex.h"
 
+#include "force/force.h"
 #include "force/measure.h"
 #include "force/stop.h"
 #include "math/vec3.h"
@@ -64,16 +65,35 @@ int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model)
     return 0;
 }
 
-/* What leaves the stop with the restitution times the speed that it meets it with: from a gap d
- * that closes at the speed u under the acceleration a it moves by v h from where it is, so that
- *
- *     v^2 + 2 a (d + h v) = e^2 (u^2 + 2 a d) */
-static double rebound_of(const se3di_convex_contact *stop, double h, double gap, double speed)
+/* The force of friction on the coordinate of a stop against what moves towards it. */
+static double friction_on(const se3di_model *model, const se3di_convex_contact *stop)
 {
-    const double e = stop->stop->restitution, a = stop->towards;
+    const se3di_force *own = stop->element;
+    double sum = 0.0;
+    for (size_t k = 0; k < model->force_slots.count && own->coordinate != SE3DI_FORCE_LENGTH; ++k) {
+        const se3di_force *force = &model->forces[k];
+        if (force->type == SE3DI_FORCE_FRICTION && force->joint == own->joint &&
+            force->coordinate == own->coordinate) {
+            sum += se3di_friction_get(model, force);
+        }
+    }
+    return stop->upper ? sum : -sum;
+}
+
+/* What leaves the stop with the restitution times the speed that it meets it with: from a gap d
+ * that closes at the speed u under the acceleration a it moves by v h from where it is, under an
+ * acceleration b that friction has turned in, so that
+ *
+ *     v^2 + 2 b (d + h v) = e^2 (u^2 + 2 a d) */
+static double rebound_of(const se3di_convex *c, const se3di_convex_contact *stop, double gap,
+                         double inverse_mass)
+{
+    const double e = stop->element->restitution, a = stop->towards, h = c->h;
+    const double b = a + 2.0 * inverse_mass * friction_on(c->model, stop);
+    const double speed = -se3di_dot(stop->before, stop->normal);
     const double leaves = e * e * fmax(0.0, speed * speed + 2.0 * a * gap);
-    const double square = a * a * h * h - 2.0 * a * gap + leaves;
-    return square > 0.0 ? fmax(0.0, sqrt(square) - a * h) : 0.0;
+    const double square = b * b * h * h - 2.0 * b * gap + leaves;
+    return square > 0.0 ? fmax(0.0, sqrt(square) - b * h) : 0.0;
 }
 
 int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h)
@@ -82,9 +102,11 @@ int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h)
     return stop->overlap > 0.0 || -stop->overlap < h * (fabs(speed) + h * fabs(stop->towards));
 }
 
-void se3di_convex_choose_stop(se3di_convex_contact *stop, double h, double inverse_mass)
+void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
+                              double inverse_mass)
 {
-    const se3di_force *force = stop->stop;
+    const se3di_force *force = stop->element;
+    const double h = c->h;
     const double gap = -stop->overlap, speed = -se3di_dot(stop->before, stop->normal);
     const double change = h * fabs(stop->towards);
     const int meets = gap > -h * speed && gap < h * (speed + change);
@@ -97,31 +119,38 @@ void se3di_convex_choose_stop(se3di_convex_contact *stop, double h, double inver
     if (meets && speed > FAST_TIMES * change) {
         stop->way = SE3DI_CONVEX_IMPACT;
         stop->damping = RIGID / inverse_mass;
-        stop->rebound = rebound_of(stop, h, gap, speed);
+        stop->rebound = rebound_of(c, stop, gap, inverse_mass);
     }
 }
 
-static void set_geometry(se3di_convex_contact *stop, const se3di_assembly *assembly,
-                         const coordinate *x, int upper)
+int se3di_convex_set_row(se3di_convex *c, const se3di_assembly *assembly, const double g[12],
+                         double way, se3di_convex_contact *row)
 {
-    const uint32_t body[2] = {x->force->body_i, x->force->body_j};
-    const double way = upper ? -1.0 : 1.0; /* the stop pushes j back */
-    const double *along = x->measure.g + 6;
-    stop->reach = se3di_dot(along, along) > 0.25 ? 1.0 : 0.0;
-    se3di_scale(way, along, stop->normal);
-    if (!(stop->reach > 0.0)) {
-        stop->normal[0] = 1.0;
+    const uint32_t body[2] = {row->element->body_i, row->element->body_j};
+    const double *along = g + 6;
+    row->reach = se3di_dot(along, along) > 0.25 ? 1.0 : 0.0;
+    se3di_scale(way, along, row->normal);
+    if (!(row->reach > 0.0)) {
+        row->normal[0] = 1.0;
     }
     for (int k = 0; k < 2; ++k) {
-        const double *turn = x->measure.g + 6 * k + 3;
+        const double *turn = g + 6 * k + 3;
         const double sign = k ? way : -way; /* velocities of i count as j's less */
-        stop->free[k] = assembly->free_index[body[k]];
+        row->free[k] = assembly->free_index[body[k]];
         for (int r = 0; r < 3; ++r) {
             for (int e = 0; e < 3; ++e) {
-                stop->lever[k][3 * r + e] = sign * stop->normal[r] * turn[e];
+                row->lever[k][3 * r + e] = sign * row->normal[r] * turn[e];
             }
         }
+        if (row->free[k] >= 0) {
+            c->touched[row->free[k]] = 1;
+        }
     }
+    se3di_convex_slip(row, c->start, row->before);
+    if (assembly->row_count > 0) {
+        se3di_convex_velocity(row, c->chord, row->chord);
+    }
+    return row->free[0] >= 0 || row->free[1] >= 0;
 }
 
 /* What its spring holds. */
@@ -136,49 +165,42 @@ static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coord
     double speed;
     const double gap = gap_to(x, upper, &speed);
     *stop = (se3di_convex_contact){.coupling = -1,
-                                   .stop = x->force,
+                                   .element = x->force,
                                    .upper = upper,
                                    .way = SE3DI_CONVEX_SPRING,
                                    .stiffness = x->force->k,
                                    .power = 1.0,
                                    .overlap = -gap,
                                    .towards = (upper ? 1.0 : -1.0) * x->acceleration};
-    set_geometry(stop, assembly, x, upper);
-    if (!(gap < HUGE_VAL) || (stop->free[0] < 0 && stop->free[1] < 0)) {
+    if (!(gap < HUGE_VAL) ||
+        !se3di_convex_set_row(c, assembly, x->measure.g, upper ? -1.0 : 1.0, stop)) {
         return;
     }
-    se3di_convex_slip(stop, c->start, stop->before);
-    if (assembly->row_count > 0) {
-        se3di_convex_velocity(stop, c->chord, stop->chord);
-    }
     stop->held = energy_beyond(stop, stop->overlap);
-    for (int k = 0; k < 2; ++k) {
-        if (stop->free[k] >= 0) {
-            c->touched[stop->free[k]] = 1;
-        }
-    }
     ++c->contact_count;
 }
 
-static se3d_status reserve(se3di_convex *c, const se3di_model *model)
+se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,
+                                 se3di_error *error)
 {
-    size_t count = c->contact_count;
-    for (size_t k = 0; k < model->force_slots.count; ++k) {
-        count += se3di_stop_acts(&model->forces[k]) ? 2 : 0;
-    }
-    return se3di_array_reserve_at(&model->allocator, &c->contacts, &c->contact_capacity, count,
-                                  sizeof *c->contacts);
+    const se3d_status status =
+        se3di_array_reserve_at(&assembly->model->allocator, &c->contacts, &c->contact_capacity,
+                               c->contact_count + more, sizeof *c->contacts);
+    return status < 0 ? se3di_error_set(error, status, "t = %g s: no memory for stops and friction",
+                                        assembly->model->time)
+                      : status;
 }
 
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error)
 {
     const se3di_model *model = assembly->model;
+    size_t count = 0;
     coordinate x;
-    if (reserve(c, model) < 0) {
-        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for stops",
-                               model->time);
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        count += se3di_stop_acts(&model->forces[k]) ? 2 : 0;
     }
+    SE3DI_TRY(se3di_convex_reserve(c, assembly, count, error));
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         if (look(model, &model->forces[k], &x)) {
             add_end(c, assembly, &x, 0);
@@ -188,13 +210,14 @@ se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *as
     return SE3D_OK;
 }
 
-double se3di_convex_stop_power(const se3di_model *model)
+double se3di_convex_apart_power(const se3di_model *model)
 {
     double sum = 0.0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
+        const int is_apart = se3di_stop_acts(force) || force->type == SE3DI_FORCE_FRICTION;
         se3di_effect effect = {.wants_derivative = 0};
-        if (se3di_stop_acts(force) && se3di_force_eval(model, force, model->time, &effect) >= 0) {
+        if (is_apart && se3di_force_eval(model, force, model->time, &effect) >= 0) {
             sum += effect.power[0];
         }
     }
@@ -204,9 +227,9 @@ double se3di_convex_stop_power(const se3di_model *model)
 double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model)
 {
     double sum = 0.0;
-    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
+    for (size_t k = c->shape_count; k < c->stop_end; ++k) {
         const se3di_convex_contact *stop = &c->contacts[k];
-        const se3di_force *force = stop->stop;
+        const se3di_force *force = stop->element;
         double x;
         sum += se3di_convex_taken_by(stop) + stop->held;
         if (se3di_measure_value(model, force, &x)) {

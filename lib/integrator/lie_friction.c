@@ -286,10 +286,7 @@ se3d_status se3di_lie_friction_solve_accelerations(se3di_lie_friction *f)
             break;
         }
         if (stays > LOAD_ITERATIONS || iteration >= LOAD_MOST) {
-            return se3di_error_set(f->equations->error, SE3D_ERR_NO_CONVERGENCE,
-                                   "t = %g s: friction jams: it and the reaction that it follows "
-                                   "from raise each other without end",
-                                   model->time);
+            return se3di_friction_refuse(f->equations, model->time);
         }
     }
     return SE3D_OK;

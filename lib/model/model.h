@@ -293,7 +293,7 @@ typedef struct se3di_model {
     se3di_slots force_slots;
     se3di_force *forces;
     size_t force_capacity;
-    int32_t stops_apart; /* 1: sums of elements leave out stops, which are contacts of the step */
+    int32_t steps_apart; /* 1: sums leave out stops and friction, which are contacts of the step */
     size_t state_count;  /* of the user's states: so many bodies and forces are no others */
 
     se3di_contact_settings contact;

@@ -32,7 +32,5 @@ void se3di_friction_solve_dense(se3di_friction_system *s);
 void se3di_friction_weigh(se3di_equations *equations);
 /* n of the unknowns, in the modes of the elements. @return whether there is a solution */
 int se3di_friction_solve_forces(se3di_equations *equations);
-/* Record that there is none. */
-se3d_status se3di_friction_refuse(const se3di_equations *equations, double t);
 
 #endif

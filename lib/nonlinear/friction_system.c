@@ -392,7 +392,7 @@ void se3di_friction_combine(se3di_equations *equations)
 void se3di_friction_system_begin(se3di_equations *equations)
 {
     friction *s = &equations->friction;
-    for (uint32_t k = 0; k < s->count; ++k) {
+    for (uint32_t k = 0; k < s->count && !equations->assembly.model->steps_apart; ++k) {
         se3di_force *force = se3di_friction_element(equations, k);
         const int sticks = se3di_friction_sticks(force) && force->state[SE3DI_FRICTION_SET] > 0.0;
         s->holds[k] = (s->is_rigid && sticks) || s->rests[k];
@@ -405,7 +405,7 @@ void se3di_friction_system_begin(se3di_equations *equations)
 
 se3d_status se3di_friction_system_finish(se3di_equations *equations, double t)
 {
-    if (equations->friction.count == 0) {
+    if (equations->friction.count == 0 || equations->assembly.model->steps_apart) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_friction_respond(equations));

@@ -72,6 +72,9 @@ se3d_status se3di_friction_system_decide(struct se3di_equations *equations, doub
  * made of its rate is error. @return whether velocities had to change */
 int se3di_friction_system_stand(struct se3di_equations *equations);
 
+/* Record that friction jams. */
+se3d_status se3di_friction_refuse(const struct se3di_equations *equations, double t);
+
 /* The acceleration of the coordinate of an element (index into `element`) from equations->x. */
 double se3di_friction_system_acceleration(const struct se3di_equations *equations, uint32_t k);
 

@@ -367,8 +367,9 @@ static void fill_table(void)
         add_mechanism(&in_joints[k], SE3D_FORMULATION_JOINT);
     }
     static const int32_t with_forces[] = {SE3D_METHOD_DOP853, SE3D_METHOD_GENERALIZED_ALPHA,
-                                          SE3D_METHOD_RADAU, SE3D_METHOD_RATTLE};
-    for (int k = 0; k < 8; ++k) {
+                                          SE3D_METHOD_RADAU, SE3D_METHOD_RATTLE,
+                                          SE3D_METHOD_CONVEX};
+    for (int k = 0; k < 10; ++k) {
         add("forces", 0, with_forces[k / 2], k % 2)->run = run_forces;
     }
     add("elementary", 0, 0, 0)->run = run_elementary;

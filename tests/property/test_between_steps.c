@@ -214,9 +214,6 @@ static void motion_between_steps_is_smooth_and_one_with_its_velocities(void)
             /* accelerations and powers of newmark's steps go along straight lines */
             const int is_straight =
                 method == SE3D_METHOD_GENERALIZED_ALPHA || method == SE3D_METHOD_HHT;
-            if (rubs && method == SE3D_METHOD_CONVEX) {
-                continue; /* it knows no friction in joints */
-            }
             const result most = follow(method, formulation, rubs);
             CHECK(most.jump < 2e-6);
             CHECK(most.off < 2e-6);

@@ -454,9 +454,6 @@ static void a_failure_leaves_the_last_accepted_step_in_every_method(void)
 {
     for (int32_t method = 0; method < method_count(); ++method) {
         for (int scene = 0; scene < SCENES; ++scene) {
-            if (method == SE3D_METHOD_CONVEX && scene == SCENE_MEMORY) {
-                continue; /* it refuses friction in joints */
-            }
             fail_everywhere(scene, SE3D_ANALYSIS_DYNAMICS, method);
         }
     }

@@ -184,9 +184,6 @@ static void friction_slips_the_new_way_behind_a_kink(void)
                             "da", "sa", "max(0, t - 0.5)") "forces:\n  - {name: f, type: friction, "
                                                            "joint: sb, limit: 1}\n" TAIL;
     for (int32_t method = 0; method < method_count(); ++method) {
-        if (method == SE3D_METHOD_CONVEX) {
-            continue; /* it refuses friction in joints */
-        }
         text_model m = text_model_open(text, method, method % 2, 0.0);
         text_model_run(&m, 0.4);
         check_state(&m, 0.0, 0.0, 1e-6);
