@@ -198,11 +198,22 @@ static int is_periodic(const se3di_particles *set)
            set->boundary[2] == SE3DI_BOUNDARY_PERIODIC;
 }
 
+/* Whether no image of a wall is within reach, by the sphere around it. */
+static int is_far(const se3di_particles *set, const se3di_wall *wall, const double x[3],
+                  double reach)
+{
+    double d[3];
+    se3di_sub(x, wall->pose.x, d);
+    se3di_particles_wrap(set, d);
+    return !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE) &&
+           se3di_norm(d) >= (reach + wall->shape.bound) * (1.0 + ROUNDING);
+}
+
 void se3di_particles_image(const se3di_particles *set, const se3di_wall *wall, const double x[3],
                            double reach, double out[3])
 {
     se3di_copy(x, out);
-    if (!is_periodic(set)) {
+    if (!is_periodic(set) || is_far(set, wall, x, reach)) {
         return;
     }
     double length[3];
@@ -303,10 +314,15 @@ static parcel enclose(const se3di_particles *set, uint32_t begin, uint32_t end)
 }
 
 /* Whether no particle of the parcel is nearer to the wall than the reaches, by its box; or, but for
- * planes, by the sphere around that. */
-static int is_clear(const se3di_wall *wall, const parcel *box)
+ * planes, by the sphere around that. If the wall has images, the nearest sphere around one counts.
+ */
+static int is_clear(const se3di_particles *set, const se3di_wall *wall, int images,
+                    const parcel *box)
 {
     double extent = se3di_norm(box->half);
+    if (images) {
+        return is_far(set, wall, box->middle, extent + box->radius + wall->reach);
+    }
     if (se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE)) {
         const double *R = wall->pose.R;
         extent = fabs(R[2]) * box->half[0] + fabs(R[5]) * box->half[1] + fabs(R[8]) * box->half[2];
@@ -337,7 +353,7 @@ static se3d_status list_slab(se3di_particles *set, const se3di_slab *slab)
         const se3di_wall *wall = &set->walls[w];
         const int images = periodic && !se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_HALF_SPACE);
         for (uint32_t p = 0; p * size < count; ++p) {
-            if (!images && is_clear(wall, &parcels[p])) {
+            if (is_clear(set, wall, images, &parcels[p])) {
                 continue;
             }
             for (uint32_t i = p * size; i < (p + 1) * size && i < count; ++i) {
