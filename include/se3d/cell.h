@@ -57,7 +57,7 @@ static inline se3d_cell_def se3d_cell_def_default(void)
  * velocities jump by the difference of its sides. While a set has stages, steps with shapes that it
  * touches, with clumps or with flows are UNSUPPORTED.
  * @param[out] stage  its number, from 0; NULL: not wanted
- * @return OK, NULL, INVALID_ARGUMENT, NO_MEMORY.
+ * @return OK, NULL, INVALID_ARGUMENT, STATE (a particle is fixed), NO_MEMORY.
  * @since 0.1 */
 SE3D_API se3d_status se3d_particles_add_cell_stage(se3d_particles *particles,
                                                    const se3d_cell_def *def, uint32_t *stage);

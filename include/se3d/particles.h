@@ -296,6 +296,19 @@ SE3D_API se3d_status se3d_particles_remove_sink(se3d_particles *particles, uint3
 SE3D_API se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count,
                                              const uint32_t *ids, uint32_t tag);
 
+/* Fix particles: they go on with the velocities that they have, whatever acts on them, as those of
+ * a rough wall do; or let them go. Fixed ones do not touch each other, are for others like a wall
+ * that does not give way, and have no energy. Spheres of clumps cannot be fixed, nor those of a
+ * domain that strains.
+ * @param[in] count  of ids
+ * @param[in] ids    [count] of the particles
+ * @param[in] fixed  0: let go
+ * @return OK, NULL, INVALID_ARGUMENT (an id of no particle, or of one of a clump), STATE (the
+ *         domain strains), NO_MEMORY; nothing changed.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_particles_set_fixed(se3d_particles *particles, size_t count,
+                                              const uint32_t *ids, int32_t fixed);
+
 /* The particles of a tag. @since 0.1 */
 typedef struct se3d_particles_tally {
     uint64_t count;   /* that are there */

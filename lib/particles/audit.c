@@ -17,11 +17,34 @@
 #include <math.h>
 #include <string.h>
 
-void se3di_audit_mark(se3di_particles *set)
+/* What fixed particles give in a kick. */
+static void add_fixed(se3di_particles *set, double span)
+{
+    double work = 0.0;
+    for (size_t k = 0; k < set->count; ++k) {
+        const se3di_load *load = &set->loads[k];
+        if (se3di_particle_is_fixed(&set->particles[k]) && !se3di_share_is_ghost(set, k)) {
+            const double own = -span * (se3di_dot(load->force, set->particles[k].v) +
+                                        se3di_dot(load->torque, set->spins[k].w));
+            if (se3di_share_is_spread(set)) {
+                se3di_exact_add(&set->audit_seen[SE3DI_AUDIT_KINDS], own);
+            } else {
+                work += own;
+            }
+        }
+    }
+    set->wall_work += work;
+    se3di_exact_carry(&set->audit_seen[SE3DI_AUDIT_KINDS]);
+}
+
+void se3di_audit_mark(se3di_particles *set, double span)
 {
     for (size_t k = 0; k < set->count; ++k) {
         se3di_copy(set->particles[k].v, set->audit[k].v);
         se3di_copy(set->spins[k].w, set->audit[k].w);
+    }
+    if (set->fixed) {
+        add_fixed(set, span);
     }
 }
 
@@ -59,10 +82,11 @@ void se3di_audit_add(se3di_particles *set, double span)
 
 void se3di_audit_unite(se3di_particles *set)
 {
-    se3di_share_add_exactly(set, SE3DI_AUDIT_KINDS, set->audit_seen);
+    se3di_share_add_exactly(set, SE3DI_AUDIT_KINDS + 1, set->audit_seen);
     for (int k = 0; k < SE3DI_AUDIT_KINDS; ++k) {
         set->audit_work[k] += se3di_exact_get(&set->audit_seen[k]);
     }
+    set->wall_work += se3di_exact_get(&set->audit_seen[SE3DI_AUDIT_KINDS]);
     memset(set->audit_seen, 0, sizeof set->audit_seen);
 }
 

@@ -5,9 +5,9 @@
 
 #include "particles/set.h"
 
-/* Before a kick: keep the velocities. */
-void se3di_audit_mark(se3di_particles *set);
-/* After it: add the work of the forces in a time of `span`. */
+/* Before a kick over a time of `span`: keep the velocities, add the work of fixed particles. */
+void se3di_audit_mark(se3di_particles *set, double span);
+/* After it: add the work of the forces. */
 void se3di_audit_add(se3di_particles *set, double span);
 /* A set that was spread is whole again: what all processes have seen, to audit_work. */
 void se3di_audit_unite(se3di_particles *set);

@@ -114,7 +114,7 @@ int se3di_particles_whole(const se3di_particles *set, size_t k, double *mass, do
     if (clump && clump->first != set->spins[k].id) {
         return 0;
     }
-    *mass = clump ? se3di_clump_mass(set, clump) : 1.0 / set->particles[k].inverse_mass;
+    *mass = clump ? se3di_clump_mass(set, clump) : se3di_particles_mass(set, k);
     se3di_copy(clump ? clump->x : set->particles[k].x, x);
     se3di_copy(clump ? clump->v : set->particles[k].v, v);
     return 1;

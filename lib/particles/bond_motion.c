@@ -318,7 +318,8 @@ void se3di_bond_end_mass(const se3di_particles *set, const se3di_bond_end *end, 
                          double *inertia)
 {
     *mass = *inertia = 0.0;
-    if (end->id == SE3DI_NO_INDEX) {
+    if (end->id == SE3DI_NO_INDEX ||
+        se3di_particle_is_fixed(&set->particles[set->index_of[end->id]])) {
         return;
     }
     const size_t k = set->index_of[end->id];

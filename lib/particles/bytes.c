@@ -76,6 +76,7 @@ static void code_record(se3di_coder *c, se3di_particles *set)
     se3di_code_flag(c, &set->list_valid);
     se3di_code_flag(c, &set->force_valid);
     se3di_code_flag(c, &set->uniform);
+    se3di_code_flag(c, &set->fixed);
     se3di_code_flag(c, &set->carry_rolling);
     se3di_code_numbers(c, &set->time, 1);
     se3di_code_numbers(c, set->gravity, 3);

@@ -28,6 +28,11 @@ static int is_size(double x)
     return x > 1e-100 && x < 1e100;
 }
 
+static int is_mobility(const se3di_particles *set, double inverse_mass)
+{
+    return is_size(inverse_mass) || (inverse_mass == 0.0 && set->fixed && !set->uniform);
+}
+
 static int is_surface(const se3di_particles *set, uint32_t wall)
 {
     return se3di_wall_is_mesh(&set->walls[wall]);
@@ -110,8 +115,9 @@ static int are_particles(const se3di_particles *set)
         const se3di_particle *p = &set->particles[k];
         const se3di_spin *spin = &set->spins[k];
         if (!are_finite(p->x, 3) || !are_finite(p->v, 3) || !are_finite(spin->w, 3) ||
-            !is_size(p->radius) || !is_size(p->inverse_mass) || !is_stuff(set, spin->material) ||
-            spin->id >= set->id_count || set->index_of[spin->id] != k) {
+            !is_size(p->radius) || !is_mobility(set, p->inverse_mass) ||
+            !is_stuff(set, spin->material) || spin->id >= set->id_count ||
+            set->index_of[spin->id] != k) {
             return 0;
         }
     }

@@ -6,16 +6,16 @@
 #include "particles/flow.h"
 
 /* Of particle k: translation, rotation, potential; returns the mass. Those of a clump are its first
- * sphere's. */
+ * sphere's; a fixed one has none. */
 static double eval(const se3di_particles *set, size_t k, const double g[3], double energy[3])
 {
     const se3di_particle *particle = &set->particles[k];
     const se3di_clump *clump = se3di_clump_find(set, k);
     const double *w = set->spins[k].w;
-    double mass = 1.0 / particle->inverse_mass;
-    if (clump && clump->first != set->spins[k].id) {
+    double mass = se3di_particles_mass(set, k);
+    if (se3di_particle_is_fixed(particle) || (clump && clump->first != set->spins[k].id)) {
         energy[0] = energy[1] = energy[2] = 0.0;
-        return 0.0;
+        return clump ? 0.0 : mass;
     }
     if (clump) {
         mass = se3di_clump_mass(set, clump);

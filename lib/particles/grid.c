@@ -180,7 +180,7 @@ static int measure_materials(se3di_particles *set, double most[2])
 /* Box of all centres, largest and mean radius, uniformity, classes in use. */
 static double measure(se3di_particles *set, grid *g)
 {
-    enum { DIFFERS = SE3DI_PARTICLE_CLASSES, STUFF, SIZE = STUFF + 2 };
+    enum { DIFFERS = SE3DI_PARTICLE_CLASSES, FIXED, STUFF, SIZE = STUFF + 2 };
     const double largest = measure_box(set);
     double most[SIZE] = {0.0};
     double *differs = &most[DIFFERS];
@@ -191,6 +191,7 @@ static double measure(se3di_particles *set, grid *g)
         double *of_class = &most[class_of(radius, largest)];
         *of_class = fmax(*of_class, radius);
         *differs = radius == largest ? *differs : 1.0;
+        most[FIXED] = se3di_particle_is_fixed(&set->particles[k]) ? 1.0 : most[FIXED];
     }
     se3di_share_largest(set, SIZE, most);
     for (int c = 0; c < SE3DI_PARTICLE_CLASSES; ++c) {
@@ -198,7 +199,8 @@ static double measure(se3di_particles *set, grid *g)
     }
     const int several = most[STUFF] + most[STUFF + 1] > UINT16_MAX;
     set->single = several ? 0 : set->single; /* those of other ranks come here */
-    set->uniform = !several && !(*differs > 0.0);
+    set->fixed = most[FIXED] > 0.0;
+    set->uniform = !several && !(*differs > 0.0) && !set->fixed;
     set->skin = choose_skin(set, largest);
     return largest;
 }
@@ -379,7 +381,7 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
     const int ghost = se3di_share_is_ghost(set, q->i);
     int wraps = q->g->periodic[0] || q->g->periodic[1] || q->g->periodic[2];
     const se3di_clump *own = se3di_clump_find(set, q->i);
-    const int bonded = set->bond_count > 0;
+    const int bonded = set->bond_count > 0, fixed = se3di_particle_is_fixed(gi);
     for (uint32_t j = begin; j < end; ++j) {
         const se3di_particle *gj = &set->particles[j];
         double d[3] = {gi->x[0] - gj->x[0], gi->x[1] - gj->x[1], gi->x[2] - gj->x[2]};
@@ -389,7 +391,8 @@ static void append(se3di_particles *set, const search *q, uint32_t begin, uint32
         double reach = border + gj->radius + stretch[j];
         if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach &&
             !(own && se3di_clump_find(set, j) == own) && !(ghost && se3di_share_is_ghost(set, j)) &&
-            !(bonded && se3di_bonds_part(set, q->i, j))) {
+            !(bonded && se3di_bonds_part(set, q->i, j)) &&
+            !(fixed && se3di_particle_is_fixed(gj))) {
             set->list[set->list_count++] = j;
         }
     }

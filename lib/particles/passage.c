@@ -152,8 +152,9 @@ void se3di_flows_count(se3di_particles *set, double drift)
     const int spread = se3di_share_is_spread(set);
     for (size_t k = 0; k < set->count; ++k) {
         const se3di_particle *g = &set->particles[k];
-        const passer p = {g->x,        g->v,  1.0 / g->inverse_mass, drift, set->spins[k].tag,
-                          set->key[k], spread};
+        const passer p = {
+            g->x,        g->v,  se3di_particles_mass(set, k), drift, set->spins[k].tag,
+            set->key[k], spread};
         if (!se3di_clump_find(set, k) && !se3di_share_is_ghost(set, k)) {
             pass_all(set, &p);
         }

@@ -135,8 +135,8 @@ static void add_touches(const se3di_particles *set, const se3di_servo *servo, to
     for (size_t k = 0; set->list_valid && k < set->near_count; ++k) {
         const uint32_t i = set->near_walls[k].i & ~SE3DI_LIST_ACTIVE;
         const se3di_wall *wall = &set->walls[set->near_walls[k].wall];
-        if (is_same(wall->handle, servo->shape)) {
-            const se3di_particle *g = &set->particles[i];
+        const se3di_particle *g = &set->particles[i];
+        if (is_same(wall->handle, servo->shape) && !se3di_particle_is_fixed(g)) {
             const se3di_pair *pair =
                 &set->pairs[set->spins[i].material * set->stuff_count + wall->material];
             const double root = hertz ? sqrt(g->radius) : 1.0;

@@ -33,7 +33,7 @@
 /* One cache line: what nearly every pass reads. */
 typedef struct se3di_particle {
     double x[3], radius;
-    double v[3], inverse_mass;
+    double v[3], inverse_mass; /* 0: fixed */
 } se3di_particle;
 
 typedef struct se3di_spin {
@@ -476,7 +476,8 @@ typedef struct se3di_particles {
     uint32_t *carry_next;
     size_t carry_count, carry_roll_capacity, carry_next_capacity;
     int32_t carry_rolling;       /* carry_roll has been filled */
-    int32_t uniform;             /* all particles are of one material and radius */
+    int32_t uniform;             /* all particles are of one material and radius, none is fixed */
+    int32_t fixed;               /* some may be */
     uint32_t single;             /* 1 + that of all particles; 0: several, or it is not known */
     se3di_mesh_pair *mesh_pairs; /* active, by slab */
     size_t mesh_count, mesh_capacity;
@@ -501,7 +502,8 @@ typedef struct se3di_particles {
     double wall_work;                          /* given by walls [J] */
     double audit_power[SE3DI_AUDIT_KINDS + 1]; /* of the last forces on particles with the velocity
                                                 * of walls or images; [4]: of all [W] */
-    se3di_exact audit_seen[SE3DI_AUDIT_KINDS]; /* taken since the set was spread: share.h */
+    /* since the set was spread (share.h): taken, and given by fixed particles */
+    se3di_exact audit_seen[SE3DI_AUDIT_KINDS + 1];
     uint64_t steps, rebuilds, refreshes, lost;
     uint64_t lost_of[SE3D_PARTICLES_TAGS];
     double home_low[3], home_high[3]; /* the box of all places where particles were added */
@@ -648,6 +650,12 @@ static inline double *se3di_particles_wear(const se3di_particles *set)
     return set->origin ? set->origin + 4 * set->capacity : NULL;
 }
 
+/* It goes on at its velocities whatever acts on it. */
+static inline int se3di_particle_is_fixed(const se3di_particle *particle)
+{
+    return !(particle->inverse_mass > 0.0);
+}
+
 /* Life time and editing: all-or-nothing; NO_MEMORY is the only failure. */
 void se3di_particles_init(se3di_particles *set, const se3d_allocator *allocator);
 void se3di_particles_destroy(se3di_particles *set);
@@ -659,6 +667,10 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count);
 /* Append; room must have been reserved. Returns the id. */
 uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
                                 const double x[3], const double v[3], const double w[3]);
+/* The mass of a sphere, also of a fixed one; of a clump's, what it counts with in contacts. */
+double se3di_particles_mass(const se3di_particles *set, size_t k);
+/* Fix a live particle that is no clump's, or let it go. The history must have been collected. */
+void se3di_particles_fix(se3di_particles *set, uint32_t id, int fixed);
 /* Remove those with keep[index] 0; the order of the others stays. The history must have been
  * collected. */
 void se3di_particles_filter(se3di_particles *set, const unsigned char *keep);

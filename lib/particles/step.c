@@ -345,17 +345,28 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
     return step;
 }
 
+static int are_fixed(const se3di_particles *set)
+{
+    size_t k = 0;
+    while (k < set->count && se3di_particle_is_fixed(&set->particles[k])) {
+        ++k;
+    }
+    return k == set->count;
+}
+
 double se3di_particles_safe_step(const se3di_particles *set, const se3di_model *model)
 {
     const double body = se3di_particles_lightest_body(set, model);
+    const int all = set->source_count == 0 && are_fixed(set);
     double step = HUGE_VAL;
     for (size_t s = 0; s < set->stuff_count; ++s) {
         double lightest = HUGE_VAL;
         double smallest = HUGE_VAL;
         const se3di_stuff *stuff = &set->stuffs[s];
         for (size_t k = 0; stuff->held && k < set->count; ++k) {
-            if (set->spins[k].material == s) {
-                lightest = fmin(lightest, 1.0 / set->particles[k].inverse_mass);
+            if (set->spins[k].material == s &&
+                (all || !se3di_particle_is_fixed(&set->particles[k]))) {
+                lightest = fmin(lightest, se3di_particles_mass(set, k));
                 smallest = fmin(smallest, set->particles[k].radius);
             }
         }

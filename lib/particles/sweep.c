@@ -41,28 +41,35 @@ static haste hastier(haste a, haste b)
     return (haste){se3di_larger(a.fastest, b.fastest), se3di_larger(a.hasty, b.hasty)};
 }
 
-/* Clumps are moved as a whole, ghosts by others. */
-static int is_moved_here(const se3di_particles *set, size_t k)
+/* Clumps are moved as a whole, ghosts by others; fixed particles drift. */
+enum { ELSEWHERE, FREE, FIXED };
+
+static int moved_how(const se3di_particles *set, size_t k)
 {
-    return !se3di_clump_find(set, k) && !se3di_share_is_ghost(set, k);
+    if (se3di_clump_find(set, k) || se3di_share_is_ghost(set, k)) {
+        return ELSEWHERE;
+    }
+    return set->fixed && se3di_particle_is_fixed(&set->particles[k]) ? FIXED : FREE;
 }
 
 static haste move_range(se3di_particles *set, size_t begin, size_t end,
                         const se3di_particle_motion *motion)
 {
-    const int all = set->clump_count == 0 && !se3di_share_is_spread(set);
+    const int all = set->clump_count == 0 && !set->fixed && !se3di_share_is_spread(set);
+    const se3di_particle_motion on = {0, motion->h, motion->drift};
     haste most = {0.0, 0.0};
     if (set->flow_count > 0 && motion->drift != 0.0) {
         se3di_flows_mark(set, begin, end);
     }
     for (size_t k = begin, next = begin; k < end; k = next) {
-        const int here = all || is_moved_here(set, k);
+        const int how = all ? FREE : moved_how(set, k);
         next = all ? end : k + 1;
-        while (next < end && is_moved_here(set, next) == here) {
+        while (next < end && moved_how(set, next) == how) {
             ++next;
         }
-        if (here) {
-            set->kernels->spheres(set, k, next, motion, &most.fastest, &most.hasty);
+        if (how != ELSEWHERE) {
+            set->kernels->spheres(set, k, next, how == FIXED ? &on : motion, &most.fastest,
+                                  &most.hasty);
         }
     }
     return most;
@@ -185,7 +192,7 @@ static void move_all(se3di_particles *set, const se3di_particle_motion *motion)
 static void pass(se3di_particles *set, const se3di_particle_motion *motion)
 {
     if (set->audits) {
-        se3di_audit_mark(set);
+        se3di_audit_mark(set, 0.5 * motion->kicks * motion->h);
     }
     move_all(set, motion);
     if (set->audits) {

@@ -320,6 +320,44 @@ se3d_status se3d_particles_set_tags(se3d_particles *particles, size_t count, con
     return SE3D_OK;
 }
 
+static se3d_status check_free(se3d_particles *particles, size_t count, const uint32_t *ids)
+{
+    const se3di_particles *set = &particles->set;
+    if (set->cell.count > 0) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_STATE,
+                          "the domain strains (se3d/cell.h): its particles cannot be fixed");
+    }
+    for (size_t k = 0; k < count; ++k) {
+        if (se3di_clump_find(set, set->index_of[ids[k]])) {
+            return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
+                              "ids[%zu] = %u is a sphere of a clump, which cannot be fixed", k,
+                              ids[k]);
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_particles_set_fixed(se3d_particles *particles, size_t count, const uint32_t *ids,
+                                     int32_t fixed)
+{
+    SE3DI_EDIT_OF(particles);
+    if (count == 0) {
+        return SE3D_OK;
+    }
+    SE3DI_TRY(se3di_check_pointer(particles->system, "ids", ids));
+    SE3DI_TRY(check_ids(particles, count, ids));
+    if (fixed) {
+        SE3DI_TRY(check_free(particles, count, ids));
+    }
+    if (se3di_particles_collect(&particles->set) < 0) {
+        return SE3DI_FAIL(particles->system, SE3D_ERR_NO_MEMORY, "no memory to fix particles");
+    }
+    for (size_t k = 0; k < count; ++k) {
+        se3di_particles_fix(&particles->set, ids[k], fixed != 0);
+    }
+    return SE3D_OK;
+}
+
 /* The size that arrays must have. */
 static se3d_status check_count(const se3d_particles *particles, size_t count)
 {

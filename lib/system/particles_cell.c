@@ -132,6 +132,14 @@ static se3d_status check_set(const se3d_particles *particles, const se3d_cell_de
                               "xyz"[a]);
         }
     }
+    for (size_t k = 0; k < set->count; ++k) {
+        if (se3di_particle_is_fixed(&set->particles[k])) {
+            return SE3DI_FAIL(
+                particles->system, SE3D_ERR_STATE,
+                "particle %u is fixed, which those of a domain that strains cannot be",
+                set->spins[k].id);
+        }
+    }
     if (cell->count == SE3D_CELL_STAGES) {
         return SE3DI_FAIL(particles->system, SE3D_ERR_INVALID_ARGUMENT,
                           "the cell has %d stages, which is the most", SE3D_CELL_STAGES);

@@ -92,7 +92,7 @@ static void choose_steps(se3di_particles *set)
     double mass = 0.0;
     int exponent = 0;
     for (size_t k = 0; k < set->count; ++k) {
-        mass = fmax(mass, 1.0 / set->particles[k].inverse_mass);
+        mass = fmax(mass, se3di_particles_mass(set, k));
     }
     (void)frexp(10.0 * mass, &exponent);
     for (int n = 0; n < SE3DI_EXACT_PARTS; ++n) {

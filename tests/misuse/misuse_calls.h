@@ -944,6 +944,7 @@ static const row rows[] = {
     {"se3d_particles_get_sink_count", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_remove_sink", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_set_tags", flows_reject_misuse, "", NULL, NULL},
+    {"se3d_particles_set_fixed", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_tags", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_materials", flows_reject_misuse, "", NULL, NULL},
     {"se3d_particles_get_tally", flows_reject_misuse, "", NULL, NULL},

@@ -967,8 +967,11 @@ static se3d_status flows_reject_misuse(arguments *a)
     CHECK(se3d_particles_set_tags(NULL, 2, ids, 1) == SE3D_ERR_NULL);
     REJECTED(se3d_particles_set_tags(p, 2, NULL, 1), SE3D_ERR_NULL);
     REJECTED(se3d_particles_set_tags(p, 2, ids, 256), SE3D_ERR_INVALID_ARGUMENT);
+    CHECK(se3d_particles_set_fixed(NULL, 2, ids, 1) == SE3D_ERR_NULL);
+    REJECTED(se3d_particles_set_fixed(p, 2, NULL, 1), SE3D_ERR_NULL);
     ids[1] = 99;
     REJECTED(se3d_particles_set_tags(p, 2, ids, 1), SE3D_ERR_INVALID_ARGUMENT);
+    REJECTED(se3d_particles_set_fixed(p, 2, ids, 1), SE3D_ERR_INVALID_ARGUMENT);
     CHECK(se3d_particles_get_tags(NULL, 2, tags) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_tags(p, 2, NULL) == SE3D_ERR_NULL);
     CHECK(se3d_particles_get_tags(p, 1, tags) == SE3D_ERR_INVALID_ARGUMENT);

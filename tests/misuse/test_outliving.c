@@ -108,6 +108,7 @@ static void no_call_reaches_a_system_that_is_gone(void)
         se3d_particles_add_sink(copy, &sink, &at),
         se3d_particles_remove_sink(copy, 0),
         se3d_particles_set_tags(copy, 0, NULL, 1),
+        se3d_particles_set_fixed(copy, 0, NULL, 1),
         se3d_particles_remove(copy, 0, NULL),
         se3d_particles_set_all(copy, 0, NULL, NULL, NULL),
         se3d_solver_set_shown(w.solver, SE3D_SHOWN_ALL),

@@ -673,6 +673,11 @@ static const refusal refusals[] = {
     {SINGLE "radius: 1, count: 3}\n", 5, {"count: has no effect with `position`", " radius "}},
     {SINGLE "radius: [1, 2]}\n", 5, {"radius: must be one number at a `position`"}},
     {SINGLE "velocity: [1, 0, 0]}\n", 5, {"radius: is missing"}},
+    {SINGLE "clump: c, fixed: true}\n", 5, {"fixed: has no effect", "`clump`, which takes:"}},
+    {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, radius: "
+     "1, lower: [0, 0, 0], upper: [2, 2, 2], fixed: true, source: {rate: 1}}]\n",
+     3,
+     {"fixed: has no effect with `source`"}},
     {SINGLE "clump: c, radius: 1}\n", 5, {"radius: has no effect", "`clump`, which takes:"}},
     {"se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles: [{material: m, radius: "
      "1, lower: [0, 0, 0], upper: [2, 2, 2], angular_velocity: [1, 0, 0]}]\n",
@@ -718,6 +723,34 @@ static void single_particles_are_where_they_are_said_to_be(void)
     se3d_model_destroy(model);
 }
 
+/* Of a table, a place and a region; beside one that falls. */
+static void fixed_ones_stay_and_shear(void)
+{
+    static const char text[] =
+        "se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1}]\nparticles:\n"
+        "  - {material: m, file: %s/base.csv, fixed: true}\n"
+        "  - {material: m, radius: 0.1, position: [5, 0, 0], velocity: [0.5, 0, 0], fixed: true}\n"
+        "  - {material: m, radius: 0.1, lower: [7, 0, 0], upper: [7.2, 0.2, 0.2], fixed: true}\n"
+        "  - {material: m, radius: 0.1, position: [9, 0, 0]}\n"
+        "analysis: {type: dynamics, duration: 1}\n";
+    char full[2000];
+    se3d_particles *set = NULL;
+    se3d_status status;
+    double v[15];
+    write_file("base.csv", "x,y,z,radius,vz\n0,0,0,.1,0\n1,0,0,.1,2\n");
+    snprintf(full, sizeof full, text, results_folder());
+    se3d_model *model = run_model(full, NULL, &status);
+    CHECK(status >= 0);
+    CHECK(se3d_system_get_particles(se3d_model_get_system(model), 0, &set) == SE3D_OK);
+    CHECK(se3d_particles_get_all(set, 5, NULL, v, NULL) == SE3D_OK);
+    const double expected[15] = {0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.5,  0.0,
+                                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -9.81};
+    for (int k = 0; k < 15; ++k) {
+        CHECK_NEAR(v[k], expected[k], k == 14 ? 0.01 : 0.0);
+    }
+    se3d_model_destroy(model);
+}
+
 static void clumps_and_regions_are_refused_by_name_and_line(void)
 {
     for (size_t k = 0; k < sizeof refusals / sizeof *refusals; ++k) {
@@ -745,6 +778,7 @@ int main(void)
     RUN(servo_walls_are_read_and_press);
     RUN(bonds_are_read_and_break);
     RUN(single_particles_are_where_they_are_said_to_be);
+    RUN(fixed_ones_stay_and_shear);
     RUN(clumps_and_regions_are_refused_by_name_and_line);
     RUN(particle_falls_and_bounces_with_its_restitution);
     RUN(driven_wall_throws_a_particle);

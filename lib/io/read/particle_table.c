@@ -278,22 +278,39 @@ static bool place_clumps(const table *t, const se3di_clump_pose *poses, size_t c
     return status >= 0 || se3di_reader_fail_system(t->reader, t->node, status);
 }
 
-bool se3di_tag_particles(se3di_reader *reader, const se3di_node *node, size_t before, uint32_t tag)
+typedef se3d_status mark_function(se3d_particles *set, size_t count, const uint32_t *ids,
+                                  uint32_t value);
+
+static se3d_status fix(se3d_particles *set, size_t count, const uint32_t *ids, uint32_t value)
+{
+    return se3d_particles_set_fixed(set, count, ids, (int32_t)value);
+}
+
+/* Those that are there since there were `before`. */
+static bool mark_particles(se3di_reader *reader, const se3di_node *node, size_t before,
+                           mark_function *mark, uint32_t value)
 {
     se3d_particles *set = reader->model->particles->set;
     const size_t all = se3d_particles_count(set);
-    if (tag == 0) {
-        return true;
-    }
     se3di_iopool pool;
     se3di_iopool_init(&pool, &reader->pool->allocator);
     uint32_t *ids = se3di_iopool_array(&pool, all + 1, sizeof *ids);
     se3d_status status = ids ? se3d_particles_get_ids(set, all, ids) : SE3D_ERR_NO_MEMORY;
     if (status >= 0) {
-        status = se3d_particles_set_tags(set, all - before, ids + before, tag);
+        status = mark(set, all - before, ids + before, value);
     }
     se3di_iopool_destroy(&pool);
     return ids ? se3di_reader_check(reader, node, status) : se3di_reader_fail_memory(reader);
+}
+
+bool se3di_tag_particles(se3di_reader *reader, const se3di_node *node, size_t before, uint32_t tag)
+{
+    return tag == 0 || mark_particles(reader, node, before, se3d_particles_set_tags, tag);
+}
+
+bool se3di_fix_particles(se3di_reader *reader, const se3di_node *node, size_t before)
+{
+    return mark_particles(reader, node, before, fix, 1);
 }
 
 /* In the order of the file. */

@@ -12,4 +12,7 @@ bool se3di_read_particle_table(se3di_reader *reader, const se3di_node *node, se3
 /* The particles of the model's set from `before` on, of ascending ids, are of a named one. */
 bool se3di_tag_particles(se3di_reader *reader, const se3di_node *node, size_t before, uint32_t tag);
 
+/* They are fixed. */
+bool se3di_fix_particles(se3di_reader *reader, const se3di_node *node, size_t before);
+
 #endif

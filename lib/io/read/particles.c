@@ -62,6 +62,8 @@ static const se3di_key particles_keys[] = {
      .text = "in place of a region: the centre of a single one, of a clump that of mass [m]"},
     {"angular_velocity", SE3DI_KIND_VECTOR, .standard = "[0, 0, 0]",
      .text = "with position: ground frame [rad/s]"},
+    {"fixed", SE3DI_KIND_BOOL, .standard = "false",
+     .text = "true: spheres that go on at their velocity whatever acts on them"},
     {"seed", SE3DI_KIND_COUNT, .most = 9007199254740992.0, .standard = "0",
      .text = "of the random numbers"},
     {"region", SE3DI_KIND_WORD, .words = regions, .standard = "box",
@@ -433,7 +435,7 @@ static bool read_single(se3di_reader *reader, const se3di_node *node, se3d_fill_
     const bool is_clump = se3di_node_get(node, "clump") != NULL;
     const char *keys = is_clump
                            ? " name material clump position orientation velocity angular_velocity "
-                           : " name material radius position velocity angular_velocity ";
+                           : " name material radius position velocity angular_velocity fixed ";
     if (!check_beside(reader, node, is_clump ? "position` of a `clump" : "position", keys) ||
         !se3di_read_key_clump(reader, node, &def->clump) || !read_radius(reader, node, def) ||
         !se3di_read_fields(reader, node, object, NULL, "se3d_fill_def", def) ||
@@ -455,23 +457,31 @@ static bool read_single(se3di_reader *reader, const se3di_node *node, se3d_fill_
            se3di_tag_particles(reader, node, before, def->tag);
 }
 
-static bool read_entry(se3di_reader *reader, const se3di_node *node)
+/* Of a table, at a place, in a region, or by a source. */
+static bool read_by_kind(se3di_reader *reader, const se3di_node *node, se3d_fill_def *def)
 {
-    se3d_fill_def def = se3d_fill_def_default();
-    if (!se3di_read_keys(reader, node, &se3di_object_particles) ||
-        !se3di_read_key_material(reader, node, "material", &def.material) ||
-        !read_set(reader, node, &def.tag)) {
-        return false;
-    }
     if (se3di_node_get(node, "file")) {
-        return check_beside(reader, node, "file", " name material file ") &&
-               se3di_read_particle_table(reader, node, def.material, def.tag);
+        return check_beside(reader, node, "file", " name material file fixed ") &&
+               se3di_read_particle_table(reader, node, def->material, def->tag);
     }
     if (se3di_node_get(node, "angular_velocity") && !se3di_node_get(node, "position")) {
         return se3di_reader_fail_key(reader, node, "angular_velocity", "is only for a `position`");
     }
-    return se3di_node_get(node, "position") ? read_single(reader, node, &def)
-                                            : read_fill(reader, node, &def);
+    return se3di_node_get(node, "position") ? read_single(reader, node, def)
+                                            : read_fill(reader, node, def);
+}
+
+static bool read_entry(se3di_reader *reader, const se3di_node *node)
+{
+    se3d_fill_def def = se3d_fill_def_default();
+    const size_t before = se3d_particles_count(reader->model->particles->set);
+    int32_t fixed = 0;
+    return se3di_read_keys(reader, node, &se3di_object_particles) &&
+           se3di_read_key_material(reader, node, "material", &def.material) &&
+           read_set(reader, node, &def.tag) &&
+           se3di_read_key(reader, node, &se3di_object_particles, NULL, "fixed", &fixed) &&
+           read_by_kind(reader, node, &def) &&
+           (!fixed || se3di_fix_particles(reader, node, before));
 }
 
 static bool read_sink(se3di_reader *reader, const se3di_node *node)
