@@ -7,21 +7,25 @@
 
 #define TINY   2e-6 /* s, a step that no touch of its own needs: contacts come and go */
 #define TINIES 20.0 /* such steps in a row tell, and need not wait for the others */
+#define LEAST  12.0 /* steps of which an average says something, however much work they are */
 
-/* The last steps were short, or on a mesh the last TINIES tiny, and something touches at
- * their end. */
+/* The last steps were short, or on a mesh the last TINIES tiny, and something touches at their end.
+ * If two meshes are at each other, a step is the work of many, and fewer are waited for; they may
+ * hold steps short before they touch. */
 static int is_slow(se3di_crowd_watch *watch, const se3di_model *model, int32_t crowd,
                    const double step[2], const se3di_crowd_pace *pace)
 {
     const double t = step[1];
     watch->counted += 1.0;
     watch->tiny = t - step[0] < TINY ? watch->tiny + 1.0 : 0.0;
-    if (watch->counted < pace->steps) {
+    const double work = crowd == SE3DI_CROWD_ROUGH ? se3di_bodies_work(model) : 1.0;
+    if (watch->counted < fmax(LEAST, pace->steps / work)) {
         return crowd == SE3DI_CROWD_ROUGH && watch->tiny >= TINIES && se3di_bodies_touch(model);
     }
-    const double bodies = (double)se3di_bodies_touching(model);
+    const double least = work > 1.0 ? 1.0 : 0.0;
+    const double bodies = fmax(least, (double)se3di_bodies_touching(model));
     const double brief = bodies > 0.0 ? fmax(pace->brief, pace->brief_each * bodies) : 0.0;
-    const int is_slow = t - watch->since < brief * pace->steps;
+    const int is_slow = t - watch->since < brief * watch->counted;
     watch->counted = 0.0;
     watch->since = t;
     return is_slow;

@@ -8,6 +8,7 @@
 
 #define NEAR 0.1 /* of the smaller shape's size */
 #define MOST 64  /* bodies that are told apart */
+#define EACH 8.0 /* triangles of the smaller one of two meshes take as long as all else of a step */
 
 typedef struct crowd {
     const se3di_model *model;
@@ -73,4 +74,31 @@ int se3di_bodies_touch(const se3di_model *model)
         }
     }
     return 0;
+}
+
+static int is_mesh(const se3di_shape *shape)
+{
+    return se3di_shape_is(shape, SE3DI_SHAPE_IS_SURFACE) && shape->triangles;
+}
+
+typedef struct work {
+    const se3di_model *model;
+    double sum;
+} work;
+
+static se3d_status add_work(void *ctx, uint32_t i, uint32_t j)
+{
+    work *w = ctx;
+    const se3di_shape *a = &w->model->shapes[i], *b = &w->model->shapes[j];
+    if (is_mesh(a) && is_mesh(b)) {
+        w->sum += fmin((double)a->triangle_count, (double)b->triangle_count) / EACH;
+    }
+    return SE3D_OK;
+}
+
+double se3di_bodies_work(const se3di_model *model)
+{
+    work w = {.model = model, .sum = 1.0};
+    (void)se3di_broad_visit(model, add_work, &w);
+    return w.sum;
 }

@@ -25,5 +25,8 @@ size_t se3di_bodies_touching(const se3di_model *model);
 /* Anything touches at the accepted state; balls that touch balls do not count, as they may pass
  * impacts on to each other (Newton's cradle). */
 int se3di_bodies_touch(const se3di_model *model);
+/* What a step at the accepted state takes, roughly, over one in which no bounds of two meshes
+ * overlap. */
+double se3di_bodies_work(const se3di_model *model);
 
 #endif
