@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Variables that are read before they are set: the compiler sees them where it follows every call of
 # a file, so functions are inlined without limit. Prints what it finds and fails. Files: those given,
-# or all of the libraries and the program but the kernels at their instruction levels.
+# or all of the libraries and the program but the kernels at their instruction levels. With
+# CMAKE_C_COMPILER_LAUNCHER=ccache what has not changed is not looked at again.
 cd "$(dirname "$0")/.." || exit 1
 . tools/setup.sh
 se3d_help "$@"
@@ -19,6 +20,10 @@ for parameter in max-inline-insns-auto max-inline-insns-single large-function-gr
     flags="$flags --param=$parameter=$limit"
 done
 jobs=$(nproc 2>/dev/null || echo 2)
-# shellcheck disable=SC2086
-printf '%s\n' "$@" | xargs -P "$jobs" -I FILE "${SE3D_GCC:-gcc}" $flags -c FILE -o /dev/null || exit 1
+out=$(mktemp -d) || exit 1
+trap 'rm -rf "$out"' EXIT
+export flags out
+# shellcheck disable=SC2016
+printf '%s\n' "$@" | xargs -P "$jobs" -I FILE sh -c \
+    '${CMAKE_C_COMPILER_LAUNCHER:-} "${SE3D_GCC:-gcc}" $flags -c "$1" -o "$out/$(echo "$1" | tr / _).o"' sh FILE || exit 1
 echo "uninitialised: $# files, 0 problems"

@@ -13,7 +13,7 @@ zlib1g-dev libmicrohttpd-dev libnlopt-dev"
 SE3D_TEST_PACKAGES="$SE3D_BUILD_PACKAGES g++ binutils python3"
 SE3D_PYTHON_PACKAGES="python3-cffi python3-numpy python3-dev mypy"
 SE3D_PICTURE_PACKAGES="gnuplot-nox chromium ffmpeg nodejs npm python3-vtk9 python3-h5py"
-SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES strace abigail-tools clang clang-format-14 valgrind libmpfr-dev libopenmpi-dev \
+SE3D_CI_PACKAGES="$SE3D_TEST_PACKAGES ninja-build strace abigail-tools clang clang-format-14 valgrind libmpfr-dev libopenmpi-dev \
 openmpi-bin mkdocs doxygen gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static locales $SE3D_PYTHON_PACKAGES \
 ruby $SE3D_PICTURE_PACKAGES"
 
