@@ -134,10 +134,10 @@ static void discharge_through_a_slot_follows_beverloo(void)
     double scaled[2] = {0.0, 0.0}, ratio[2] = {0.0, 0.0};
     const int slots = check_is_long() ? 2 : 1; /* ten seconds each */
     for (int k = 0; k < slots; ++k) {
-        for (b.seed = 1; b.seed <= 2; ++b.seed) { /* 4 % from seed to seed */
+        for (b.seed = 1; b.seed <= (uint64_t)slots; ++b.seed) { /* 4 % from seed to seed */
             double one;
-            ratio[k] += 0.5 * discharge(D[k], &one);
-            scaled[k] += 0.5 * one;
+            ratio[k] += discharge(D[k], &one) / slots;
+            scaled[k] += one / slots;
         }
         CHECK_NEAR(ratio[k], 1.0, 0.15);
     }

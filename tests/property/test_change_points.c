@@ -328,7 +328,7 @@ static void equal_steps_keep_to_their_branch(void)
 {
     static const int32_t methods[] = {SE3D_METHOD_GENERALIZED_ALPHA, SE3D_METHOD_HHT};
     for (int m = 0; m < 2; ++m) {
-        for (int first = 0; first < 5; ++first) {
+        for (int first = check_is_long() ? 0 : m; first < 5; first += check_is_long() ? 1 : 2) {
             const trial t = {methods[m], formulations[first % 2], 0.0, 4e-3};
             try_all(&t, first, 3e-2, 2e-2);
         }
@@ -401,6 +401,9 @@ static void equal_steps_pass_flat_windows_as_they_are(void)
         {SE3D_METHOD_RATTLE, 4, 2, 5e-3, 1.5},
     };
     for (size_t k = 0; k < 2 * sizeof rows / sizeof *rows; ++k) {
+        if (!check_is_long() && k % 2 != k / 2 % 2) {
+            continue; /* each row in one formulation */
+        }
         se3d_system *system = build_windows(rows[k / 2].count);
         se3d_solver *solver = NULL;
         se3d_solver_def def = se3d_solver_def_default();

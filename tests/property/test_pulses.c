@@ -50,16 +50,17 @@ static void a_driver_that_moves_for_a_moment_is_not_stepped_over(void)
         "drivers: [{joint: s, value: \"if(abs(t - 4) < 0.05, 0.1*cos(10*pi*(t - 4))^4, "
         "0)\"}]\n" OUTPUT;
     text_model m = text_model_open(text, SE3D_METHOD_DOP853, -1, 1e-3);
-    CHECK(text_model_run(&m, 6.0));
+    CHECK(text_model_run(&m, 4.7));
     const double v = text_model_get(&m, 0, 0);
     CHECK(fabs(v) > 0.03);
     text_model_close(&m);
     for (int32_t run = 0; run < 2 * method_count(); ++run) {
-        if (!is_wanted(run)) {
+        const int is_verlet = run / 2 == SE3D_METHOD_VERLET; /* steps as rattle does: 6 s */
+        if (!is_wanted(run) || (is_verlet && !check_is_long())) {
             continue;
         }
         m = text_model_open(text, run / 2, run % 2, 0.0);
-        CHECK(text_model_run(&m, 6.0));
+        CHECK(text_model_run(&m, 4.7));
         /* steps of convex are equal: of 1 ms, and their error is not estimated */
         CHECK_NEAR(text_model_get(&m, 0, 0), v,
                    (run / 2 == SE3D_METHOD_CONVEX ? 5e-3 : 2e-3) * fabs(v));

@@ -442,7 +442,7 @@ static void forces_between_steps_of_the_newmark_family_are_those_of_the_motion(v
             const int32_t shown = way / 4 % 2 ? SE3D_SHOWN_MOTION : SE3D_SHOWN_ALL;
             const double stiffness = pow(10.0, 9 + 2 * (way / 8));
             const int swings = stiffness < 1e13;
-            if (swings && way % 8 != (int)k) {
+            if (swings && (way % 8 != (int)k || (!check_is_long() && way / 8 != (int)k % 2))) {
                 continue; /* small steps: seconds each */
             }
             const double most = swings ? 1.1 * laid[k].force : 1e-2 + 1e-15 * stiffness;

@@ -214,7 +214,7 @@ static void the_error_is_about_the_tolerance(void)
         find_truth(&mechanisms[k], &truth);
         for (size_t b = 0; b < BOUNDS; ++b) {
             const int all = check_is_long();
-            const int first = all || (k + b) % 2 == 0 ? 4 : 6;
+            const int first = all || (k + b) % 4 != 0 ? 4 : 6;
             for (int power = first; power <= bounds[b].least; power += all ? 2 : 4) {
                 check_ratio(&mechanisms[k], &bounds[b], power, &truth);
             }

@@ -181,6 +181,9 @@ static void steps_too_long_for_a_house_of_cards_gain_hardly_anything(void)
 {
     static const double steps[3] = {3e-3, 4e-3, 5e-3}, stiffness[4] = {5e5, 1e6, 2e6, 3e6};
     for (int n = 0; n < 24; ++n) {
+        if (!check_is_long() && n % 4 != n / 4 % 4) {
+            continue; /* a stiffness for each step */
+        }
         const double h = steps[n / 4 % 3];
         double before = HUGE_VAL, energy = 0.0, growth = 0.0, first, balance;
         scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.1, stiffness[n % 4]);
