@@ -108,10 +108,19 @@ class Bench:
         if test and self.dies(test):
             sys.exit(f"{test} fails without any change: build it again")
 
-    def dies(self, test):
+    def link_command(self, test):
+        """By which make or ninja links a test, and where."""
         place = os.path.join(self.build, "tests")
-        with open(os.path.join(place, "CMakeFiles", test + ".dir", "link.txt"), encoding="utf-8") as file:
-            words = shlex.split(file.read())
+        try:
+            with open(os.path.join(place, "CMakeFiles", test + ".dir", "link.txt"), encoding="utf-8") as file:
+                return shlex.split(file.read()), place
+        except FileNotFoundError:
+            said = subprocess.run(["ninja", "-t", "commands", "tests/" + test], cwd=self.build, check=True,
+                                  capture_output=True, text=True).stdout.splitlines()[-1]
+            return shlex.split(said.removeprefix(": && ").removesuffix(" && :")), self.build
+
+    def dies(self, test):
+        words, place = self.link_command(test)
         words = [w for w in words if not w.endswith("ccache")]
         program = os.path.join(self.folder, test)
         words[words.index("-o") + 1] = program

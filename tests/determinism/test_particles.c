@@ -32,11 +32,22 @@ static uint64_t run(int32_t threads, int32_t portable, int32_t law)
     return hash;
 }
 
+/* Two and four threads in one case, three in the next one, or with SE3D_LONG all in each. */
+static int32_t first_count(int32_t case_number)
+{
+    return check_is_long() ? 2 : 2 + case_number % 2;
+}
+
+static int32_t next_count(void)
+{
+    return check_is_long() ? 1 : 2;
+}
+
 static void bits_do_not_depend_on_the_number_of_threads(void)
 {
     for (int32_t k = 0; k < 4; ++k) {
         uint64_t one = run(1, k & 1, k >> 1);
-        for (int32_t threads = 2; threads <= 4; ++threads) {
+        for (int32_t threads = first_count(k); threads <= 4; threads += next_count()) {
             CHECK(run(threads, k & 1, k >> 1) == one);
         }
     }
@@ -144,7 +155,7 @@ static void clumps_have_the_same_bits(void)
         const uint64_t one = run_clumps(open, 1, 0, law, 1200);
         CHECK(run_clumps(open, 1, 1, law, 1200) == one); /* another level of instructions */
         CHECK(run_clumps(open, 1, 0, law, 40) == one);
-        for (int32_t threads = 2; threads <= 4; ++threads) {
+        for (int32_t threads = first_count(n); threads <= 4; threads += next_count()) {
             CHECK(run_clumps(open, threads, 0, law, 1200) == one);
         }
     }

@@ -804,7 +804,7 @@ static void hardpoints_are_set_in_place_with_the_bits_of_a_reading(void)
         "at: [0, -600, z], K: [90, 90, 110, 0, 0, 0], C: [1, 1, 1, 0, 0, 0]}\n"
         "drivers:\n- {name: l_brake, joint: l_bearing, value: 0}\n- {name: r_brake, joint: "
         "r_bearing, value: 0}\n- {name: side, joint: l_rocker_pin, value: 0.1*t}\n%s"
-        "analysis: {type: dynamics, duration: 0.01, method: dop853}\n"
+        "analysis: {type: dynamics, duration: 0.01, step: 5e-4, method: dop853}\n"
         "study: {parameters: {%s}, measures: {a: {final: l_hub.toe}, b: {final: l_hub.camber}, c: "
         "{final: r_hub.travel}, d: {final: l_hub.motion_ratio}, e: {final: l_hub.track_change}, f: "
         "{max: l_link_joint.force.z}, g: {final: energy.balance}, h: {final: "
