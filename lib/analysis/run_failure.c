@@ -106,8 +106,8 @@ static void advise_convex(const se3di_run *run, se3d_status status)
 {
     const int stuck = status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE ||
                       status == SE3D_ERR_STEP_COUNT;
-    if (stuck && run->model->contacts.pair_count > 0 && !run->integration.method->takes_crowd &&
-        se3di_crowd_suits(run->model)) {
+    if (stuck && run->error->cause != SE3DI_CAUSE_APART && run->model->contacts.pair_count > 0 &&
+        !run->integration.method->takes_crowd && se3di_crowd_suits(run->model)) {
         se3di_error_wrap(run->error, "",
                          "; method convex takes bodies that touch at steps of milliseconds");
     }

@@ -14,7 +14,8 @@
 typedef enum se3di_cause {
     SE3DI_CAUSE_OTHER = 0,
     SE3DI_CAUSE_OVERLAP = 1, /* two shapes that are named */
-    SE3DI_CAUSE_JUMP = 2     /* a prescribed value that is named */
+    SE3DI_CAUSE_JUMP = 2,    /* a prescribed value that is named */
+    SE3DI_CAUSE_APART = 3    /* shapes that overlap at the start: every method needs them apart */
 } se3di_cause;
 
 typedef struct se3di_error {

@@ -230,6 +230,7 @@ END
 for method in auto dop853 rk45 bdf radau generalized_alpha hht; do
     expect "too soft, $method" 1 "$program" run "$dir/soft.yaml" -o "$dir/o" --method "$method"
     says 'the shapes ball and floor overlap by 0.02 m, at most 0.2 of their size 0.1 m is allowed; try a stiffer'
+    holds 'no step is blamed' [ "$(grep -c 'the step fell to' "$dir/err")" = 0 ]
 done
 # What overlaps from the start is no matter of materials or steps.
 sed 's/\[0, 0, 1\], velocity/[0, 0, 0.05], velocity/' "$dir/soft.yaml" >"$dir/within.yaml"
@@ -237,6 +238,7 @@ for method in auto convex verlet radau; do
     expect "overlaps at the start, $method" 1 "$program" run "$dir/within.yaml" -o "$dir/o" --method "$method"
     says 'ball and floor overlap by 0.05 m, at most 0.2 of their size 0.1 m is allowed; move them apart'
     holds 'no step is blamed' [ "$(grep -c 'What to try' "$dir/err")" = 0 ]
+    holds 'no method is named' [ "$(grep -c 'method convex' "$dir/err")" = 0 ]
 done
 # What particles will take is told before their run, and what their first steps meet.
 cat >"$dir/sand.yaml" <<'END'

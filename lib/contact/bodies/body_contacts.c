@@ -316,12 +316,12 @@ static se3d_status check_overlap(const preparation *p, const se3di_encounter *e)
     const uint32_t shapes[2] = {e->shape_i, e->shape_j};
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, e->at->overlap, text);
+    const int moved = p->t > model->time || e->memory;
     se3di_error_set(p->error, SE3D_ERR_STEP_SIZE, "t = %g s: %s; %s", p->t, text,
-                    p->t > model->time || e->memory
-                        ? "try a stiffer material, or a smaller step if one is given"
-                        : "move them apart, or let groups say that they do not touch");
+                    moved ? "try a stiffer material, or a smaller step if one is given"
+                          : "move them apart, or let groups say that they do not touch");
     if (p->error) {
-        p->error->cause = SE3DI_CAUSE_OVERLAP;
+        p->error->cause = moved ? SE3DI_CAUSE_OVERLAP : SE3DI_CAUSE_APART;
     }
     return SE3D_ERR_STEP_SIZE;
 }

@@ -374,21 +374,22 @@ static const se3di_body_contact *find_deepest(const se3di_model *model)
     return deepest;
 }
 
-/* The depth joins what is told already: it need not be the reason. */
+/* Steps shrink towards a depth that is not allowed: that alone is told, not the steps. */
 static void blame_depth(const se3di_model *model, const se3di_body_contact *deepest,
                         se3di_error *error)
 {
     const uint32_t shapes[2] = {deepest->shape_i, deepest->shape_j};
     char text[SE3DI_DEPTH_SIZE];
     se3di_contacts_describe_depth(model, shapes, deepest->overlap, text);
-    se3di_error_append(error, "; %s; try a stiffer material", text);
+    (void)se3di_error_set(error, SE3D_ERR_STEP_SIZE, "%s; try a stiffer material", text);
+    error->cause = SE3DI_CAUSE_OVERLAP;
 }
 
 void se3di_contacts_blame(const se3di_model *model, se3di_error *error)
 {
     pace p = {.model = model, .step = HUGE_VAL};
     if (!error || error->status == SE3D_ERR_CALLBACK || error->status == SE3D_ERR_NO_MEMORY ||
-        error->cause == SE3DI_CAUSE_OVERLAP) {
+        error->cause == SE3DI_CAUSE_OVERLAP || error->cause == SE3DI_CAUSE_APART) {
         return; /* no shape is to blame, or two are blamed */
     }
     const se3di_body_contact *deepest = find_deepest(model);
