@@ -18,6 +18,8 @@
 #include <string.h>
 
 #define STEPS_MOST 4000
+#define GIVES      1e-6 /* of the response of a point whose bodies nothing holds */
+#define GAIN_MOST  0.05 /* of what impulses take from approaches */
 #define LIGHT      0.02 /* of the speed of an impact: what rests may come out with */
 #define PHASE      0.15 /* of the fastest swing of all springs together, in a step */
 
@@ -45,15 +47,18 @@ static const double *block_of(const tracing *t, int i, int j)
     return t->traced->W[i][j];
 }
 
-/* A step that follows the stiffest swing of all springs together, of the greatest overlap that the
- * approaches can make. */
+/* A step that follows the stiffest swing of all springs together, of the greatest overlap that any
+ * of the approaches can make. */
 static double step_of(const tracing *t)
 {
-    double rate2 = 0.0;
+    double rate2 = 0.0, speed = 0.0;
+    for (int k = 0; k < t->count; ++k) {
+        speed = fmax(speed, se3di_norm(t->points[k].v));
+    }
     for (int k = 0; k < t->count; ++k) {
         const point *p = &t->points[k];
         const double *W = block_of(t, k, k);
-        const double kn = p->pair->kn, speed = se3di_norm(p->v);
+        const double kn = p->pair->kn;
         const double s = t->hertz
                              ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
                                                                          t->alone[k][k], speed))
@@ -291,6 +296,33 @@ static double respond(const se3di_convex *c, const se3di_convex_contact *i,
     return sum;
 }
 
+/* Whether all points give way along their normals: what is driven there takes any impulse. */
+static int give_way(const tracing *t)
+{
+    for (int k = 0; k < t->count; ++k) {
+        const double *n = t->points[k].contact->normal;
+        double turned[3];
+        se3di_mul(block_of(t, k, k), n, turned);
+        if (!(se3di_dot(turned, n) > GIVES * t->alone[k][k])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Whether the impulses give no more energy than laws may: those of Hertz do a little. */
+static int is_sound(const tracing *t)
+{
+    double given = 0.0, all = 0.0;
+    for (int k = 0; k < t->count; ++k) {
+        const point *p = &t->points[k];
+        const double before = se3di_dot(p->impulse, p->contact->before);
+        given += 0.5 * (before + se3di_dot(p->impulse, p->v));
+        all += fabs(before);
+    }
+    return given <= GAIN_MOST * all; /* not if it is not a number */
+}
+
 int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const se3di_model *model)
 {
     tracing t = {.traced = traced,
@@ -301,7 +333,7 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
         const int i = k / t.count, j = k % t.count;
         t.alone[i][j] = respond(c, traced->contacts[i], traced->contacts[j]);
     }
-    if (!trace(&t)) {
+    if (!give_way(&t) || !trace(&t) || !is_sound(&t)) {
         return 0;
     }
     for (int k = 0; k < t.count; ++k) {

@@ -2,6 +2,7 @@
 /* Impacts shorter than a step of convex beside which nothing rests: momenta after them are those of
  * the law, as dop853 follows it, whatever way slip and corners go within. */
 #include "support/scene.h"
+#include "support/text_model.h"
 
 #define STEP  5e-4 /* s, of convex; contacts take 1e-4 to 2e-4 s */
 #define SIZE  0.1
@@ -240,11 +241,55 @@ static void a_row_of_balls_sends_off_the_last_one(void)
     }
 }
 
+/* The hard one is at rest when the soft one comes: it decides how short the steps are. */
+static void soft_ball_on_a_hard_one_leaves_slowly(void)
+{
+    static const char *const text =
+        "se3d: 1\ngravity: [0, 0, -9.81]\n"
+        "materials: [{name: s, density: 1000, friction: 0, restitution: 0.7, young: 5.0e+6}, "
+        "{name: h, density: 1000, friction: 0, restitution: 0.7, young: 2.0e+11}]\n"
+        "contact: {law: hertz_mindlin}\n"
+        "bodies: [{name: f, fixed: true, shapes: [{type: plane, material: h}]}, {name: a, "
+        "position: [0, 0, 0.19], velocity: [0, 0, -1], shapes: [{type: sphere, radius: 0.1, "
+        "material: s}]}, {name: b, position: [0, 0, 0.019999936862093975], shapes: [{type: "
+        "sphere, radius: 0.02, material: h}]}]\nanalysis: {type: dynamics, duration: 0.05}\n"
+        "output: [{file: r.csv, channels: [energy.total, energy.balance]}]\n";
+    text_model m = text_model_open(text, SE3D_METHOD_CONVEX, -1, 1e-3);
+    const double first = text_model_get(&m, 0, 0), balance = text_model_get(&m, 1, 0);
+    for (int k = 1; k <= 50 && text_model_run(&m, 1e-3 * k); ++k) {
+        CHECK(text_model_get(&m, 0, 0) <= 1.001 * first);
+        CHECK_NEAR(text_model_get(&m, 1, 0), balance, 1e-6 * first);
+    }
+    text_model_close(&m);
+}
+
+/* What is driven into a floor takes any impulse: there is nothing to follow. */
+static void what_is_driven_into_a_floor_goes_on(void)
+{
+    static const char *const text =
+        "se3d: 1\nmaterials: [{name: s, density: 1000, friction: 0.3, restitution: 0.5, "
+        "stiffness: 1.0e+7}]\ncontact: {}\n"
+        "bodies: [{name: f, fixed: true, shapes: [{type: plane, material: s}]}, {name: a, "
+        "position: [0, 0, 0.3], shapes: [{type: sphere, radius: 0.1, material: s}]}]\n"
+        "joints: [{name: j, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0.3], axis: [0, "
+        "0, 1]}]\ndrivers: [{joint: j, value: \"-0.201*sin(5*t)\"}]\n"
+        "analysis: {type: dynamics, duration: 0.6}\n"
+        "output: [{file: r.csv, channels: [a.position, energy.dissipated]}]\n";
+    text_model m = text_model_open(text, SE3D_METHOD_CONVEX, -1, 1e-3);
+    for (int k = 1; k <= 60 && text_model_run(&m, 0.01 * k); ++k) {
+        CHECK_NEAR(text_model_get(&m, 0, 2), 0.3 - 0.201 * sin(0.05 * k), 1e-9);
+        CHECK(fabs(text_model_get(&m, 1, 0)) < 1e5);
+    }
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(boxes_on_a_plane_leave_as_their_law_says);
     RUN(boxes_that_meet_part_as_their_law_says);
     RUN(machines_leave_a_plane_as_their_law_says);
     RUN(a_row_of_balls_sends_off_the_last_one);
+    RUN(soft_ball_on_a_hard_one_leaves_slowly);
+    RUN(what_is_driven_into_a_floor_goes_on);
     return check_finish();
 }
