@@ -212,13 +212,20 @@ static void drift(const se3di_convex *c, const se3di_assembly *assembly)
 }
 
 /* What drives the mechanism does in the step [J]: what rows that change in time press with, along
- * the mean of their rates at both ends, as impulses of contacts do. */
+ * the mean of their rates at both ends, as impulses of contacts do; with them what took the chord
+ * before from across the constraints, which is no power of rows that do not change. */
 static double drive(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
     double *mean = c->change, *rate = c->aimed, sum = 0.0;
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
         mean[k] = 0.5 * (c->start[k] + c->chord[k] + c->v[k]);
+    }
+    if (assembly->timed_count > 0) {
+        se3di_assembly_mul_mass(assembly, c->chord, c->moved);
+        for (size_t k = 0; k < assembly->unknown_count; ++k) {
+            sum -= c->moved[k] * mean[k];
+        }
     }
     se3di_assembly_mul(assembly, mean, rate);
     for (uint32_t k = 0; k < assembly->timed_count; ++k) {
