@@ -246,6 +246,7 @@ void se3di_particles_fix(se3di_particles *set, uint32_t id, int fixed)
     if (fixed) {
         particle->inverse_mass = 0.0;
         set->fixed = 1;
+        set->uniform = 0;
     } else if (se3di_particle_is_fixed(particle)) {
         particle->inverse_mass = 1.0 / se3di_particles_mass(set, k);
     }

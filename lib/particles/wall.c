@@ -261,6 +261,9 @@ static se3d_status list_wall(se3di_particles *set, uint32_t i, uint32_t w)
     const double reach = g->radius + se3di_particles_reach(set)[i] + wall->reach;
     const size_t face_begin = set->face_count;
     double x[3];
+    if (se3di_particle_is_fixed(g) && !(wall->inverse_mass > 0.0)) {
+        return SE3D_OK; /* nothing gives way */
+    }
     se3di_particles_image(set, wall, g->x, reach, x);
     if (least_distance(wall, x) >= reach ||
         (set->bond_count > 0 && se3di_bonds_part_wall(set, i, w))) {

@@ -4,6 +4,7 @@
 #include "support/bed.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define G      9.81
@@ -53,6 +54,50 @@ static void ball_leaves_a_fixed_one_by_its_restitution(void)
         CHECK(memcmp(r, none, sizeof none) == 0 && memcmp(u, none, sizeof none) == 0);
         bed_close(&b);
     }
+}
+
+/* What neither gives way nor moves freely does nothing to each other, whatever they overlap. */
+static void fixed_ones_in_a_wall_press_on_nothing(void)
+{
+    bed b;
+    const se3d_particles_def def = se3d_particles_def_default();
+    const se3d_material_def material = stuff();
+    const double in[3] = {0.0, 0.0, 0.5 * RADIUS}, on[3] = {0.0, 0.0, 2.4 * RADIUS};
+    const double up[3] = {0.0, 0.0, 1.0};
+    double r[6], u[6];
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, &def, &material);
+    bed_add_plane(&b, none, up);
+    bed_add(&b, in, RADIUS, none, NULL);
+    bed_add(&b, on, RADIUS, none, NULL);
+    fix(&b, 0, 1, 1);
+    CHECK(se3d_particles_run(b.particles, 0.05) >= 0);
+    CHECK(se3d_particles_count_contacts(b.particles) <= 1); /* of the two */
+    CHECK(!se3d_particles_get_all(b.particles, 2, r, u, NULL));
+    CHECK(memcmp(r, in, sizeof in) == 0 && fabs(u[5]) < 1.0);
+    bed_close(&b);
+}
+
+static void bytes_tell_who_has_just_been_fixed(void)
+{
+    bed b;
+    const se3d_particles_def def = se3d_particles_def_default();
+    const se3d_material_def material = stuff();
+    const double above[3] = {0.0, 0.0, 1.99 * RADIUS};
+    se3d_snapshot *kept = NULL, *copy = NULL;
+    size_t size = 0;
+    bed_open(&b, SE3D_CONTACT_LAW_HOOKE, down, &def, &material);
+    bed_add(&b, none, RADIUS, none, NULL);
+    bed_add(&b, above, RADIUS, none, NULL);
+    CHECK(se3d_particles_run(b.particles, 0.001) >= 0);
+    fix(&b, 1, 1, 1);
+    CHECK(!se3d_snapshot_create(b.system, &kept) && !se3d_snapshot_write(kept, NULL, 0, &size));
+    void *bytes = malloc(size);
+    CHECK(bytes && !se3d_snapshot_write(kept, bytes, size, &size));
+    CHECK(!se3d_snapshot_read(b.system, bytes, size, &copy));
+    free(bytes);
+    se3d_snapshot_destroy(copy);
+    se3d_snapshot_destroy(kept);
+    bed_close(&b);
 }
 
 /* Under gravity, through each other; once let go they fall. */
@@ -203,6 +248,8 @@ static void clumps_and_cells_refuse(void)
 int main(void)
 {
     RUN(ball_leaves_a_fixed_one_by_its_restitution);
+    RUN(fixed_ones_in_a_wall_press_on_nothing);
+    RUN(bytes_tell_who_has_just_been_fixed);
     RUN(fixed_ones_go_on_until_they_are_let_go);
     RUN(base_shears_a_bed);
     RUN(clumps_and_cells_refuse);
