@@ -245,7 +245,8 @@ se3d_status se3d_solver_step(se3d_solver *solver, double h)
 {
     SE3DI_EDIT_PAST_OF(solver);
     const double now = solver->system->model.time;
-    if (!(isfinite(h) && h >= STEP_MIN && now + h > now)) {
+    const double next = nextafter(now, HUGE_VAL) - now; /* exact, however the host rounds */
+    if (!(isfinite(h) && h >= STEP_MIN && h >= next)) {
         return SE3DI_FAIL_OF(solver->system, "h", SE3D_ERR_INVALID_ARGUMENT,
                              " = %g s, must be finite, at least %g and large enough to move the "
                              "time %.17g s on",
