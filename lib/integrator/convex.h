@@ -363,7 +363,11 @@ se3d_status se3di_convex_mark(se3di_convex *c, const se3di_assembly *assembly);
 /* those that are known at its end. */
 void se3di_convex_follow(se3di_convex *c, const se3di_model *model);
 
-/* convex_solve.c: v, lambda and the impulses. */
+/* convex_solve.c: what an impulse along j does to the velocity along i, which have the same bodies,
+ * if nothing else holds these; */
+double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
+                               const se3di_convex_contact *j);
+/* v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);
 
 #endif

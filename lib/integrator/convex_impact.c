@@ -276,26 +276,6 @@ static void begin(tracing *t, const se3di_model *model)
     }
 }
 
-static double respond(const se3di_convex *c, const se3di_convex_contact *i,
-                      const se3di_convex_contact *j)
-{
-    double sum = 0.0;
-    if (i->record->shape_i != j->record->shape_i || i->record->shape_j != j->record->shape_j) {
-        return 0.0;
-    }
-    for (int k = 0; k < 2; ++k) {
-        if (i->free[k] >= 0) {
-            const double *mobility = c->mobility + 10 * (size_t)i->free[k];
-            double moment[2][3], turned[3];
-            se3di_mul_transposed(i->lever[k], i->normal, moment[0]);
-            se3di_mul_transposed(j->lever[k], j->normal, moment[1]);
-            se3di_mul(mobility + 1, moment[1], turned);
-            sum += mobility[0] * se3di_dot(i->normal, j->normal) + se3di_dot(moment[0], turned);
-        }
-    }
-    return sum;
-}
-
 /* Whether all points give way along their normals: what is driven there takes any impulse. */
 static int give_way(const tracing *t)
 {
@@ -331,7 +311,10 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
     begin(&t, model);
     for (int k = 0; k < t.count * t.count; ++k) {
         const int i = k / t.count, j = k % t.count;
-        t.alone[i][j] = respond(c, traced->contacts[i], traced->contacts[j]);
+        const se3di_convex_contact *one = traced->contacts[i], *two = traced->contacts[j];
+        const int is_pair = one->record->shape_i == two->record->shape_i &&
+                            one->record->shape_j == two->record->shape_j;
+        t.alone[i][j] = is_pair ? se3di_convex_move_alone(c, one, two) : 0.0;
     }
     if (!give_way(&t) || !trace(&t) || !is_sound(&t)) {
         return 0;

@@ -795,17 +795,19 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* What an impulse along a stop does to its velocity, of bodies by themselves. */
-static double move_alone(const se3di_convex *c, const se3di_convex_contact *stop)
+double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
+                               const se3di_convex_contact *j)
 {
     double sum = 0.0;
     for (int k = 0; k < 2; ++k) {
-        if (stop->free[k] >= 0) {
-            const double *mobility = c->mobility + 10 * (size_t)stop->free[k];
-            double moment[3], turned[3];
-            se3di_mul_transposed(stop->lever[k], stop->normal, moment);
-            se3di_mul(mobility + 1, moment, turned);
-            sum += stop->reach * mobility[0] + se3di_dot(moment, turned);
+        if (i->free[k] >= 0) {
+            const double *mobility = c->mobility + 10 * (size_t)i->free[k];
+            double moment[2][3], turned[3];
+            se3di_mul_transposed(i->lever[k], i->normal, moment[0]);
+            se3di_mul_transposed(j->lever[k], j->normal, moment[1]);
+            se3di_mul(mobility + 1, moment[1], turned);
+            sum += i->reach * mobility[0] * se3di_dot(i->normal, j->normal);
+            sum += se3di_dot(moment[0], turned);
         }
     }
     return sum;
@@ -884,7 +886,7 @@ static void choose_elements(se3di_convex *c, se3di_equations *equations,
         if (!stop->element) {
             continue;
         }
-        double moved = move_alone(c, stop);
+        double moved = se3di_convex_move_alone(c, stop, stop);
         if (stop->way == SE3DI_CONVEX_FRICTION) {
             se3di_convex_choose_friction(c, stop, moved);
             continue;

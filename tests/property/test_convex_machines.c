@@ -192,8 +192,8 @@ static const char figure[] =
     "contacts.count, energy.balance]}]\n";
 
 /* A cloth that is drawn from under a box faster and faster, beside a wheel that starts: what their
- * own inertia takes of the drivers is counted, too, though half of it acts across the constraints at
- * the ends of steps. */
+ * own inertia takes of the drivers is counted, too, though half of it acts across the constraints
+ * at the ends of steps. */
 static void what_drivers_speed_up_by_themselves_is_counted(void)
 {
     static const char *const text =
