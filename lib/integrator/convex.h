@@ -215,6 +215,10 @@ double se3di_convex_along(const se3di_convex_contact *contact, double h, const d
                           double *bend);
 /* Whether a contact of this stiffness is over in too few steps to be followed. */
 int se3di_convex_is_short(double k, double inverse_mass, double h);
+/* What an impulse along j does to the velocity along i, which have the same bodies, if nothing else
+ * holds these. */
+double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
+                               const se3di_convex_contact *j);
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
 /* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */
@@ -363,11 +367,7 @@ se3d_status se3di_convex_mark(se3di_convex *c, const se3di_assembly *assembly);
 /* those that are known at its end. */
 void se3di_convex_follow(se3di_convex *c, const se3di_model *model);
 
-/* convex_solve.c: what an impulse along j does to the velocity along i, which have the same bodies,
- * if nothing else holds these; */
-double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
-                               const se3di_convex_contact *j);
-/* v, lambda and the impulses. */
+/* convex_solve.c: v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);
 
 #endif

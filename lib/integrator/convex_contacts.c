@@ -107,6 +107,24 @@ int se3di_convex_is_short(double k, double inverse_mass, double h)
     return k * inverse_mass * (FEW_STEPS * h) * (FEW_STEPS * h) > PI * PI;
 }
 
+double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
+                               const se3di_convex_contact *j)
+{
+    double sum = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        if (i->free[k] >= 0) {
+            const double *mobility = c->mobility + 10 * (size_t)i->free[k];
+            double moment[2][3], turned[3];
+            se3di_mul_transposed(i->lever[k], i->normal, moment[0]);
+            se3di_mul_transposed(j->lever[k], j->normal, moment[1]);
+            se3di_mul(mobility + 1, moment[1], turned);
+            sum += i->reach * mobility[0] * se3di_dot(i->normal, j->normal);
+            sum += se3di_dot(moment[0], turned);
+        }
+    }
+    return sum;
+}
+
 typedef struct collecting {
     se3di_convex *convex;
     const se3di_assembly *assembly;

@@ -795,24 +795,6 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
-                               const se3di_convex_contact *j)
-{
-    double sum = 0.0;
-    for (int k = 0; k < 2; ++k) {
-        if (i->free[k] >= 0) {
-            const double *mobility = c->mobility + 10 * (size_t)i->free[k];
-            double moment[2][3], turned[3];
-            se3di_mul_transposed(i->lever[k], i->normal, moment[0]);
-            se3di_mul_transposed(j->lever[k], j->normal, moment[1]);
-            se3di_mul(mobility + 1, moment[1], turned);
-            sum += i->reach * mobility[0] * se3di_dot(i->normal, j->normal);
-            sum += se3di_dot(moment[0], turned);
-        }
-    }
-    return sum;
-}
-
 /* What an impulse at a point makes of the velocities of an island, in `change`; its constraints'
  * matrix without contacts is factorised. */
 static se3d_status answer(se3di_convex *c, se3di_equations *equations,
