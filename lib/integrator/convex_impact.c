@@ -86,17 +86,9 @@ static int press_by_law(const point *p, int hertz, double xi[3], double force[3]
         pull[k] = -kt * xi[k] - p->pair->dt * root * (p->v[k] - vn * n[k]);
     }
     const double size = se3di_norm(pull), cap = p->pair->friction * normal;
-    const double held = kt * se3di_norm(xi);
-    if (size > cap) {
-        se3di_scale(cap / size, pull, force);
-        if (held > size) {
-            se3di_add_scaled((1.0 - cap / size) / kt, pull, xi);
-        } else if (held > cap) {
-            se3di_scale(cap / held, xi, xi);
-        }
-    } else {
-        se3di_copy(pull, force);
-    }
+    const double factor = size > cap ? cap / size : 1.0;
+    se3di_encounter_settle(kt, cap, factor, pull, xi, xi);
+    se3di_scale(factor, pull, force);
     se3di_add_scaled(normal, n, force);
     return 1;
 }

@@ -301,12 +301,8 @@ void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12])
     }
 }
 
-/* The stretch that is kept if the force was capped: if the damper pulls along with the spring, what
- * the cap holds of it, which so never pulls along the slip; if it pulls against the spring, that
- * with which both together are at the cap. Shortened by the factor of the force, it would be too
- * short by a part of what a step exceeds, another one in two halves of the step. */
-static void settled(double k, double cap, double factor, const double pull[3], const double x[3],
-                    double out[3])
+void se3di_encounter_settle(double k, double cap, double factor, const double pull[3],
+                            const double x[3], double out[3])
 {
     const double held = k * se3di_norm(x);
     se3di_copy(x, out);
@@ -326,7 +322,8 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
         se3di_copy(e->spring, xi);
         return;
     }
-    settled(e->pair.kt * e->s, e->pair.friction * e->normal, e->give, e->pull, e->xi, xi);
+    se3di_encounter_settle(e->pair.kt * e->s, e->pair.friction * e->normal, e->give, e->pull, e->xi,
+                           xi);
 }
 
 /* Rolling and torsion as the caps leave them. */
@@ -336,8 +333,8 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
     double k = e->pair.kr * e->s;
     const double wring[3] = {e->wring, 0.0, 0.0};
     const double now[3] = {e->twist, 0.0, 0.0};
-    settled(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
-    settled(k, e->pair.torsion * e->normal, e->slack, wring, now, out);
+    se3di_encounter_settle(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
+    se3di_encounter_settle(k, e->pair.torsion * e->normal, e->slack, wring, now, out);
     *twist = out[0];
 }
 

@@ -71,6 +71,12 @@ static inline double se3di_encounter_weight(double own, double other, double rad
 void se3di_encounter_share(se3di_encounter *points, uint32_t count);
 /* The forces. */
 void se3di_encounter_eval(se3di_encounter *e);
+/* The stretch that is kept if the force was capped: if the damper pulls along with the spring, what
+ * the cap holds of it, which so never pulls along the slip; if it pulls against the spring, that
+ * with which both together are at the cap. Shortened by the factor of the force, it would be too
+ * short by a part of what a step exceeds, another one in two halves of the step. */
+void se3di_encounter_settle(double k, double cap, double factor, const double pull[3],
+                            const double x[3], double out[3]);
 /* Forces at the centres (ground frame) and torques (body frames) on i and j. */
 void se3di_encounter_wrench(const se3di_encounter *e, double wrench[12]);
 /* Of the tangential, rolling and torsional springs alone, as they would be remembered. */
