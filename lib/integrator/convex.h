@@ -72,6 +72,7 @@ typedef struct se3di_convex_island {
     size_t begin, link;      /* where it begins in se3di_convex_rows, */
     size_t value;            /* also in C */
     se3di_kkt *kkt;          /* of an island with constraints */
+    int is_factored;         /* its matrix of masses and constraints, without contacts */
     int is_traced;           /* nothing acts but impacts whose impulses are known */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
 } se3di_convex_island;

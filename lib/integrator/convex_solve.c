@@ -692,6 +692,11 @@ static double share_of(double rest, double before)
     return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
+static int is_impact(const se3di_convex_contact *contact)
+{
+    return contact->record && contact->way == SE3DI_CONVEX_IMPACT;
+}
+
 /* Impacts together give no energy. If they did, those that do on the average of their velocities
  * before and after, since others have turned a slip round or have stopped what was parting, leave
  * more slowly, or come as near as they were parting. Returns whether any are to. */
@@ -701,9 +706,7 @@ static int tame(const se3di_convex *c, const se3di_convex_island *island)
     int is_tamed = 0;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         const se3di_convex_contact *contact = se3di_convex_at(c, k);
-        sum -= contact->record && contact->way == SE3DI_CONVEX_IMPACT
-                   ? se3di_convex_taken_by(contact)
-                   : 0.0;
+        sum -= is_impact(contact) ? se3di_convex_taken_by(contact) : 0.0;
     }
     for (size_t k = island->contact; k < island->contact_end && sum > GIVEN_MOST * island->momentum;
          ++k) {
@@ -711,8 +714,7 @@ static int tame(const se3di_convex *c, const se3di_convex_island *island)
         const double least = fmin(0.0, -se3di_dot(contact->before, contact->normal));
         const double normal = se3di_dot(contact->impulse, contact->normal);
         const double given = -se3di_convex_taken_by(contact);
-        if (contact->record && contact->way == SE3DI_CONVEX_IMPACT && contact->rebound > least &&
-            normal > 0.0 && given > 0.0) {
+        if (is_impact(contact) && contact->rebound > least && normal > 0.0 && given > 0.0) {
             contact->rebound = fmax(least, contact->rebound - 2.0 * given / normal);
             is_tamed = 1;
         }
@@ -795,13 +797,39 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* What an impulse at a point makes of the velocities of an island, in `change`; its constraints'
- * matrix without contacts is factorised. */
+/* The matrix of masses and constraints of an island, without contacts, once a step. Returns 0 if it
+ * has none. */
+static int factor_alone(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
+{
+    if (!island->is_factored) {
+        const se3di_kkt_values values = values_of(c, island, c->own);
+        if (island->pair_end > island->pair) {
+            memset(c->coupling + 36 * island->pair, 0,
+                   36 * (island->pair_end - island->pair) * sizeof *c->coupling);
+        }
+        ++equations->counters.factorizations;
+        island->is_factored = se3di_kkt_factor(island->kkt, &values, NULL) >= 0;
+    }
+    return island->is_factored;
+}
+
+/* `change` and lambda by that matrix, for what is in `equations->b`. */
+static se3d_status solve_alone(se3di_convex *c, se3di_equations *equations,
+                               const se3di_convex_island *island)
+{
+    const se3di_kkt_values values = values_of(c, island, c->own);
+    const size_t begin = 6 * island->body;
+    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
+    ++equations->counters.solves;
+    return se3di_kkt_solve(island->kkt, &values, equations->b + begin, equations->c,
+                           c->change + begin, c->rows.lambda + island->row, NULL);
+}
+
+/* What an impulse at a point makes of the velocities of an island, in `change`. */
 static se3d_status answer(se3di_convex *c, se3di_equations *equations,
                           const se3di_convex_island *island, const se3di_convex_contact *contact,
                           const double impulse[3])
 {
-    const se3di_kkt_values values = values_of(c, island, c->own);
     const size_t begin = 6 * island->body, end = 6 * island->body_end;
     double *p = equations->b;
     memset(p + begin, 0, (end - begin) * sizeof *p);
@@ -814,54 +842,30 @@ static se3d_status answer(se3di_convex *c, se3di_equations *equations,
         }
         return SE3D_OK;
     }
-    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
-    ++equations->counters.solves;
-    const se3d_status status =
-        se3di_kkt_solve(island->kkt, &values, p + begin, equations->c, c->change + begin,
-                        c->rows.lambda + island->row, NULL);
+    const se3d_status status = solve_alone(c, equations, island);
     return status == SE3D_ERR_NO_CONVERGENCE ? SE3D_OK : status; /* of what is driven, nothing */
-}
-
-/* The matrix of masses and constraints, without contacts. */
-static se3d_status factor_bound(se3di_convex *c, se3di_equations *equations,
-                                const se3di_convex_island *island)
-{
-    const se3di_kkt_values values = values_of(c, island, c->own);
-    if (island->pair_end > island->pair) {
-        memset(c->coupling + 36 * island->pair, 0,
-               36 * (island->pair_end - island->pair) * sizeof *c->coupling);
-    }
-    ++equations->counters.factorizations;
-    return se3di_kkt_factor(island->kkt, &values, NULL);
 }
 
 /* Velocities that a step begins with are on the constraints, and its chord is half a step before
  * and half a step after them: what constraints take of the chord before belongs to the load of
  * friction, too. */
-static void find_recoil(se3di_convex *c, se3di_equations *equations,
-                        const se3di_convex_island *island, int *is_factored)
+static void find_recoil(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
 {
-    const se3di_kkt_values values = values_of(c, island, c->own);
-    const size_t begin = 6 * island->body;
-    *is_factored = *is_factored || factor_bound(c, equations, island) >= 0;
-    if (!*is_factored) {
+    if (!factor_alone(c, equations, island)) {
         return;
     }
     for (size_t k = island->body; k < island->body_end; ++k) {
         memcpy(c->change + 6 * k, c->chord + 6 * (size_t)c->body_at[k], 6 * sizeof *c->change);
     }
     mul_mass(c, island, c->change, equations->b);
-    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
-    ++equations->counters.solves;
-    if (se3di_kkt_solve(island->kkt, &values, equations->b + begin, equations->c, c->change + begin,
-                        c->rows.lambda + island->row, NULL) >= 0) {
+    if (solve_alone(c, equations, island) >= 0) {
         se3di_convex_take_back_rows(c, &equations->assembly, island, c->recoil);
     }
 }
 
 /* How stops and friction act: what has no solution here has none in the step, which tells it. */
 static void choose_elements(se3di_convex *c, se3di_equations *equations,
-                            const se3di_convex_island *island, int *is_factored)
+                            se3di_convex_island *island)
 {
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *stop = se3di_convex_at(c, k);
@@ -874,8 +878,8 @@ static void choose_elements(se3di_convex *c, se3di_equations *equations,
             continue;
         }
         if (se3di_convex_is_bound(island) && se3di_convex_stop_is_near(stop, c->h)) {
-            *is_factored = *is_factored || factor_bound(c, equations, island) >= 0;
-            if (*is_factored && answer(c, equations, island, stop, stop->normal) >= 0) {
+            if (factor_alone(c, equations, island) &&
+                answer(c, equations, island, stop, stop->normal) >= 0) {
                 moved =
                     fmax(0.0, dot(equations->b, c->change, 6 * island->body, 6 * island->body_end));
             }
@@ -883,23 +887,17 @@ static void choose_elements(se3di_convex *c, se3di_equations *equations,
         se3di_convex_choose_stop(c, stop, moved);
     }
     if (c->recoils && se3di_convex_is_bound(island)) {
-        find_recoil(c, equations, island, is_factored);
+        find_recoil(c, equations, island);
     }
 }
 
 /* Impacts beside which nothing acts: their impulses are known before. */
-static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island,
-                          int *is_factored)
+static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
 {
     se3di_convex_traced t;
-    if (!se3di_convex_may_trace(c, island, &t)) {
+    if (!se3di_convex_may_trace(c, island, &t) ||
+        (se3di_convex_is_bound(island) && !factor_alone(c, equations, island))) {
         return;
-    }
-    if (se3di_convex_is_bound(island) && !*is_factored) {
-        *is_factored = factor_bound(c, equations, island) >= 0;
-        if (!*is_factored) {
-            return;
-        }
     }
     for (int j = 0; j < 3 * t.count; ++j) {
         const double one[3] = {j % 3 == 0, j % 3 == 1, j % 3 == 2};
@@ -917,14 +915,6 @@ static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_con
     island->is_traced = se3di_convex_trace(c, &t, equations->assembly.model);
 }
 
-/* How what acts in an island acts. */
-static void choose(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
-{
-    int is_factored = 0;
-    choose_elements(c, equations, island, &is_factored);
-    trace_impacts(c, equations, island, &is_factored);
-}
-
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -937,7 +927,8 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);
     for (size_t k = 0; k < c->island_count; ++k) {
-        choose(c, equations, &c->islands[k]);
+        choose_elements(c, equations, &c->islands[k]);
+        trace_impacts(c, equations, &c->islands[k]);
         SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
     }
     take_back(c, assembly);
