@@ -5,8 +5,6 @@
 #include "particles/clump.h"
 #include "particles/draw.h"
 
-#define PI 3.1415926535897932384626433832795
-
 /* NULL: a sphere. */
 static const se3di_clump_template *template_of(const se3di_particles *set, uint32_t clump)
 {
@@ -70,9 +68,8 @@ size_t se3di_piece_count(const se3di_particles *set, uint32_t clump)
 double se3di_piece_mass(const se3di_particles *set, const se3di_piece *piece)
 {
     const se3di_clump_template *of = template_of(set, piece->clump);
-    const double R = piece->radius;
     return of ? factor_of(set, of, piece) * of->mass
-              : set->stuffs[piece->material].material.density * (4.0 / 3.0 * PI * R * R * R);
+              : se3di_particles_weigh(set, piece->material, piece->radius);
 }
 
 double se3di_piece_smallest(const se3di_particles *set, const se3di_piece *piece)

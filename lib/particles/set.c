@@ -226,7 +226,7 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count)
     return count <= set->capacity ? SE3D_OK : reserve_arrays(set, count);
 }
 
-static double weigh(const se3di_particles *set, uint32_t material, double radius)
+double se3di_particles_weigh(const se3di_particles *set, uint32_t material, double radius)
 {
     const double pi = 3.1415926535897932384626433832795;
     return set->stuffs[material].material.density * (4.0 / 3.0 * pi * radius * radius * radius);
@@ -235,8 +235,9 @@ static double weigh(const se3di_particles *set, uint32_t material, double radius
 double se3di_particles_mass(const se3di_particles *set, size_t k)
 {
     const se3di_particle *particle = &set->particles[k];
-    return se3di_particle_is_fixed(particle) ? weigh(set, set->spins[k].material, particle->radius)
-                                             : 1.0 / particle->inverse_mass;
+    return se3di_particle_is_fixed(particle)
+               ? se3di_particles_weigh(set, set->spins[k].material, particle->radius)
+               : 1.0 / particle->inverse_mass;
 }
 
 void se3di_particles_fix(se3di_particles *set, uint32_t id, int fixed)
@@ -257,7 +258,7 @@ uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double 
                                 const double x[3], const double v[3], const double w[3])
 {
     static const double rest[3] = {0.0, 0.0, 0.0};
-    const double mass = weigh(set, material, radius);
+    const double mass = se3di_particles_weigh(set, material, radius);
     size_t k = set->count++;
     uint32_t id = (uint32_t)set->id_count++;
     set->particles[k] = (se3di_particle){.radius = radius, .inverse_mass = 1.0 / mass};

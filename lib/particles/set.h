@@ -667,6 +667,8 @@ se3d_status se3di_particles_reserve(se3di_particles *set, size_t count);
 /* Append; room must have been reserved. Returns the id. */
 uint32_t se3di_particles_append(se3di_particles *set, uint32_t material, double radius,
                                 const double x[3], const double v[3], const double w[3]);
+/* The mass of a solid sphere of a material. */
+double se3di_particles_weigh(const se3di_particles *set, uint32_t material, double radius);
 /* The mass of a sphere, also of a fixed one; of a clump's, what it counts with in contacts. */
 double se3di_particles_mass(const se3di_particles *set, size_t k);
 /* Fix a live particle that is no clump's, or let it go. The history must have been collected. */
