@@ -35,17 +35,12 @@ static int has_element(const se3di_model *model, int32_t type)
     return 0;
 }
 
-/* Elements that convex refuses or that are contacts of their own. */
-static int has_other_elements(const se3di_model *model)
-{
-    return has_element(model, SE3DI_FORCE_ARMATURE) || has_element(model, SE3DI_FORCE_TYRE);
-}
-
 int se3di_crowd_may_touch(const se3di_model *model)
 {
     return model->shape_slots.count > 0 && !se3di_model_gravity_varies(model) && !model->sets &&
            model->state_count == 0 && model->contact.law != SE3DI_LAW_CALLBACK &&
-           se3di_find_driver_rate(model) == SE3DI_NO_INDEX && !has_other_elements(model) &&
+           se3di_find_driver_rate(model) == SE3DI_NO_INDEX &&
+           !has_element(model, SE3DI_FORCE_TYRE) && /* tyres touch by themselves */
            are_known(model);
 }
 

@@ -326,7 +326,7 @@ static se3d_status check_rates(se3di_run *run)
     const int is_of_positions =
         run->analysis != SE3D_ANALYSIS_DYNAMICS && run->analysis != SE3D_ANALYSIS_ASSEMBLY;
     if (driver == SE3DI_NO_INDEX ||
-        (!is_of_positions && (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->weighs_bodies))) {
+        (!is_of_positions && (run->analysis != SE3D_ANALYSIS_DYNAMICS || !method->moves_first))) {
         return SE3D_OK;
     }
     const char *name = run->model->constraints[driver].name;

@@ -10,6 +10,7 @@
  *                                                                      docs/theory/convex.md */
 #include "integrator/convex.h"
 
+#include "assembly/armature.h"
 #include "assembly/energy.h"
 #include "assembly/loads.h"
 #include "assembly/user.h"
@@ -141,20 +142,24 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
+    double *terms = c->change;
     SE3DI_TRY(se3di_assembly_eval_elements(assembly, t, equations->error));
     SE3DI_TRY(se3di_gravity_eval(model, t, c->gravity, NULL));
+    memset(terms, 0, assembly->unknown_count * sizeof *terms);
+    se3di_armatures_add_terms(assembly, terms);
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t body = assembly->free_body[k];
-        const double *wrench = assembly->wrench + 6 * (size_t)body;
         const double *v0 = c->start + 6 * (size_t)k;
-        double *v = c->aim + 6 * (size_t)k, J[9];
+        double *v = c->aim + 6 * (size_t)k, *load = terms + 6 * (size_t)k, J[9];
         memcpy(v, v0, 6 * sizeof *v);
         if (c->asleep[k]) {
             continue;
         }
-        se3di_add_scaled(c->h / model->bodies[body].mass, wrench, v);
+        se3di_add(load, assembly->wrench + 6 * (size_t)body, load);
+        se3di_add(load + 3, assembly->wrench + 6 * (size_t)body + 3, load + 3);
+        se3di_add_scaled(c->h / model->bodies[body].mass, load, v);
         se3di_inertia_matrix(model->bodies[body].J, J);
-        se3di_convex_turn_freely(J, v0 + 3, wrench + 3, c->h, v + 3);
+        se3di_convex_turn_freely(J, v0 + 3, load + 3, c->h, v + 3);
     }
     return SE3D_OK;
 }
@@ -611,6 +616,6 @@ const se3di_integrator se3di_integrator_convex = {
     .is_reduced = 1,
     .fixes_step = 1,
     .orders = 1u << 1,
-    .weighs_bodies = 1,
+    .moves_first = 1,
     .takes_crowd = 1,
 };

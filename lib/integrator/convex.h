@@ -132,11 +132,15 @@ typedef struct se3di_convex {
     int32_t *order;   /* [contacts]: island by island */
     int32_t *stirred; /* [free bodies], by places: the last sweep that changed its velocity */
     double *mobility; /* [10 * free bodies], by places: 1/m, J^-1 */
-    double *own;      /* blocks of the mass, by places, 6 x 6 each */
+    double *own;      /* blocks of the mass of bodies alone, by places, 6 x 6 each; */
+    double *mass;     /* of all mass: with what turns with coordinates (armatures), or `own`; */
+    double *tie;      /* and what armatures couple, of `pairs` */
     double
         *spin; /* [6 * free bodies], by places: the w that the step begins with, h w x J w in use */
     size_t place_capacity, body_at_capacity, root_capacity, number_capacity, order_capacity,
-        mobility_capacity, own_capacity, spin_capacity, stirred_capacity;
+        mobility_capacity, own_capacity, spin_capacity, stirred_capacity, geared_capacity,
+        tie_capacity;
+    double *geared; /* room of `mass` */
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
     uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
@@ -294,6 +298,32 @@ double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body);
 
 /* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
+/* of what armatures couple, which of `pairs` it is; -1: it is not solved for. */
+int32_t se3di_convex_find_tie(const se3di_convex *c, const se3di_assembly *assembly, uint32_t tie);
+
+/* convex_mass.c: the masses of what takes part, with armatures; @return OK, NO_MEMORY */
+se3d_status se3di_convex_place_mass(se3di_convex *c, const se3di_assembly *assembly);
+/* out = M x of an island, by places; by bodies alone; */
+void se3di_convex_mul_mass(const se3di_convex *c, const se3di_convex_island *island,
+                           const double *x, double *out);
+void se3di_convex_mul_own(const se3di_convex *c, const se3di_convex_island *island, const double *x,
+                          double *out);
+/* `coupling` of an island as the mass has it. */
+void se3di_convex_clear_couplings(se3di_convex *c, const se3di_convex_island *island);
+/* A matrix of an island, whose bodies count from 0; without any pair of bodies there are no arrays
+ * of them. */
+static inline se3di_block_matrix se3di_convex_matrix_of(const se3di_convex *c,
+                                                        const se3di_convex_island *island,
+                                                        const double *body, const double *coupling)
+{
+    const int has_pairs = island->pair_end > island->pair;
+    return (se3di_block_matrix){.count = island->body_end - island->body,
+                                .first = (int32_t)island->body,
+                                .pair_count = island->pair_end - island->pair,
+                                .pairs = has_pairs ? c->pairs + 2 * island->pair : NULL,
+                                .diagonal = body + 36 * island->body,
+                                .coupling = has_pairs ? coupling + 36 * island->pair : NULL};
+}
 
 /* convex_rows.c: a body of a constraint that acts in steps; -1: it does not, or on none; */
 int32_t se3di_convex_joined(const se3di_assembly *assembly, uint32_t joint);

@@ -21,7 +21,8 @@ static se3d_status reserve_all(se3di_convex *c, const se3di_assembly *assembly)
                   {&c->number, &c->number_capacity, bodies + 1, sizeof *c->number},
                   {&c->order, &c->order_capacity, contacts + 1, sizeof *c->order},
                   {&c->stirred, &c->stirred_capacity, bodies + 1, sizeof *c->stirred},
-                  {&c->pairs, &c->pair_capacity, contacts + 1, 2 * sizeof *c->pairs},
+                  {&c->pairs, &c->pair_capacity, contacts + assembly->armature_pair_count + 1,
+                   2 * sizeof *c->pairs},
                   {&c->mobility, &c->mobility_capacity, 10 * bodies + 1, sizeof *c->mobility},
                   {&c->own, &c->own_capacity, 36 * bodies + 1, sizeof *c->own},
                   {&c->spin, &c->spin_capacity, 6 * bodies + 1, sizeof *c->spin}};
@@ -177,8 +178,24 @@ static int get_pair(const se3di_convex_contact *contact, int32_t pair[2])
     return pair[0] >= 0;
 }
 
-/* The couplings of bodies by contacts, in the order of places. */
-static void list_pairs(se3di_convex *c)
+/* The places of two bodies that an armature couples; 0: they are not solved for. */
+static int get_tie(const se3di_convex *c, const se3di_assembly *assembly, uint32_t tie,
+                   int32_t pair[2])
+{
+    const int32_t *free = assembly->armature_pair + 2 * (size_t)tie;
+    pair[0] = c->place[free[0]]; /* bodies of an island stay in their order */
+    pair[1] = c->place[free[1]];
+    return se3di_convex_takes_part(c, (size_t)free[0]);
+}
+
+int32_t se3di_convex_find_tie(const se3di_convex *c, const se3di_assembly *assembly, uint32_t tie)
+{
+    int32_t pair[2];
+    return get_tie(c, assembly, tie, pair) ? find_pair(c, pair) : -1;
+}
+
+/* The couplings of bodies by contacts and armatures, in the order of places. */
+static void list_pairs(se3di_convex *c, const se3di_assembly *assembly)
 {
     size_t count = 0;
     int32_t pair[2];
@@ -187,6 +204,9 @@ static void list_pairs(se3di_convex *c)
             (count == 0 || compare_pairs(pair, c->pairs + 2 * count - 2) != 0)) {
             memcpy(c->pairs + 2 * count++, pair, sizeof pair);
         }
+    }
+    for (uint32_t k = 0; k < assembly->armature_pair_count; ++k) {
+        count += (size_t)get_tie(c, assembly, k, c->pairs + 2 * count);
     }
     se3di_sort_tuples(c->pairs, count, 2);
     c->pair_count = 0;
@@ -222,7 +242,7 @@ se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly)
     join(c, assembly);
     count_islands(c, assembly);
     fill(c, assembly);
-    list_pairs(c);
+    list_pairs(c, assembly);
     share_pairs(c);
     return se3di_convex_share_rows(c, assembly);
 }

@@ -8,7 +8,6 @@
  * The caps of friction follow the normal impulses until they agree.    docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "math/inertia.h"
 #include "math/larger.h"
 #include "math/vec3.h"
 
@@ -55,6 +54,8 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->stirred, c->stirred_capacity, sizeof *c->stirred);
     se3di_free(allocator, c->mobility, c->mobility_capacity, sizeof *c->mobility);
     se3di_free(allocator, c->own, c->own_capacity, sizeof *c->own);
+    se3di_free(allocator, c->geared, c->geared_capacity, sizeof *c->geared);
+    se3di_free(allocator, c->tie, c->tie_capacity, sizeof *c->tie);
     se3di_free(allocator, c->spin, c->spin_capacity, sizeof *c->spin);
     se3di_free(allocator, c->body, c->body_capacity, sizeof *c->body);
     se3di_free(allocator, c->coupling, c->coupling_capacity, sizeof *c->coupling);
@@ -80,38 +81,6 @@ static se3d_status reserve_blocks(const se3d_allocator *allocator, double **bloc
     return status;
 }
 
-/* The mass by places, and its inverse, of what takes part. */
-static void place_mass(se3di_convex *c, const se3di_assembly *assembly)
-{
-    const int has_mass = assembly->row_count > 0;
-    for (size_t k = 0; k < assembly->body_count; ++k) {
-        const se3di_body *body = &assembly->model->bodies[assembly->free_body[k]];
-        const size_t at = (size_t)c->place[k];
-        double *M = c->own + 36 * at, *mobility = c->mobility + 10 * at, J[9];
-        if (!se3di_convex_takes_part(c, k)) {
-            continue;
-        }
-        se3di_inertia_matrix(body->J, J);
-        if (has_mass) {
-            memcpy(M, assembly->H + 36 * k, 36 * sizeof *M);
-            for (size_t r = 0; r < 3; ++r) {
-                memcpy(J + 3 * r, M + 6 * (3 + r) + 3, 3 * sizeof *J);
-            }
-        } else {
-            memset(M, 0, 36 * sizeof *M);
-            for (size_t r = 0; r < 3; ++r) {
-                M[7 * r] = body->mass;
-                memcpy(M + 6 * (3 + r) + 3, J + 3 * r, 3 * sizeof *J);
-            }
-        }
-        mobility[0] = 1.0 / M[0];
-        for (size_t r = 0; r < 3; ++r) {
-            const double one[3] = {r == 0, r == 1, r == 2};
-            se3di_solve3(J, one, mobility + 1 + 3 * r);
-        }
-    }
-}
-
 static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -131,13 +100,11 @@ static se3d_status prepare(se3di_convex *c, se3di_equations *equations)
     status = status < 0
                  ? status
                  : reserve_blocks(allocator, &c->coupling, &c->coupling_capacity, c->pair_count);
-    if (status < 0) {
-        return se3di_error_set(equations->error, status,
-                               "t = %g s: no memory for the contacts of a step",
-                               assembly->model->time);
-    }
-    place_mass(c, assembly);
-    return SE3D_OK;
+    status = status < 0 ? status : se3di_convex_place_mass(c, assembly);
+    return status < 0 ? se3di_error_set(equations->error, status,
+                                        "t = %g s: no memory for the contacts of a step",
+                                        assembly->model->time)
+                      : SE3D_OK;
 }
 
 /* block [6 x 6] += sign (r I L_a)^T G (r I L_b), r: reach, of which r^2 = r */
@@ -188,14 +155,11 @@ static void subtract_impulse(const se3di_convex_contact *contact, double *gradie
 static void clear_blocks(se3di_convex *c, const se3di_convex_island *island)
 {
     const size_t bodies = island->body_end - island->body;
-    const size_t pairs = island->pair_end - island->pair;
     if (bodies > 0) {
-        memcpy(c->body + 36 * island->body, c->own + 36 * island->body,
+        memcpy(c->body + 36 * island->body, c->mass + 36 * island->body,
                36 * bodies * sizeof *c->body);
     }
-    if (pairs > 0) {
-        memset(c->coupling + 36 * island->pair, 0, 36 * pairs * sizeof *c->coupling);
-    }
+    se3di_convex_clear_couplings(c, island);
 }
 
 /* The gradient without contacts. */
@@ -311,28 +275,13 @@ static double weigh(const se3di_convex *c, const se3di_convex_island *island, co
 {
     double sum = 0.0;
     for (size_t body = island->body; body < island->body_end; ++body) {
-        const double *M = c->own + 36 * body;
+        const double *M = c->mass + 36 * body;
         for (size_t k = 0; k < 6; ++k) {
             const double m = M[7 * k], value = x[6 * body + k];
             sum += m > 0.0 ? value * value / m : 0.0;
         }
     }
     return sum;
-}
-
-/* out = M x */
-static void mul_mass(const se3di_convex *c, const se3di_convex_island *island, const double *x,
-                     double *out)
-{
-    for (size_t body = island->body; body < island->body_end; ++body) {
-        const double *M = c->own + 36 * body, *v = x + 6 * body;
-        double *p = out + 6 * body;
-        for (size_t r = 0; r < 3; ++r) {
-            const double *J = M + 6 * (3 + r) + 3;
-            p[r] = M[0] * v[r];
-            p[3 + r] = J[0] * v[3] + J[1] * v[4] + J[2] * v[5];
-        }
-    }
 }
 
 /* The part of the impulses that is not balanced, of those in the step and of all momentum. */
@@ -351,17 +300,9 @@ static double measure(const se3di_convex *c, se3di_equations *equations,
     return rest <= 0.0 ? 0.0 : sqrt(rest / fmax(size, rest)); /* NaN stays */
 }
 
-/* The matrix of an island, whose bodies count from 0; without any pair of bodies there are no
- * arrays of them. */
 static se3di_block_matrix matrix_of(const se3di_convex *c, const se3di_convex_island *island)
 {
-    const int has_pairs = island->pair_end > island->pair;
-    return (se3di_block_matrix){.count = island->body_end - island->body,
-                                .first = (int32_t)island->body,
-                                .pair_count = island->pair_end - island->pair,
-                                .pairs = has_pairs ? c->pairs + 2 * island->pair : NULL,
-                                .diagonal = c->body + 36 * island->body,
-                                .coupling = has_pairs ? c->coupling + 36 * island->pair : NULL};
+    return se3di_convex_matrix_of(c, island, c->body, c->coupling);
 }
 
 /* `change` to the accuracy that an iteration needs. */
@@ -528,9 +469,9 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     const size_t first = 6 * island->body, count = 6 * (island->body_end - island->body);
     double *aim = c->carried, *start = c->gradient;
     int is_far = 0;
-    mul_mass(c, island, aim, c->moved);
+    se3di_convex_mul_mass(c, island, aim, c->moved);
     island->momentum = weigh(c, island, c->moved);
-    mul_mass(c, island, start, c->moved);
+    se3di_convex_mul_mass(c, island, start, c->moved);
     island->momentum = fmax(island->momentum, weigh(c, island, c->moved));
     if (se3di_convex_is_bound(island)) {
         memcpy(c->v + first, start + first, count * sizeof *c->v);
@@ -543,7 +484,7 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     for (size_t k = first; k < first + count; ++k) {
         c->change[k] = c->v[k] - aim[k];
     }
-    mul_mass(c, island, c->change, c->moved);
+    se3di_convex_mul_own(c, island, c->change, c->moved); /* armatures begin with `start` */
     clear_blocks(c, island);
     c->reacts = 0;
     c->changed = island->contact_end - island->contact + 1; /* all */
@@ -554,7 +495,7 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
 /* What `change` does to contacts and momenta. */
 static void carry(se3di_convex *c, const se3di_convex_island *island)
 {
-    mul_mass(c, island, c->change, c->carried);
+    se3di_convex_mul_mass(c, island, c->change, c->carried);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
         se3di_convex_velocity(contact, c->change, contact->change);
@@ -802,11 +743,8 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
 static int factor_alone(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
 {
     if (!island->is_factored) {
-        const se3di_kkt_values values = values_of(c, island, c->own);
-        if (island->pair_end > island->pair) {
-            memset(c->coupling + 36 * island->pair, 0,
-                   36 * (island->pair_end - island->pair) * sizeof *c->coupling);
-        }
+        const se3di_kkt_values values = values_of(c, island, c->mass);
+        se3di_convex_clear_couplings(c, island);
         ++equations->counters.factorizations;
         island->is_factored = se3di_kkt_factor(island->kkt, &values, NULL) >= 0;
     }
@@ -817,7 +755,7 @@ static int factor_alone(se3di_convex *c, se3di_equations *equations, se3di_conve
 static se3d_status solve_alone(se3di_convex *c, se3di_equations *equations,
                                const se3di_convex_island *island)
 {
-    const se3di_kkt_values values = values_of(c, island, c->own);
+    const se3di_kkt_values values = values_of(c, island, c->mass);
     const size_t begin = 6 * island->body;
     memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
     ++equations->counters.solves;
@@ -857,7 +795,7 @@ static void find_recoil(se3di_convex *c, se3di_equations *equations, se3di_conve
     for (size_t k = island->body; k < island->body_end; ++k) {
         memcpy(c->change + 6 * k, c->chord + 6 * (size_t)c->body_at[k], 6 * sizeof *c->change);
     }
-    mul_mass(c, island, c->change, equations->b);
+    se3di_convex_mul_mass(c, island, c->change, equations->b);
     if (solve_alone(c, equations, island) >= 0) {
         se3di_convex_take_back_rows(c, &equations->assembly, island, c->recoil);
     }

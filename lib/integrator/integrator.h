@@ -101,10 +101,11 @@ typedef struct se3di_integrator {
     /* The same where it depends on order, model or what is chosen; NULL: it does not. */
     double (*get_reach)(const struct se3di_integration *integration,
                         const struct se3di_model *model);
-    int32_t fixes_step;      /* not 0: with settings.step, errors are not controlled */
-    int32_t chooses_step;    /* not 0: without one, equal steps are chosen (equal_steps.h) */
-    int32_t weighs_bodies;   /* not 0: needs a mass matrix of bodies alone, without armatures */
-    int32_t takes_lanes;     /* not 0: loops of several states are computed at once */
+    int32_t fixes_step;    /* not 0: with settings.step, errors are not controlled */
+    int32_t chooses_step;  /* not 0: without one, equal steps are chosen (equal_steps.h) */
+    int32_t weighs_bodies; /* not 0: needs a mass matrix of bodies alone, without armatures */
+    int32_t moves_first;   /* not 0: steps of positions make velocities, by rates that are given */
+    int32_t takes_lanes;   /* not 0: loops of several states are computed at once */
     int32_t takes_particles; /* not 0: steps are no longer than contacts and particles ask for */
     int32_t leaves_stiff;    /* not 0: auto leaves it where stability holds it, */
     int32_t takes_stiff;     /* for this one */

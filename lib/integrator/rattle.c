@@ -83,4 +83,5 @@ const se3di_integrator se3di_integrator_rattle = {
     .get_reach = se3di_equal_steps_reach,
     .orders = 1u << 2 | 1u << 4,
     .weighs_bodies = 1,
+    .moves_first = 1,
 };

@@ -260,5 +260,6 @@ const se3di_integrator se3di_integrator_verlet = {
     .get_reach = se3di_equal_steps_reach,
     .orders = 1u << 2,
     .weighs_bodies = 1,
+    .moves_first = 1,
     .takes_particles = 1,
 };
