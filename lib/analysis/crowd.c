@@ -10,8 +10,7 @@
 
 static int is_known(const se3di_pair *pair)
 {
-    return !(pair->rolling > 0.0) && !(pair->torsion > 0.0) && !(pair->cohesion > 0.0) &&
-           !(pair->pull_off > 0.0);
+    return !(pair->cohesion > 0.0) && !(pair->pull_off > 0.0);
 }
 
 static int are_known(const se3di_model *model)

@@ -303,12 +303,12 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* What the impulses of stops and friction pressed with in the step, on the average. */
-static void push_by_elements(const se3di_convex *c, const se3di_assembly *assembly)
+/* What the impulses of contacts from `first` on pressed with in the step, on the average. */
+static void push_by_rows(const se3di_convex *c, const se3di_assembly *assembly, size_t first)
 {
     double *by_place = c->change;
     memset(by_place, 0, assembly->unknown_count * sizeof *by_place);
-    for (size_t k = c->shape_count; k < c->contact_count; ++k) {
+    for (size_t k = first; k < c->contact_count; ++k) {
         se3di_convex_press(&c->contacts[k], 1.0 / c->h, c->contacts[k].impulse, by_place);
     }
     for (size_t k = 0; k < assembly->body_count; ++k) {
@@ -353,7 +353,7 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
     if (assembly->row_count > 0) {
         find_push(c, assembly, t1);
         if (c->shape_count < c->contact_count) {
-            push_by_elements(c, assembly);
+            push_by_rows(c, assembly, c->shape_count);
         }
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
@@ -361,9 +361,9 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
         se3di_frictions_take_loads(assembly->model, assembly->model->lambda);
         return status;
     }
-    if (c->shape_count < c->contact_count) {
+    if (c->roll_end < c->contact_count) {
         memset(c->push, 0, 6 * (size_t)assembly->dense_count * sizeof *c->push);
-        push_by_elements(c, assembly);
+        push_by_rows(c, assembly, c->roll_end);
         assembly->push = c->push;
     }
     const se3d_status status = se3di_assembly_eval_wrenches(assembly, t1, equations->error);
@@ -449,6 +449,8 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(aim(c, equations, t));
     SE3DI_TRY(aim_rows(c, equations, t));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
+    SE3DI_TRY(se3di_convex_collect_rolling(c, assembly, equations->error));
+    c->roll_end = c->contact_count;
     if (!c->drifts) {
         SE3DI_TRY(se3di_convex_collect_stops(c, assembly, equations->error));
     }

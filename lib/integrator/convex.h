@@ -21,10 +21,11 @@
 
 /* How a contact acts in a step. */
 enum {
-    SE3DI_CONVEX_SPRING,  /* by its law */
-    SE3DI_CONVEX_IMPACT,  /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
-    SE3DI_CONVEX_TRACED,  /* an impact whose impulse is known: p_n = rise, p_t = -xi */
-    SE3DI_CONVEX_FRICTION /* of a joint: |rise - steepness v_n| <= bound, plus d (rebound - v_n) */
+    SE3DI_CONVEX_SPRING,   /* by its law */
+    SE3DI_CONVEX_IMPACT,   /* an impact shorter than a few steps: p_n = max(0, d (rebound - v_n)) */
+    SE3DI_CONVEX_TRACED,   /* an impact whose impulse is known: p_n = rise, p_t = -xi */
+    SE3DI_CONVEX_FRICTION, /* of a joint: |rise - steepness v_n| <= bound, plus d (rebound - v_n) */
+    SE3DI_CONVEX_ROLL      /* rolling and torsion of a contact: the same without d along n, p_t */
 };
 
 /* A point of contact in the step under way. What the passes over all contacts of an island need
@@ -34,9 +35,11 @@ typedef struct se3di_convex_contact {
     int32_t coupling; /* of the two, -1: one is fixed */
     int32_t way;      /* SE3DI_CONVEX_ */
     int32_t upper;    /* 1: a stop at the upper end of a range */
+    int32_t partner;  /* of rolling: the contact of shapes; of that: its rolling, -1: none */
+    int32_t is_short; /* it is over in too few steps to be followed */
     int32_t reserved;
     double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
-    double reach;       /* 1; of an angle 0: the body's own velocity does not count */
+    double reach;       /* 1; of turning 0: the body's own velocity does not count */
     double v[3], change[3];           /* velocity of the point: now, of the search */
     double normal[3], xi[3];          /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
@@ -48,6 +51,7 @@ typedef struct se3di_convex_contact {
     double ahead[3]; /* of that what it does not have at the start, but half a step on, */
     double shift[3]; /* and what the point will have moved to half a step on */
     double friction;
+    double share[2];        /* of rolling: of the cap, across n and along it */
     double rise, steepness; /* p_n = rise - steepness v_n, if it is linear */
     double response[2];     /* of the velocity to an impulse: along the normal; at most across it */
     double answer[9]; /* of a law that is linear to what is missing of its impulse, if it sticks */
@@ -97,7 +101,8 @@ typedef struct se3di_convex {
     se3di_convex_contact *contacts;
     size_t contact_count, contact_capacity;
     size_t shape_count; /* of these: the first ones are of shapes, */
-    size_t stop_end;    /* from there to here they are stops, then friction */
+    size_t roll_end;    /* from there to here they are rolling, */
+    size_t stop_end;    /* to here stops, then friction */
     int32_t *pairs;     /* couplings: free bodies i < j, increasing */
     size_t pair_count, pair_capacity;
     se3di_convex_rows rows;
@@ -236,13 +241,31 @@ static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3d
     return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
 }
 
-/* convex_stops.c: whether a stop may act in a step from the state under way; */
-int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
-/* stops become contacts behind those of shapes; room for `more`. @return OK, NO_MEMORY */
-se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
-                                       se3di_error *error);
+/* convex_roll.c: rolling and torsion of the contacts of shapes, behind these; @return OK, NO_MEMORY
+ */
+se3d_status se3di_convex_collect_rolling(se3di_convex *c, const se3di_assembly *assembly,
+                                         se3di_error *error);
+/* room for `more` contacts; */
 se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,
                                  se3di_error *error);
+/* of a contact of shapes: torque += the moment on j in the step; what is remembered; the energy
+ * that its springs hold [J]. */
+void se3di_convex_add_moment(const se3di_convex *c, const se3di_convex_contact *contact,
+                             const se3di_model *model, double torque[3]);
+void se3di_convex_record_rolling(const se3di_convex *c, const se3di_convex_contact *contact,
+                                 se3di_body_contact *r);
+double se3di_convex_roll_energy(const se3di_model *model, const se3di_body_contact *r);
+/* The cap of an impulse across the normal. */
+static inline double se3di_convex_cap(const se3di_convex_contact *contact)
+{
+    return contact->way == SE3DI_CONVEX_ROLL ? contact->share[0] * contact->bound : contact->bound;
+}
+
+/* convex_stops.c: whether a stop may act in a step from the state under way; */
+int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
+/* stops become contacts behind those of shapes. @return OK, NO_MEMORY */
+se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error);
 /* a contact along a coordinate whose gradient is `g`, times `way`; 0 if both bodies are fixed; */
 int se3di_convex_set_row(se3di_convex *c, const se3di_assembly *assembly, const double g[12],
                          double way, se3di_convex_contact *contact);
@@ -341,12 +364,13 @@ void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *as
 void se3di_convex_rows_destroy(se3di_convex_rows *rows, const se3d_allocator *allocator);
 
 /* convex_impact.c: impacts that are followed within the step, */
-#define SE3DI_CONVEX_TRACED_MOST 8
+#define SE3DI_CONVEX_TRACED_MOST 8                              /* points, */
+#define SE3DI_CONVEX_TRACED_ROWS (2 * SE3DI_CONVEX_TRACED_MOST) /* then their rolling */
 typedef struct se3di_convex_traced {
-    se3di_convex_contact *contacts[SE3DI_CONVEX_TRACED_MOST];
-    int count;
+    se3di_convex_contact *contacts[SE3DI_CONVEX_TRACED_ROWS];
+    int count, points;
     /* what an impulse at the second makes of the velocity of the first */
-    double W[SE3DI_CONVEX_TRACED_MOST][SE3DI_CONVEX_TRACED_MOST][9];
+    double W[SE3DI_CONVEX_TRACED_ROWS][SE3DI_CONVEX_TRACED_ROWS][9];
 } se3di_convex_traced;
 /* those of an island, 1 if they are all that acts there; */
 int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,

@@ -33,13 +33,14 @@ double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, d
     if (c->way != SE3DI_CONVEX_SPRING) {
         const double rest = c->damping * (c->rebound - vn);
         const double pull = c->rise - c->steepness * vn;
-        const int slips = fabs(pull) > c->bound;
+        const double cap = c->way == SE3DI_CONVEX_ROLL ? c->share[1] * c->bound : c->bound;
+        const int slips = fabs(pull) > cap;
         if (c->way == SE3DI_CONVEX_IMPACT) {
             *slope = c->rebound > vn ? c->damping : 0.0;
             return fmax(0.0, rest);
         }
         *slope = c->damping + (slips ? 0.0 : c->steepness);
-        return (slips ? copysign(c->bound, pull) : pull) + rest;
+        return (slips ? copysign(cap, pull) : pull) + rest;
     }
     const double depth = c->overlap - h * vn;
     double force = c->stiffness * depth, rate = c->stiffness;
@@ -66,8 +67,8 @@ void se3di_convex_impulse(const se3di_convex_contact *c, double h, const double 
     for (int k = 0; k < 3; ++k) {
         pull[k] = -h * c->tangential * c->xi[k] - c->drag * (v[k] - vn * n[k]);
     }
-    const double size = se3di_norm(pull);
-    const double give = size > c->bound ? c->bound / size : 1.0;
+    const double size = se3di_norm(pull), cap = se3di_convex_cap(c);
+    const double give = size > cap ? cap / size : 1.0;
     se3di_scale(give, pull, impulse);
     se3di_add_scaled(normal, n, impulse);
     if (!slope) {
@@ -95,8 +96,9 @@ double se3di_convex_along(const se3di_convex_contact *c, double h, const double 
         size2 += pull[k] * pull[k];
         across += dt * dt;
     }
-    const int slips = size2 > c->bound * c->bound;
-    const double give = slips ? c->bound / sqrt(size2) : 1.0;
+    const double cap = se3di_convex_cap(c);
+    const int slips = size2 > cap * cap;
+    const double give = slips ? cap / sqrt(size2) : 1.0;
     *bend = slope * dn * dn + c->drag * give * (across - (slips ? along * along / size2 : 0.0));
     return normal * dn + give * along;
 }
@@ -158,7 +160,8 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
         sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
     const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
     c->way = SE3DI_CONVEX_SPRING;
-    if (!se3di_convex_is_short(k, record->inverse_mass, h)) {
+    c->is_short = se3di_convex_is_short(k, record->inverse_mass, h);
+    if (!c->is_short) {
         c->damping = fmax(0.0, damping - 0.5 * h * now);
         c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));
         return;
@@ -266,7 +269,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
 {
     const se3di_model *model = assembly->model;
     se3di_convex_contact *c = &convex->contacts[convex->contact_count];
-    *c = (se3di_convex_contact){.record = record, .coupling = -1, .reach = 1.0};
+    *c = (se3di_convex_contact){.record = record, .coupling = -1, .partner = -1, .reach = 1.0};
     set_geometry(c, assembly);
     if (c->free[0] < 0 && c->free[1] < 0) {
         return;
@@ -278,7 +281,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
         se3di_convex_velocity(c, convex->chord, c->chord);
     }
     if (record->kind == SE3DI_CONTACT_STEPPED) {
-        se3di_scale(0.5 * convex->h, record->roll, c->shift);
+        se3di_scale(0.5 * convex->h, record->wander, c->shift);
     }
     choose_way(c, se3di_pair_of(model, record->shape_i, record->shape_j), convex->h,
                se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal),
@@ -308,9 +311,6 @@ static se3d_status check_pair(const collecting *c, const se3di_body_contact *rec
 {
     const se3di_model *model = c->assembly->model;
     const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
-    if (pair->rolling > 0.0 || pair->torsion > 0.0) {
-        return refuse(c, record, "rolling or torsional friction");
-    }
     if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
         return refuse(c, record, "cohesion or adhesion");
     }
@@ -418,7 +418,7 @@ static void set_wander(const se3di_convex_contact *c, const se3di_model *model, 
                 surface_wander(shape, frame, arms, r->normal, h, more);
                 se3di_add(rate, more, rate);
             }
-            se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->roll);
+            se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->wander);
         }
     }
 }
@@ -430,6 +430,7 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
     double xi[3] = {0.0, 0.0, 0.0};
     r->kind = c->way == SE3DI_CONVEX_SPRING ? SE3DI_CONTACT_STEPPED : SE3DI_CONTACT_PARTING;
     se3di_add_scaled(1.0 / convex->h, c->impulse, r->force);
+    se3di_convex_add_moment(convex, c, model, r->torque);
     if (c->way == SE3DI_CONVEX_SPRING) {
         stretch_after(c, convex->h, xi);
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
@@ -437,6 +438,7 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
     set_anchors(model, r, xi);
     if (c->way == SE3DI_CONVEX_SPRING) {
         set_wander(c, model, convex->h, r);
+        se3di_convex_record_rolling(convex, c, r);
     }
 }
 
@@ -485,6 +487,7 @@ static void record_contact(const se3di_convex *convex, const se3di_convex_contac
     }
     if (nearest) {
         se3di_add_scaled(1.0 / convex->h, c->impulse, nearest->force);
+        se3di_convex_add_moment(convex, c, model, nearest->torque);
     }
 }
 
@@ -505,6 +508,8 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
         memset(r->force, 0, sizeof r->force);
         memset(r->torque, 0, sizeof r->torque);
         memset(r->roll, 0, sizeof r->roll);
+        memset(r->wander, 0, sizeof r->wander);
+        r->twist = 0.0;
         set_anchors(model, r, none);
     }
     for (size_t k = 0; k < convex->shape_count; ++k) {

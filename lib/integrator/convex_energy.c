@@ -26,6 +26,12 @@ double se3di_convex_taken_by(const se3di_convex_contact *c)
            se3di_dot(c->impulse, c->ahead);
 }
 
+/* The same of what rolls there. */
+static double taken_by_rolling(const se3di_convex *convex, const se3di_convex_contact *c)
+{
+    return c->partner >= 0 ? se3di_convex_taken_by(&convex->contacts[c->partner]) : 0.0;
+}
+
 /* What of it springs may hold: an impact lifts its bodies, too. */
 static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
 {
@@ -61,7 +67,7 @@ static double taken_from(const se3di_convex *c, const se3di_assembly *assembly, 
 double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assembly)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < convex->shape_count; ++k) {
+    for (size_t k = 0; k < convex->roll_end; ++k) {
         sum += se3di_convex_taken_by(&convex->contacts[k]);
     }
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
@@ -73,7 +79,7 @@ double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assem
 double se3di_convex_fed(const se3di_convex *convex)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < convex->shape_count; ++k) {
+    for (size_t k = 0; k < convex->roll_end; ++k) {
         const se3di_convex_contact *c = &convex->contacts[k];
         sum -= se3di_dot(c->impulse, c->drift) - se3di_dot(c->impulse, c->ahead);
     }
@@ -94,7 +100,8 @@ static double law_energy(const se3di_model *model, const se3di_body_contact *r)
     se3di_sub(at[1], at[0], xi);
     se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
     const double force = c.stiffness * r->overlap * (c.power > 1.0 ? sqrt(r->overlap) : 1.0);
-    return force * r->overlap / (1.0 + c.power) + 0.5 * c.tangential * se3di_dot(xi, xi);
+    return force * r->overlap / (1.0 + c.power) + 0.5 * c.tangential * se3di_dot(xi, xi) +
+           se3di_convex_roll_energy(model, r);
 }
 
 void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)
@@ -119,7 +126,7 @@ static double gather(const se3di_convex *convex, const se3di_body_contact *r, si
            !se3di_convex_is_before(r, convex->contacts[*first].record);
          ++*first) {
         const se3di_convex_contact *c = &convex->contacts[*first];
-        sum += c->held + left_by(convex, c);
+        sum += c->held + left_by(convex, c) + taken_by_rolling(convex, c);
     }
     return sum;
 }

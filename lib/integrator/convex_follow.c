@@ -109,7 +109,7 @@ static void follow(const se3di_model *model, const se3di_body_contact *r, const 
     se3di_mul(A, mark + 3, before);
     se3di_sub(stretch, before, stretch);
     out->overlap -= se3di_dot(stretch, out->normal);
-    out->twist += se3di_norm(stretch) + reach * turn_since(model, r, out->turn);
+    out->moved += se3di_norm(stretch) + reach * turn_since(model, r, out->turn);
 }
 
 static int is_pair(const se3di_body_contact *a, const se3di_body_contact *b)
@@ -132,7 +132,7 @@ static size_t follow_pair(se3di_convex *c, const se3di_model *model, size_t firs
             se3di_body_contact *out = &c->followed[c->followed_count++];
             follow(model, &list[k], c->marks + PARTS * k, out);
             least = fmin(least, out->overlap);
-            most = fmax(most, out->twist);
+            most = fmax(most, out->moved);
         }
     }
     if (!holds || !(most < HELD * least)) {

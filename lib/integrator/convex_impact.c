@@ -30,14 +30,16 @@ typedef struct point {
     double root_mass; /* sqrt(m*) of now */
     double delta, xi[3], v[3];
     double impulse[3];
+    double normal;         /* force of now, along the normal */
+    struct point *presser; /* of rolling: whose force caps it; NULL: it is no rolling */
 } point;
 
 typedef struct tracing {
     const se3di_convex_traced *traced;
-    point points[SE3DI_CONVEX_TRACED_MOST];
+    point points[SE3DI_CONVEX_TRACED_ROWS];
     /* what an impulse along the second normal makes of the velocity along the first one, of bodies
      * by themselves; 0 for points of other shapes */
-    double alone[SE3DI_CONVEX_TRACED_MOST][SE3DI_CONVEX_TRACED_MOST];
+    double alone[SE3DI_CONVEX_TRACED_ROWS][SE3DI_CONVEX_TRACED_ROWS];
     int count, hertz;
 } tracing;
 
@@ -52,33 +54,65 @@ static const double *block_of(const tracing *t, int i, int j)
 static double step_of(const tracing *t)
 {
     double rate2 = 0.0, speed = 0.0;
-    for (int k = 0; k < t->count; ++k) {
+    for (int k = 0; k < t->traced->points; ++k) {
         speed = fmax(speed, se3di_norm(t->points[k].v));
     }
     for (int k = 0; k < t->count; ++k) {
         const point *p = &t->points[k];
+        const ptrdiff_t at = p->presser ? p->presser - t->points : k;
         const double *W = block_of(t, k, k);
         const double kn = p->pair->kn;
         const double s = t->hertz
                              ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
-                                                                         t->alone[k][k], speed))
+                                                                         t->alone[at][at], speed))
                              : 1.0;
-        const double stiffest = fmax(kn * (t->hertz ? 1.5 : 1.0), p->pair->kt) * s;
+        const double stiffest =
+            (p->presser ? p->pair->kr : fmax(kn * (t->hertz ? 1.5 : 1.0), p->pair->kt)) * s;
         rate2 += stiffest * (W[0] + W[4] + W[8]);
     }
     return PHASE / sqrt(rate2);
 }
 
-/* The law: the force on j, and what friction leaves of a stretch xi. Returns whether they press. */
-static int press_by_law(const point *p, int hertz, double xi[3], double force[3])
+/* The law of rolling and torsion, whose stretch is along the normal. */
+static void roll_by_law(const point *p, int hertz, double xi[3], double force[3])
 {
+    const double *n = p->contact->normal, normal = p->presser->normal;
+    const double s = hertz ? sqrt(p->radius * fmax(0.0, p->presser->delta)) : 1.0;
+    const double k = p->pair->kr * s, damping = p->pair->dr * p->presser->root_mass * sqrt(s);
+    double stretch[2][3];
+    se3di_scale(se3di_dot(xi, n), n, stretch[0]);
+    se3di_sub(xi, stretch[0], stretch[1]);
+    memset(force, 0, 3 * sizeof *force);
+    memset(xi, 0, 3 * sizeof *xi);
+    for (int part = 0; part < 2 && normal > 0.0; ++part) {
+        const double cap = (part ? p->pair->rolling : p->pair->torsion) * normal;
+        const double along = se3di_dot(p->v, n);
+        double pull[3], settled[3];
+        se3di_scale(-k, stretch[part], pull);
+        se3di_add_scaled(part ? -damping : 0.0, p->v, pull);
+        se3di_add_scaled(part ? damping * along : -damping * along, n, pull);
+        const double size = se3di_norm(pull), factor = size > cap ? cap / size : 1.0;
+        se3di_encounter_settle(k, cap, factor, pull, stretch[part], settled);
+        se3di_add(xi, settled, xi);
+        se3di_add_scaled(factor, pull, force);
+    }
+}
+
+/* The law: the force on j, and what friction leaves of a stretch xi. Returns whether they press. */
+static int press_by_law(point *p, int hertz, double xi[3], double force[3])
+{
+    if (p->presser) {
+        roll_by_law(p, hertz, xi, force);
+        return 0;
+    }
     const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
     const double s = hertz ? sqrt(p->radius * fmax(0.0, p->delta)) : 1.0;
     const double root = p->root_mass * sqrt(s), kt = p->pair->kt * s;
     const double normal = p->pair->kn * s * p->delta - p->pair->dn * root * vn;
     double pull[3];
     memset(force, 0, 3 * sizeof *force);
-    if (!(p->delta > 0.0 && normal > 0.0)) {
+    p->normal = p->delta > 0.0 ? fmax(0.0, normal) : 0.0;
+    if (!(p->normal > 0.0)) {
         memset(xi, 0, 3 * sizeof *xi);
         return 0;
     }
@@ -101,17 +135,17 @@ static void approach(tracing *t, double time)
         const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
         p->delta -= time * vn;
         se3di_add_scaled(time, p->v, p->xi);
-        se3di_add_scaled(-time * vn, n, p->xi);
+        se3di_add_scaled(p->presser ? 0.0 : -time * vn, n, p->xi);
     }
 }
 
 /* Points of the same shapes share the load; joints do not count in the law. */
 static void share(tracing *t)
 {
-    for (int i = 0; i < t->count; ++i) {
+    for (int i = 0; i < t->traced->points; ++i) {
         point *p = &t->points[i];
         double sum = t->alone[i][i];
-        for (int j = 0; j < t->count && p->delta > 0.0; ++j) {
+        for (int j = 0; j < t->traced->points && p->delta > 0.0; ++j) {
             const double other = fmax(0.0, t->points[j].delta);
             sum +=
                 i == j ? 0.0 : t->alone[i][j] * se3di_encounter_weight(p->delta, other, p->radius);
@@ -153,8 +187,8 @@ static void push(tracing *t, double scale, double impulse[][3])
  * whether any press there. */
 static int advance(tracing *t, double h)
 {
-    double impulse[SE3DI_CONVEX_TRACED_MOST][3];
-    double before[SE3DI_CONVEX_TRACED_MOST][3];
+    double impulse[SE3DI_CONVEX_TRACED_ROWS][3];
+    double before[SE3DI_CONVEX_TRACED_ROWS][3];
     approach(t, 0.5 * h);
     share(t);
     for (int k = 0; k < t->count; ++k) {
@@ -176,7 +210,7 @@ static int advance(tracing *t, double h)
 static double time_to_touch(const tracing *t)
 {
     double time = HUGE_VAL;
-    for (int k = 0; k < t->count; ++k) {
+    for (int k = 0; k < t->traced->points; ++k) {
         const point *p = &t->points[k];
         const double speed = -se3di_dot(p->v, p->contact->normal);
         if (speed > 0.0) {
@@ -220,14 +254,18 @@ int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
                            se3di_convex_traced *traced)
 {
     double speed = 0.0, rest = 0.0;
-    traced->count = 0;
+    traced->count = traced->points = 0;
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         se3di_convex_contact *contact = se3di_convex_at(c, k);
+        if (contact->way == SE3DI_CONVEX_ROLL) { /* of a point before */
+            traced->contacts[traced->count++] = contact;
+            continue;
+        }
         if (contact->way == SE3DI_CONVEX_FRICTION ||
             (!contact->record && !se3di_convex_stop_is_near(contact, c->h))) {
             continue;
         }
-        if (!contact->record || traced->count == SE3DI_CONVEX_TRACED_MOST) {
+        if (!contact->record || traced->points == SE3DI_CONVEX_TRACED_MOST) {
             return 0;
         }
         if (meets(contact)) {
@@ -236,19 +274,33 @@ int se3di_convex_may_trace(se3di_convex *c, const se3di_convex_island *island,
             rest = fmax(rest, speed_of_rest(contact));
         }
         traced->contacts[traced->count++] = contact;
+        ++traced->points;
     }
     return speed > 0.0 && rest <= LIGHT * speed;
 }
 
+/* The point that presses where something rolls; NULL: it is no rolling. */
+static point *presser_of(tracing *t, const se3di_convex *c, const se3di_convex_contact *row)
+{
+    for (int k = 0; k < t->traced->points && row->way == SE3DI_CONVEX_ROLL; ++k) {
+        if (t->traced->contacts[k] == &c->contacts[row->partner]) {
+            return &t->points[k];
+        }
+    }
+    return NULL;
+}
+
 /* The state in which the first of them touched. */
-static void begin(tracing *t, const se3di_model *model)
+static void begin(tracing *t, const se3di_convex *c, const se3di_model *model)
 {
     double since = 0.0;
     for (int k = 0; k < t->count; ++k) {
         const se3di_convex_contact *contact = t->traced->contacts[k];
-        const se3di_body_contact *record = contact->record;
+        point *presser = presser_of(t, c, contact);
+        const se3di_body_contact *record = presser ? presser->contact->record : contact->record;
         t->points[k] =
             (point){.contact = contact,
+                    .presser = presser,
                     .pair = se3di_pair_of(model, record->shape_i, record->shape_j),
                     .radius = se3di_shapes_contact_radius(&model->shapes[record->shape_i],
                                                           &model->shapes[record->shape_j])};
@@ -257,7 +309,7 @@ static void begin(tracing *t, const se3di_model *model)
             since = fmax(since, -record->overlap / se3di_dot(contact->before, contact->normal));
         }
     }
-    for (int k = 0; k < t->count; ++k) {
+    for (int k = 0; k < t->traced->points; ++k) {
         point *p = &t->points[k];
         const double overlap = p->contact->record->overlap;
         if (meets(p->contact)) {
@@ -271,7 +323,7 @@ static void begin(tracing *t, const se3di_model *model)
 /* Whether all points give way along their normals: what is driven there takes any impulse. */
 static int give_way(const tracing *t)
 {
-    for (int k = 0; k < t->count; ++k) {
+    for (int k = 0; k < t->traced->points; ++k) {
         const double *n = t->points[k].contact->normal;
         double turned[3];
         se3di_mul(block_of(t, k, k), n, turned);
@@ -300,9 +352,9 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
     tracing t = {.traced = traced,
                  .count = traced->count,
                  .hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN};
-    begin(&t, model);
-    for (int k = 0; k < t.count * t.count; ++k) {
-        const int i = k / t.count, j = k % t.count;
+    begin(&t, c, model);
+    for (int k = 0; k < traced->points * traced->points; ++k) {
+        const int i = k / traced->points, j = k % traced->points;
         const se3di_convex_contact *one = traced->contacts[i], *two = traced->contacts[j];
         const int is_pair = one->record->shape_i == two->record->shape_i &&
                             one->record->shape_j == two->record->shape_j;
@@ -313,14 +365,17 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
     }
     for (int k = 0; k < t.count; ++k) {
         const double *impulse = t.points[k].impulse;
+        const point *presser = t.points[k].presser;
         se3di_convex_contact *contact = traced->contacts[k];
-        contact->way = SE3DI_CONVEX_TRACED;
+        contact->way = presser ? SE3DI_CONVEX_ROLL : SE3DI_CONVEX_TRACED;
         contact->rise = se3di_dot(impulse, contact->normal);
-        contact->drag = 0.0;
+        contact->drag = contact->steepness = 0.0;
         contact->tangential = 1.0 / c->h;
         se3di_scale(-1.0, impulse, contact->xi);
         se3di_add_scaled(contact->rise, contact->normal, contact->xi);
-        contact->bound = contact->friction * contact->rise;
+        contact->bound =
+            contact->friction *
+            (presser ? se3di_dot(presser->impulse, presser->contact->normal) : contact->rise);
     }
     return 1;
 }

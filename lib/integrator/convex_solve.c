@@ -244,9 +244,11 @@ static double look_at_caps(se3di_convex *c, const se3di_convex_island *island, i
             *is_near &= se3di_convex_look(c, contact, island->momentum);
             continue;
         }
-        const double vn = se3di_dot(contact->v, contact->normal), before = contact->gap;
+        const int rolls = contact->way == SE3DI_CONVEX_ROLL;
+        const se3di_convex_contact *by = rolls ? &c->contacts[contact->partner] : contact;
+        const double vn = se3di_dot(by->v, by->normal), before = contact->gap;
         contact->wanted_before = contact->wanted;
-        contact->wanted = contact->friction * se3di_convex_normal(contact, c->h, vn, &slope);
+        contact->wanted = contact->friction * se3di_convex_normal(by, c->h, vn, &slope);
         contact->gap = contact->wanted - contact->bound;
         largest = fmax(largest, contact->wanted);
         gap = se3di_larger(gap, fabs(contact->gap));

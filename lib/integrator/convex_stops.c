@@ -180,17 +180,6 @@ static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coord
     ++c->contact_count;
 }
 
-se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,
-                                 se3di_error *error)
-{
-    const se3d_status status =
-        se3di_array_reserve_at(&assembly->model->allocator, &c->contacts, &c->contact_capacity,
-                               c->contact_count + more, sizeof *c->contacts);
-    return status < 0 ? se3di_error_set(error, status, "t = %g s: no memory for stops and friction",
-                                        assembly->model->time)
-                      : status;
-}
-
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error)
 {
@@ -227,7 +216,7 @@ double se3di_convex_apart_power(const se3di_model *model)
 double se3di_convex_stopped(const se3di_convex *c, const se3di_model *model)
 {
     double sum = 0.0;
-    for (size_t k = c->shape_count; k < c->stop_end; ++k) {
+    for (size_t k = c->roll_end; k < c->stop_end; ++k) {
         const se3di_convex_contact *stop = &c->contacts[k];
         const se3di_force *force = stop->element;
         double x;

@@ -22,7 +22,8 @@
 /* Whether its normal impulse is a linear function of the velocity, while there is any. */
 static int is_linear(const se3di_convex_contact *contact)
 {
-    return contact->way == SE3DI_CONVEX_IMPACT || !(contact->power > 1.0);
+    return contact->way == SE3DI_CONVEX_IMPACT ||
+           (contact->way != SE3DI_CONVEX_ROLL && !(contact->power > 1.0));
 }
 
 /* (I + D W)^-1, D the slope of a law that sticks, W what an impulse does to the velocity. */
@@ -124,6 +125,15 @@ static double find_normal(const se3di_convex_contact *contact, double h, double 
     return p;
 }
 
+/* The same of torsion, which may be along the normal or against it. */
+static double find_torsion(const se3di_convex_contact *contact, double vn, double response)
+{
+    const double p =
+        (contact->rise - contact->steepness * vn) / (1.0 + response * contact->steepness);
+    const double cap = contact->share[1] * contact->bound;
+    return fmax(-cap, fmin(p, cap));
+}
+
 /* The same as find_impulse() where its law is linear and it sticks. Returns 0 if it does not. */
 static int find_held(const se3di_convex *c, const se3di_convex_contact *contact, const double v[3],
                      double p[3])
@@ -153,22 +163,36 @@ static void find_impulse(const se3di_convex *c, const se3di_convex_contact *cont
     const double *n = contact->normal;
     const double *response = contact->response;
     const double vn = se3di_dot(v, n), before = se3di_dot(contact->impulse, n);
-    const double normal = find_normal(contact, c->h, vn - response[0] * before, response[0]);
+    const int rolls = contact->way == SE3DI_CONVEX_ROLL;
+    const double alone = vn - response[0] * before;
+    const double normal = rolls ? find_torsion(contact, alone, response[0])
+                                : find_normal(contact, c->h, alone, response[0]);
     const double share = 1.0 / (1.0 + contact->drag * response[1]);
     for (int k = 0; k < 3; ++k) {
         const double across = contact->impulse[k] - before * n[k];
         const double vt = v[k] - vn * n[k] - response[1] * across;
         p[k] = -share * (c->h * contact->tangential * contact->xi[k] + contact->drag * vt);
     }
-    const double size = se3di_norm(p), cap = contact->friction * normal;
+    const double size = se3di_norm(p);
+    const double cap = rolls ? se3di_convex_cap(contact) : contact->friction * normal;
     se3di_scale(size > cap ? cap / size : 1.0, p, p);
     se3di_add_scaled(normal, n, p);
+}
+
+/* What presses where it rolls. */
+static double load_of(const se3di_convex *c, const se3di_convex_contact *contact)
+{
+    const se3di_convex_contact *presser = &c->contacts[contact->partner];
+    return fmax(0.0, se3di_dot(presser->impulse, presser->normal));
 }
 
 /* Give it that impulse. Returns how much it changed. */
 static double settle(se3di_convex *c, se3di_convex_contact *contact)
 {
     double v[3], p[3], change[3];
+    if (contact->way == SE3DI_CONVEX_ROLL) {
+        contact->bound = contact->friction * load_of(c, contact);
+    }
     se3di_convex_slip(contact, c->v, v);
     if (!find_held(c, contact, v, p)) {
         find_impulse(c, contact, v, p);
@@ -190,7 +214,9 @@ double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact
         ahead[k] =
             contact->v[k] + response[1] * change[k] + (response[0] - response[1]) * along * n[k];
     }
-    contact->bound = contact->friction * se3di_dot(p, n);
+    if (contact->way != SE3DI_CONVEX_ROLL) { /* whose cap is that of the last sweep */
+        contact->bound = contact->friction * se3di_dot(p, n);
+    }
     return se3di_norm(change);
 }
 

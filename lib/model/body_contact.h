@@ -21,25 +21,18 @@ typedef struct se3di_body_contact {
     uint32_t feature;
     int32_t kind;                    /* SE3DI_CONTACT_ */
     double anchor_i[3], anchor_j[3]; /* body frames; j's minus i's is the stretch of the spring */
-    double roll[3], twist; /* R* times the angle of rolling (ground frame), of torsion; of stepped
-                              contacts: how their velocity changes as the point wanders [m/s^2],
-                              how far the bodies have moved since the shapes were looked at [m] */
-    double turn[4];        /* orientation of body j in body i */
-    double point[3], normal[3]; /* ground frame, the normal from i to j */
+    double roll[3], twist;           /* R* times the angle of rolling (ground frame), of torsion */
+    double turn[4];                  /* orientation of body j in body i */
+    double point[3], normal[3];      /* ground frame, the normal from i to j */
     double overlap;
     double inverse_mass;        /* 1/m* along the normal, of the points that share the load */
     double force[3], torque[3]; /* on j: at the point, of rolling and torsion; ground frame */
     double energy;              /* of its springs [J], if it is not lawful */
     double spin[2];             /* of the surfaces about the normal [rad/s] */
+    /* Of stepped contacts: how their velocity changes as the point wanders [m/s^2], how far the
+     * bodies have moved since the shapes were looked at [m]. */
+    double wander[3], moved;
 } se3di_body_contact;
-
-/* The stretch that resists rolling. */
-static inline void se3di_contact_get_roll(const se3di_body_contact *contact, double roll[3])
-{
-    for (int k = 0; k < 3; ++k) {
-        roll[k] = contact->kind == SE3DI_CONTACT_STEPPED ? 0.0 : contact->roll[k];
-    }
-}
 
 typedef struct se3di_body_contacts {
     se3di_body_contact *list; /* of the last accepted state, by shapes and as found */

@@ -17,7 +17,7 @@
 
 #define MASS_MOST 1e100 /* of the two of a contact: the inverse is divided by */
 #define MARK      UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION   UINT64_C(10)
+#define VERSION   UINT64_C(11)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 
@@ -94,6 +94,8 @@ static void code_contact(se3di_coder *c, se3di_body_contact *contact)
     se3di_code_numbers(c, contact->torque, 3);
     se3di_code_numbers(c, &contact->energy, 1);
     se3di_code_numbers(c, contact->spin, 2);
+    se3di_code_numbers(c, contact->wander, 3);
+    se3di_code_numbers(c, &contact->moved, 1);
 }
 
 /* Only of a joint that is broken the bodies have been apart since. */
@@ -250,7 +252,7 @@ static int are_contacts(const se3di_saved *state, const se3di_model *model)
                            sum_of(c->turn, 4) + sum_of(c->point, 3) + sum_of(c->normal, 3) +
                            sum_of(c->force, 3) + sum_of(c->torque, 3) + sum_of(c->spin, 2) +
                            fabs(c->twist) + fabs(c->overlap) + fabs(c->inverse_mass) +
-                           fabs(c->energy);
+                           fabs(c->energy) + sum_of(c->wander, 3) + fabs(c->moved);
         if (!isfinite(sum) || !(c->inverse_mass > 1.0 / MASS_MOST) ||
             list[k].shape_i >= list[k].shape_j || list[k].shape_j >= model->shape_slots.count ||
             list[k].kind < SE3DI_CONTACT_LAWFUL || list[k].kind > SE3DI_CONTACT_PARTING) {

@@ -195,9 +195,12 @@ static void add_stepped_wrench(const se3di_model *model, const se3di_body_contac
     for (int k = 0; k < 2; ++k) {
         const uint32_t body = model->shapes[k ? c->shape_j : c->shape_i].body;
         const se3di_frame *frame = &model->frames[body];
-        double arm[3];
+        const double sign = k ? 1.0 : -1.0;
+        double arm[3], turned[3];
         se3di_sub(c->point, frame->r, arm);
-        se3di_contact_push(frame, arm, k ? 1.0 : -1.0, c->force, wrench + 6 * (size_t)body);
+        se3di_contact_push(frame, arm, sign, c->force, wrench + 6 * (size_t)body);
+        se3di_mul_transposed(frame->A, c->torque, turned);
+        se3di_add_scaled(sign, turned, wrench + 6 * (size_t)body + 3);
     }
 }
 

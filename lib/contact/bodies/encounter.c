@@ -213,7 +213,7 @@ static void eval_memory(se3di_encounter *e)
     se3di_add_scaled(0.5, x[1], x[0]);
     se3di_encounter_wander(e, x[0]);
     if (e->pair.rolling > 0.0 || e->pair.torsion > 0.0) {
-        se3di_contact_get_roll(e->memory, e->rho);
+        se3di_copy(e->memory->roll, e->rho);
         se3di_add_scaled(e->radius, e->turn, e->rho);
         project(n, e->rho);
         e->twist = e->memory->twist + e->radius * se3di_dot(e->turn, n);

@@ -242,7 +242,7 @@ static void move_memory(const se3di_encounter *e, const se3di_encounter_change *
     se3di_encounter_wander_rate(e, marks, d->delta, d->n, dmarks, turn, d->xi);
     d->twist = e->radius * (se3di_dot(turn, n) + se3di_dot(e->turn, d->n));
     se3di_scale(e->radius, turn, turn);
-    se3di_contact_get_roll(e->memory, raw);
+    se3di_copy(e->memory->roll, raw);
     se3di_add_scaled(e->radius, e->turn, raw);
     project_rate(n, d->n, raw, turn, d->rho);
 }
