@@ -163,15 +163,17 @@ static size_t fail_each(const scene *s)
     return count;
 }
 
-#define BALL                                                                                       \
+#define BALL_OF(more)                                                                              \
     "se3d: 1\n"                                                                                    \
-    "materials: [{name: m, density: 1000, stiffness: 1e5, friction: 0.3}]\n"                       \
+    "materials: [{name: m, density: 1000, stiffness: 1e5, friction: 0.3" more "}]\n"               \
     "contact: {}\n"                                                                                \
     "analysis: {type: dynamics, duration: 1}\n"                                                    \
     "bodies:\n"                                                                                    \
     "  - {name: floor, fixed: true, position: [0, 9, 0], shapes: [{type: plane, material: m}]}\n"  \
     "  - {name: ball, position: [0, 9, 0.1005], velocity: [1, 0, -0.1], shapes: [{type: sphere, "  \
     "radius: 0.1, material: m}]}\n"
+
+#define BALL BALL_OF("")
 
 /* The ball lands, the block comes to rest, the arm meets a stop. */
 #define PARTS                                                                                      \
@@ -198,10 +200,14 @@ static size_t fail_each(const scene *s)
         "  - {name: load, type: effort, joint: pin, value: sin(30*t)}\n"
 #define MACHINE PARTS "states: [{name: lag, type: lag, input: pin.angle, time_constant: 0.1}]\n"
 
-/* On a string, which is a contact of convex. */
+/* Rotors are a part of its mass. */
+#define GEARED PARTS "  - {name: rotor, type: armature, joint: pin, inertia: 0.05}\n"
+
+/* On a string, which is a contact of convex, as rolling is. */
 #define TETHERED                                                                                   \
-    BALL "forces: [{name: string, type: stop, body_i: floor, body_j: ball, upper: 0.1003, k: "     \
-         "1e3}]"
+    BALL_OF(", rolling_friction: 0.01")                                                            \
+    "forces: [{name: string, type: stop, body_i: floor, body_j: ball, upper: 0.1003, k: "          \
+    "1e3}]"
 
 static const scene scenes[] = {
     {NULL, MACHINE, SE3D_METHOD_AUTO, 0.0, 0.02},
@@ -212,6 +218,7 @@ static const scene scenes[] = {
     {NULL, MACHINE, SE3D_METHOD_RATTLE, 1e-4, 0.012},
     {NULL, TETHERED, SE3D_METHOD_CONVEX, 1e-3, 0.01},
     {NULL, PARTS, SE3D_METHOD_CONVEX, 1e-3, 0.012},
+    {NULL, GEARED, SE3D_METHOD_CONVEX, 1e-3, 0.012},
 };
 
 static void fail_all(se3d_status how)
