@@ -8,22 +8,6 @@
 #define BOUNCY 0.8 /* restitution above which impacts by convex may give energy */
 #define ANGLE  0.5 /* of spins and oscillations in a step [rad] */
 
-static int is_known(const se3di_pair *pair)
-{
-    return !(pair->cohesion > 0.0) && !(pair->pull_off > 0.0);
-}
-
-static int are_known(const se3di_model *model)
-{
-    const size_t materials = model->material_slots.count;
-    for (size_t k = 0; k < materials * materials; ++k) {
-        if (!is_known(&model->pairs[k])) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
 static int has_element(const se3di_model *model, int32_t type)
 {
     for (size_t k = 0; k < model->force_slots.count; ++k) {
@@ -39,8 +23,7 @@ int se3di_crowd_may_touch(const se3di_model *model)
     return model->shape_slots.count > 0 && !se3di_model_gravity_varies(model) && !model->sets &&
            model->state_count == 0 && model->contact.law != SE3DI_LAW_CALLBACK &&
            se3di_find_driver_rate(model) == SE3DI_NO_INDEX &&
-           !has_element(model, SE3DI_FORCE_TYRE) && /* tyres touch by themselves */
-           are_known(model);
+           !has_element(model, SE3DI_FORCE_TYRE); /* they touch by themselves */
 }
 
 int se3di_crowd_suits(const se3di_model *model)

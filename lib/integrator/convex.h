@@ -17,6 +17,7 @@
 
 #include "integrator/integrator.h"
 #include "linsol/block_cg.h"
+#include "math/elementary.h"
 #include "math/vec3.h"
 
 /* How a contact acts in a step. */
@@ -43,6 +44,7 @@ typedef struct se3di_convex_contact {
     double v[3], change[3];           /* velocity of the point: now, of the search */
     double normal[3], xi[3];          /* from i to j; stretch of the spring that sticks */
     double overlap, stiffness, power; /* F = stiffness overlap^power */
+    double attraction;                /* impulse against the normal that caps do not see */
     double damping, rebound;
     double tangential, drag, bound; /* k_t; -dy/dv_t; the cap in use */
     double impulse[3];              /* on j */
@@ -231,8 +233,13 @@ double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact
                                const se3di_convex_contact *j);
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
+/* No impact of one step: it rests. */
+void se3di_convex_stay(const se3di_convex *c, se3di_convex_contact *contact);
 /* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */
-double se3di_convex_hertz_depth(double k, double inverse_mass, double u);
+static inline double se3di_convex_hertz_depth(double k, double inverse_mass, double u)
+{
+    return u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0;
+}
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
 /* Lists of contacts are in the order of their pairs of shapes. */
@@ -260,6 +267,13 @@ static inline double se3di_convex_cap(const se3di_convex_contact *contact)
 {
     return contact->way == SE3DI_CONVEX_ROLL ? contact->share[0] * contact->bound : contact->bound;
 }
+
+/* convex_stick.c: the attraction at an overlap [N]; what it has given to get there [J]; the speed
+ * of what leaves that came at u. */
+double se3di_convex_attraction(const se3di_pair *pair, int hertz, double radius, double delta);
+double se3di_convex_stuck(const se3di_model *model, const se3di_body_contact *r);
+double se3di_convex_leave(const se3di_model *model, const se3di_body_contact *r, double e,
+                          double u);
 
 /* convex_stops.c: whether a stop may act in a step from the state under way; */
 int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);

@@ -10,7 +10,6 @@
 
 #include "contact/bodies/body_contacts.h"
 #include "contact/bodies/law.h"
-#include "math/elementary.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -70,7 +69,7 @@ void se3di_convex_impulse(const se3di_convex_contact *c, double h, const double 
     const double size = se3di_norm(pull), cap = se3di_convex_cap(c);
     const double give = size > cap ? cap / size : 1.0;
     se3di_scale(give, pull, impulse);
-    se3di_add_scaled(normal, n, impulse);
+    se3di_add_scaled(normal - c->attraction, n, impulse);
     if (!slope) {
         return;
     }
@@ -100,7 +99,7 @@ double se3di_convex_along(const se3di_convex_contact *c, double h, const double 
     const int slips = size2 > cap * cap;
     const double give = slips ? cap / sqrt(size2) : 1.0;
     *bend = slope * dn * dn + c->drag * give * (across - (slips ? along * along / size2 : 0.0));
-    return normal * dn + give * along;
+    return (normal - c->attraction) * dn + give * along;
 }
 
 /* The longest time in which a contact may be over, from its stiffness k and the mass it moves. */
@@ -127,29 +126,32 @@ double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact
     return sum;
 }
 
-typedef struct collecting {
-    se3di_convex *convex;
-    const se3di_assembly *assembly;
-    se3di_error *error;
-} collecting;
-
-double se3di_convex_hertz_depth(double k, double inverse_mass, double u)
-{
-    return u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0;
-}
-
 /* The stiffness of a Hertzian spring that meets an approach u, or carries an overlap. */
 static double hertz_stiffness(double k, double overlap, double inverse_mass, double u)
 {
     return 1.5 * k * sqrt(fmax(overlap, se3di_convex_hertz_depth(k, inverse_mass, u)));
 }
 
+/* Of the start of the step, or its middle. */
+static void set_attraction(se3di_convex_contact *c, const se3di_model *model, double h, double u)
+{
+    const se3di_pair *pair = se3di_pair_of(model, c->record->shape_i, c->record->shape_j);
+    if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
+        const se3di_body_contact *r = c->record;
+        const double radius =
+            se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
+        const double delta = c->overlap + (c->is_short ? 0.0 : 0.5 * h * u);
+        c->attraction = h * se3di_convex_attraction(pair, c->power > 1.0, radius, delta);
+    }
+}
+
 /* How it acts, and its dampers, for an approach `u` at the start of the step and what loads alone
  * add to it in the step. */
-static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h, double u,
+static void choose_way(se3di_convex_contact *c, const se3di_model *model, double h, double u,
                        double added)
 {
     const se3di_body_contact *record = c->record;
+    const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
     const double k = c->power > 1.0
                          ? hertz_stiffness(c->stiffness, c->overlap, record->inverse_mass, u)
                          : c->stiffness;
@@ -161,6 +163,7 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
     const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
     c->way = SE3DI_CONVEX_SPRING;
     c->is_short = se3di_convex_is_short(k, record->inverse_mass, h);
+    set_attraction(c, model, h, u);
     if (!c->is_short) {
         c->damping = fmax(0.0, damping - 0.5 * h * now);
         c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));
@@ -169,13 +172,24 @@ static void choose_way(se3di_convex_contact *c, const se3di_pair *pair, double h
     c->damping = fmax(damping, SETTLING * h * k);
     c->drag = h * (h * c->tangential + fmax(drag, SETTLING * h * c->tangential));
     const int parts = record->kind == SE3DI_CONTACT_PARTING && -u > FAST_TIMES * added;
-    if (parts || u > FAST_TIMES * added) {
+    const int meets = u > FAST_TIMES * (added + c->attraction * record->inverse_mass);
+    const double leaves = meets ? se3di_convex_leave(model, record, c->rebound, u) : 0.0;
+    const int sticks = c->attraction > 0.0 && !(leaves > 0.0);
+    if (parts || (meets && !sticks)) {
         c->way = SE3DI_CONVEX_IMPACT;
         c->damping = RIGID / record->inverse_mass;
         c->drag = pair->friction > 0.0 ? RIGID / record->inverse_mass : 0.0;
         c->tangential = 0.0;
-        c->rebound *= parts ? 0.0 : u;
+        c->rebound = leaves;
+        c->attraction = 0.0;
     }
+}
+
+void se3di_convex_stay(const se3di_convex *c, se3di_convex_contact *contact)
+{
+    const double u = -se3di_dot(contact->before, contact->normal);
+    se3di_convex_set_law(contact, c->model);
+    choose_way(contact, c->model, c->h, u, HUGE_VAL);
 }
 
 void se3di_convex_set_law(se3di_convex_contact *c, const se3di_model *model)
@@ -283,7 +297,7 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     if (record->kind == SE3DI_CONTACT_STEPPED) {
         se3di_scale(0.5 * convex->h, record->wander, c->shift);
     }
-    choose_way(c, se3di_pair_of(model, record->shape_i, record->shape_j), convex->h,
+    choose_way(c, model, convex->h,
                se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal),
                loads_change(convex, c));
     if (c->way == SE3DI_CONVEX_IMPACT) {
@@ -298,30 +312,10 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     ++convex->contact_count;
 }
 
-static se3d_status refuse(const collecting *c, const se3di_body_contact *record, const char *what)
-{
-    return se3di_error_set(c->error, SE3D_ERR_UNSUPPORTED,
-                           "the shapes %.60s and %.60s have %s, which method convex does not know; "
-                           "try verlet or auto",
-                           se3di_shape_describe(c->assembly->model, record->shape_i),
-                           se3di_shape_describe(c->assembly->model, record->shape_j), what);
-}
-
-static se3d_status check_pair(const collecting *c, const se3di_body_contact *record)
-{
-    const se3di_model *model = c->assembly->model;
-    const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
-    if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
-        return refuse(c, record, "cohesion or adhesion");
-    }
-    return SE3D_OK;
-}
-
 se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *assembly,
                                  se3di_error *error)
 {
     const se3di_model *model = assembly->model;
-    const collecting c = {convex, assembly, error};
     const size_t count = model->contacts.count;
     void *contacts = convex->contacts;
     const se3d_status status = se3di_array_reserve(
@@ -337,7 +331,6 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
         const se3di_body_contact *record = &model->contacts.list[k];
         if (!convex->frozen[model->shapes[record->shape_i].body] ||
             !convex->frozen[model->shapes[record->shape_j].body]) {
-            SE3DI_TRY(check_pair(&c, record));
             collect_one(convex, assembly, record);
         }
     }

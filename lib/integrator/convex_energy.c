@@ -101,7 +101,7 @@ static double law_energy(const se3di_model *model, const se3di_body_contact *r)
     se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
     const double force = c.stiffness * r->overlap * (c.power > 1.0 ? sqrt(r->overlap) : 1.0);
     return force * r->overlap / (1.0 + c.power) + 0.5 * c.tangential * se3di_dot(xi, xi) +
-           se3di_convex_roll_energy(model, r);
+           se3di_convex_roll_energy(model, r) - se3di_convex_stuck(model, r);
 }
 
 void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)

@@ -30,7 +30,9 @@ typedef struct point {
     double root_mass; /* sqrt(m*) of now */
     double delta, xi[3], v[3];
     double impulse[3];
-    double normal;         /* force of now, along the normal */
+    double normal;         /* force of now that presses, */
+    double attraction;     /* and attracts; */
+    double drawn;          /* the impulse of that */
     struct point *presser; /* of rolling: whose force caps it; NULL: it is no rolling */
 } point;
 
@@ -111,10 +113,12 @@ static int press_by_law(point *p, int hertz, double xi[3], double force[3])
     const double normal = p->pair->kn * s * p->delta - p->pair->dn * root * vn;
     double pull[3];
     memset(force, 0, 3 * sizeof *force);
+    p->attraction = se3di_convex_attraction(p->pair, hertz, p->radius, p->delta);
     p->normal = p->delta > 0.0 ? fmax(0.0, normal) : 0.0;
     if (!(p->normal > 0.0)) {
         memset(xi, 0, 3 * sizeof *xi);
-        return 0;
+        se3di_scale(-p->attraction, n, force);
+        return p->attraction > 0.0;
     }
     for (int k = 0; k < 3; ++k) {
         pull[k] = -kt * xi[k] - p->pair->dt * root * (p->v[k] - vn * n[k]);
@@ -123,7 +127,7 @@ static int press_by_law(point *p, int hertz, double xi[3], double force[3])
     const double factor = size > cap ? cap / size : 1.0;
     se3di_encounter_settle(kt, cap, factor, pull, xi, xi);
     se3di_scale(factor, pull, force);
-    se3di_add_scaled(normal, n, force);
+    se3di_add_scaled(normal - p->attraction, n, force);
     return 1;
 }
 
@@ -165,6 +169,7 @@ static int find_impulses(tracing *t, double time, double impulse[][3], int is_ex
         presses |= press_by_law(p, t->hertz, xi, impulse[k]);
         se3di_scale(time, impulse[k], impulse[k]);
         if (!is_expected) {
+            p->drawn += time * p->attraction;
             se3di_copy(xi, p->xi);
         }
     }
@@ -234,6 +239,16 @@ static int trace(tracing *t)
         }
     }
     return 0;
+}
+
+/* Points that attraction did not let go rest. */
+static void let_stick(const tracing *t, const se3di_convex *c)
+{
+    for (int k = 0; k < t->traced->points; ++k) {
+        if (t->points[k].attraction > 0.0) {
+            se3di_convex_stay(c, t->traced->contacts[k]);
+        }
+    }
 }
 
 /* Whether it begins now; what parts from an impact before may only touch again. */
@@ -360,7 +375,14 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
                             one->record->shape_j == two->record->shape_j;
         t.alone[i][j] = is_pair ? se3di_convex_move_alone(c, one, two) : 0.0;
     }
-    if (!give_way(&t) || !trace(&t) || !is_sound(&t)) {
+    if (!give_way(&t)) {
+        return 0;
+    }
+    if (!trace(&t)) {
+        let_stick(&t, c);
+        return 0;
+    }
+    if (!is_sound(&t)) {
         return 0;
     }
     for (int k = 0; k < t.count; ++k) {
@@ -368,14 +390,17 @@ int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const
         const point *presser = t.points[k].presser;
         se3di_convex_contact *contact = traced->contacts[k];
         contact->way = presser ? SE3DI_CONVEX_ROLL : SE3DI_CONVEX_TRACED;
-        contact->rise = se3di_dot(impulse, contact->normal);
+        const double along = se3di_dot(impulse, contact->normal);
+        contact->attraction = t.points[k].drawn;
+        contact->rise = along + contact->attraction;
         contact->drag = contact->steepness = 0.0;
         contact->tangential = 1.0 / c->h;
         se3di_scale(-1.0, impulse, contact->xi);
-        se3di_add_scaled(contact->rise, contact->normal, contact->xi);
+        se3di_add_scaled(along, contact->normal, contact->xi);
         contact->bound =
             contact->friction *
-            (presser ? se3di_dot(presser->impulse, presser->contact->normal) : contact->rise);
+            (presser ? se3di_dot(presser->impulse, presser->contact->normal) + presser->drawn
+                     : contact->rise);
     }
     return 1;
 }

@@ -144,15 +144,17 @@ static int find_held(const se3di_convex *c, const se3di_convex_contact *contact,
     if (!is_linear(contact)) {
         return 0;
     }
-    const double along = contact->rise + (contact->drag - contact->steepness) * vn;
+    const double along =
+        contact->rise - contact->attraction + (contact->drag - contact->steepness) * vn;
     for (int k = 0; k < 3; ++k) {
         missing[k] = along * n[k] - c->h * contact->tangential * contact->xi[k] -
                      contact->drag * v[k] - contact->impulse[k];
     }
     se3di_mul(contact->answer, missing, p);
     se3di_add(p, contact->impulse, p);
-    const double normal = se3di_dot(p, n), cap = contact->friction * normal;
-    return normal >= 0.0 && se3di_dot(p, p) - normal * normal <= cap * cap;
+    const double normal = se3di_dot(p, n), pressed = normal + contact->attraction;
+    const double cap = contact->friction * pressed;
+    return pressed >= 0.0 && se3di_dot(p, p) - normal * normal <= cap * cap;
 }
 
 /* The impulse p that its law asks for where `impulse` left the velocity v, while all others stay,
@@ -164,7 +166,7 @@ static void find_impulse(const se3di_convex *c, const se3di_convex_contact *cont
     const double *response = contact->response;
     const double vn = se3di_dot(v, n), before = se3di_dot(contact->impulse, n);
     const int rolls = contact->way == SE3DI_CONVEX_ROLL;
-    const double alone = vn - response[0] * before;
+    const double alone = vn - response[0] * (before + contact->attraction);
     const double normal = rolls ? find_torsion(contact, alone, response[0])
                                 : find_normal(contact, c->h, alone, response[0]);
     const double share = 1.0 / (1.0 + contact->drag * response[1]);
@@ -176,14 +178,14 @@ static void find_impulse(const se3di_convex *c, const se3di_convex_contact *cont
     const double size = se3di_norm(p);
     const double cap = rolls ? se3di_convex_cap(contact) : contact->friction * normal;
     se3di_scale(size > cap ? cap / size : 1.0, p, p);
-    se3di_add_scaled(normal, n, p);
+    se3di_add_scaled(normal - contact->attraction, n, p);
 }
 
 /* What presses where it rolls. */
 static double load_of(const se3di_convex *c, const se3di_convex_contact *contact)
 {
     const se3di_convex_contact *presser = &c->contacts[contact->partner];
-    return fmax(0.0, se3di_dot(presser->impulse, presser->normal));
+    return fmax(0.0, se3di_dot(presser->impulse, presser->normal) + presser->attraction);
 }
 
 /* Give it that impulse. Returns how much it changed. */
@@ -215,7 +217,7 @@ double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact
             contact->v[k] + response[1] * change[k] + (response[0] - response[1]) * along * n[k];
     }
     if (contact->way != SE3DI_CONVEX_ROLL) { /* whose cap is that of the last sweep */
-        contact->bound = contact->friction * se3di_dot(p, n);
+        contact->bound = contact->friction * (se3di_dot(p, n) + contact->attraction);
     }
     return se3di_norm(change);
 }

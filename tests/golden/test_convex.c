@@ -865,21 +865,6 @@ static void thin_cards_that_fall_fast_land(void)
     }
 }
 
-static void what_it_does_not_know_is_refused(void)
-{
-    const double r[3] = {0.0, 0.0, 0.0499};
-    se3d_material_def stuff = scene_stuff(0.5, 0.3, 1e5);
-    stuff.cohesion = 100.0;
-    scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
-    (void)scene_ball(&s, 0.05, 0.5, r, scene_zero);
-    scene_floor(&s, 0.0);
-    scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
-    CHECK(se3d_solver_run(s.solver, 0.1) == SE3D_ERR_UNSUPPORTED);
-    CHECK_CONTAINS(se3d_system_get_error(s.system), "cohesion");
-    CHECK_CONTAINS(se3d_system_get_error(s.system), "floor");
-    scene_end(&s);
-}
-
 /* Logs between walls, three, two and one, not quite parallel: they come to rest. The normal of two
  * of them has no end to alternate between, and what touches does not wander from end to end. */
 static void a_pile_of_logs_comes_to_rest(void)
@@ -957,6 +942,5 @@ int main(void)
     RUN(a_disk_rolls_around_on_its_rim_as_fast_as_euler_says);
     RUN(tops_and_springs_keep_their_energy);
     RUN(thin_cards_that_fall_fast_land);
-    RUN(what_it_does_not_know_is_refused);
     return check_finish();
 }
