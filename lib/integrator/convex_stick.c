@@ -22,6 +22,11 @@ static double radius_of(const se3di_model *model, const se3di_body_contact *r)
     return se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
 }
 
+static int is_sticky(const se3di_pair *pair)
+{
+    return pair->cohesion > 0.0 || pair->pull_off > 0.0;
+}
+
 static double root_of(int hertz, double radius, double delta)
 {
     return hertz ? sqrt(radius * delta) : 1.0;
@@ -29,7 +34,7 @@ static double root_of(int hertz, double radius, double delta)
 
 double se3di_convex_attraction(const se3di_pair *pair, int hertz, double radius, double delta)
 {
-    if (!(delta > 0.0) || !(pair->cohesion > 0.0 || pair->pull_off > 0.0)) {
+    if (!(delta > 0.0) || !is_sticky(pair)) {
         return 0.0;
     }
     const double elastic = pair->kn * root_of(hertz, radius, delta) * delta;
@@ -48,9 +53,9 @@ double se3di_convex_stuck(const se3di_model *model, const se3di_body_contact *r)
 {
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
-    return r->kind == SE3DI_CONTACT_PARTING
-               ? 0.0
-               : integral_of(pair, hertz, radius_of(model, r), r->overlap);
+    return is_sticky(pair) && r->kind != SE3DI_CONTACT_PARTING
+               ? integral_of(pair, hertz, radius_of(model, r), r->overlap)
+               : 0.0;
 }
 
 /* A point that comes at u, of the mass that it moves alone, followed until it is out (leapfrog).
@@ -85,8 +90,7 @@ static double follow(const se3di_pair *pair, int hertz, double radius, double in
 double se3di_convex_leave(const se3di_model *model, const se3di_body_contact *r, double e, double u)
 {
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
-    const int is_sticky = pair->cohesion > 0.0 || pair->pull_off > 0.0;
-    return is_sticky && u > 0.0 ? follow(pair, model->contact.law == SE3DI_LAW_HERTZ_MINDLIN,
-                                         radius_of(model, r), r->inverse_mass, u)
-                                : e * u;
+    return is_sticky(pair) && u > 0.0 ? follow(pair, model->contact.law == SE3DI_LAW_HERTZ_MINDLIN,
+                                               radius_of(model, r), r->inverse_mass, u)
+                                      : e * u;
 }

@@ -199,8 +199,10 @@ static void add_stepped_wrench(const se3di_model *model, const se3di_body_contac
         double arm[3], turned[3];
         se3di_sub(c->point, frame->r, arm);
         se3di_contact_push(frame, arm, sign, c->force, wrench + 6 * (size_t)body);
-        se3di_mul_transposed(frame->A, c->torque, turned);
-        se3di_add_scaled(sign, turned, wrench + 6 * (size_t)body + 3);
+        if (se3di_dot(c->torque, c->torque) > 0.0) { /* few do */
+            se3di_mul_transposed(frame->A, c->torque, turned);
+            se3di_add_scaled(sign, turned, wrench + 6 * (size_t)body + 3);
+        }
     }
 }
 
