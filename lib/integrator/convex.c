@@ -332,7 +332,7 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
         const se3di_convex_contact *contact = &c->contacts[k];
         for (int e = 0; e < 2; ++e) {
             if (contact->free[e] >= 0) {
-                const uint32_t body = assembly->free_body[contact->free[e]];
+                const uint32_t body = assembly->free_body[c->body_at[contact->free[e]]];
                 se3di_contact_push(&model->frames[body], contact->arm[e], (e ? 1.0 : -1.0) / c->h,
                                    contact->impulse, c->push + 6 * (size_t)body);
             }

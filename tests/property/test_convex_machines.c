@@ -352,6 +352,48 @@ static void machines_that_do_not_touch_are_solved_apart(void)
     text_model_close(&m);
 }
 
+/* A double pendulum with friction and a stop, a weight on a spring, a top that flies; a ball that
+ * lies somewhere else. */
+static text_model open_flight(int with_ball)
+{
+    char text[4096];
+    (void)snprintf(
+        text, sizeof text,
+        "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, friction: 0.5}]\n"
+        "contact: {}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, material: m}]}\n"
+        "  - {name: a, position: [0.5, 0, 2], mass: 1, inertia: [0.01, 0.02, 0.03]}\n"
+        "  - {name: b, position: [1.5, 0, 2], mass: 1, inertia: [0.01, 0.02, 0.03]}\n"
+        "  - {name: s, position: [3, 0, 2], mass: 2, inertia: [0.1, 0.2, 0.3]}\n"
+        "  - {name: f, position: [5, 0, 9], mass: 2, inertia: [0.1, 0.2, 0.3], angular_velocity: "
+        "[3, 8, 2]}\n%s"
+        "joints:\n"
+        "  - {name: p, type: revolute, body_i: ground, body_j: a, at: [0, 0, 2], axis: [0, 1, 0]}\n"
+        "  - {name: q, type: revolute, body_i: a, body_j: b, at: [1, 0, 2], axis: [0, 1, 0]}\n"
+        "forces:\n"
+        "  - {name: k, type: tsda, body_i: ground, body_j: s, at: [3, 0, 3], at_2: [3, 0, 2], k: "
+        "100, c: 0.1, l0: 0.7}\n"
+        "  - {name: r, type: friction, joint: p, mu: 0.1, radius: 0.05}\n"
+        "  - {name: t, type: stop, joint: q, lower: -2, upper: 2, k: 1.0e+4, restitution: 0.5}\n"
+        "analysis: {type: dynamics, duration: 2}\noutput: [{file: r.csv, channels: [a.position, "
+        "b.position, s.position, f.position, f.orientation, s.acceleration, k.force]}]\n",
+        with_ball ? "  - {name: c, position: [-5, 0, 0.0999], shapes: [{type: sphere, radius: 0.1, "
+                    "material: m}]}\n"
+                  : "");
+    return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+}
+
+/* Forces of contacts press on the bodies that touch. */
+static void what_touches_pushes_no_other_body(void)
+{
+    text_model m = open_flight(1);
+    for (int step = 1; step <= 100; ++step) {
+        CHECK(text_model_run(&m, STEP * step));
+        CHECK_NEAR(text_model_get(&m, 5, 2), -9.81 + 0.5 * text_model_get(&m, 6, 0), 1e-9);
+    }
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
@@ -363,5 +405,6 @@ int main(void)
     RUN(what_drivers_speed_up_by_themselves_is_counted);
     RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
     RUN(machines_that_do_not_touch_are_solved_apart);
+    RUN(what_touches_pushes_no_other_body);
     return check_finish();
 }
