@@ -276,6 +276,8 @@ double se3di_convex_rubbed(const se3di_convex *c, const se3di_model *model);
 double se3di_convex_taken_by(const se3di_convex_contact *contact);
 double se3di_convex_work(const se3di_convex *c, const se3di_assembly *assembly);
 double se3di_convex_fed(const se3di_convex *c);
+/* Contacts of an island that give energy are slowed down. Returns whether any are; */
+int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island);
 /* The energy that the springs of the contacts hold at the start of the step; */
 void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
 /* those of the contacts that were found at the end of the step, after `taken` [J] was taken

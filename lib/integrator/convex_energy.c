@@ -15,6 +15,11 @@
 
 #include <math.h>
 
+/* of twice the kinetic energy: */
+#define GIVEN_MOST 1e-6 /* what an impact gives and may, */
+#define THROWN     1e-3 /* a spring does */
+#define STIFF      1e3  /* a damper that stops its bodies, over what moves them as one */
+
 /* What the impulse takes from the bodies, and from what moves surfaces on them: half a step before
  * and half a step on they have what they have at the start on the average. Of bodies that
  * constraints hold these are both chords: their parts across the constraints cancel, and the
@@ -24,6 +29,80 @@ double se3di_convex_taken_by(const se3di_convex_contact *c)
     return -0.5 * (se3di_dot(c->impulse, c->before) + se3di_dot(c->impulse, c->chord) +
                    se3di_dot(c->impulse, c->v) - se3di_dot(c->impulse, c->shift)) +
            se3di_dot(c->impulse, c->ahead);
+}
+
+static int is_impact(const se3di_convex_contact *contact)
+{
+    return contact->record && contact->way == SE3DI_CONVEX_IMPACT;
+}
+
+/* What a contact of shapes gives that no spring of it held. */
+static double gift_of(const se3di_convex_contact *contact)
+{
+    const double given = contact->record ? -se3di_convex_taken_by(contact) : 0.0;
+    return is_impact(contact) ? given : fmax(0.0, given - contact->held);
+}
+
+/* A damper for a spring, so that it gives no more than it held: the impulse p and the velocity v
+ * that it so leaves with, if all others stay, are
+ *
+ *     p (before + v)/2 = held,    v = after - W (impulse - p) */
+static int hold_back(const se3di_convex *c, se3di_convex_contact *contact, double before,
+                     double after)
+{
+    const double W = contact->record->inverse_mass, damping = contact->damping;
+    const double normal = se3di_dot(contact->impulse, contact->normal);
+    const double both = before + after - W * normal;
+    const double p = 0.5 * (sqrt(both * both + 8.0 * W * contact->held) - both) / W;
+    const double v = after - W * (normal - p);
+    double slope;
+    if (!(v > 0.0 && p < normal)) {
+        return 0;
+    }
+    contact->damping = 0.0;
+    const double more = (se3di_convex_normal(contact, c->h, v, &slope) - p) / (c->h * v);
+    contact->damping = fmax(damping, fmin(more, STIFF / (c->h * W)));
+    return contact->damping > damping;
+}
+
+/* A contact that gives, as it leaves with more than it may, or all impacts, leaves more slowly.
+ * Returns whether it is to. */
+static int slow_down(const se3di_convex *c, se3di_convex_contact *contact, double momentum,
+                     int is_any)
+{
+    const double *n = contact->normal, before = se3di_dot(contact->before, n);
+    const double after = se3di_dot(contact->v, n), least = fmin(0.0, -before);
+    const double normal = se3di_dot(contact->impulse, n), gift = gift_of(contact);
+    if (is_impact(contact) && contact->rebound > least && normal > 0.0 && (is_any || gift > 0.0)) {
+        const double less = is_any ? 0.5 * contact->rebound : 2.0 * gift / normal;
+        contact->rebound = fmax(least, contact->rebound - less);
+        return 1;
+    }
+    if (!is_any && contact->way == SE3DI_CONVEX_SPRING && gift > THROWN * momentum && after > 0.0 &&
+        before + after > 0.0) {
+        return hold_back(c, contact, before, after);
+    }
+    return 0;
+}
+
+/* Contacts of an island together give no energy. If they did, those that do on the average of their
+ * velocities before and after, since others have turned a slip round or have stopped what was
+ * parting, or since a step has carried them deep, leave more slowly, or come as near as they were
+ * parting; if that is not enough, all impacts. Returns whether any are to. */
+int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island)
+{
+    const double most = GIVEN_MOST * island->momentum;
+    double sum = 0.0;
+    int is_tamed = 0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        sum += gift_of(se3di_convex_at(c, k));
+    }
+    for (int is_any = 0; is_any < 2 && !is_tamed && sum > most; ++is_any) {
+        for (size_t k = island->contact; k < island->contact_end; ++k) {
+            is_tamed |= slow_down(c, se3di_convex_at(c, k), island->momentum, is_any);
+        }
+    }
+    return is_tamed;
 }
 
 /* What of it springs may hold: an impact lifts its bodies, too. */
