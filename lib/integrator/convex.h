@@ -74,6 +74,7 @@ typedef struct se3di_convex_island {
     se3di_kkt *kkt;          /* of an island with constraints */
     int is_factored;         /* its matrix of masses and constraints, without contacts */
     int is_traced;           /* nothing acts but impacts whose impulses are known */
+    double gain;             /* energy that the step itself gave [J] */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
 } se3di_convex_island;
 
@@ -140,6 +141,7 @@ typedef struct se3di_convex {
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
     uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
+    uint8_t *drifts; /* [free bodies]: nothing touches its machine, see convex_islands.c, */
     uint8_t *frozen; /* [bodies]: asleep or fixed */
     int32_t *nest;   /* [free bodies] */
     double *reach;   /* [free bodies]: of its shapes */
@@ -150,14 +152,15 @@ typedef struct se3di_convex {
     se3di_body_contact *followed;
     size_t followed_count, mark_capacity, followed_capacity;
     size_t changed;    /* slopes of contacts since the preconditioner was made */
+    size_t drifting;   /* free bodies */
     int32_t sleeps;    /* it is wanted */
-    int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
+    int32_t is_beside; /* shapes touch in this island */
     double gravity[3]; /* at the start of the step */
     double h;
-    size_t reacts;   /* iterations in this island that lambda is of */
-    int32_t recoils; /* `recoil` is known */
-    int32_t unused;
-    double gripped; /* energy that friction of joints holds at the start of the step [J] */
+    size_t reacts;    /* iterations in this island that lambda is of */
+    int32_t recoils;  /* `recoil` is known */
+    int32_t may_part; /* the step may be taken in halves */
+    double gripped;   /* energy that friction of joints holds at the start of the step [J] */
     const se3di_model *model;
     double driven; /* in the step, by constraints that change in time [J] */
 } se3di_convex;
@@ -232,8 +235,8 @@ static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3d
     return a->shape_i < b->shape_i || (a->shape_i == b->shape_i && a->shape_j < b->shape_j);
 }
 
-/* convex_stops.c: whether a stop may act in a step from the state under way; */
-int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
+/* convex_stops.c: what a stop may act on in a step from the state under way does not drift; */
+void se3di_convex_mark_stops(const se3di_convex *c, const se3di_assembly *assembly);
 /* stops become contacts behind those of shapes; room for `more`. @return OK, NO_MEMORY */
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error);
@@ -278,6 +281,9 @@ double se3di_convex_work(const se3di_convex *c, const se3di_assembly *assembly);
 double se3di_convex_fed(const se3di_convex *c);
 /* Contacts of an island that give energy are slowed down. Returns whether any are; */
 int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island);
+/* Whether the step itself, whose velocities are those of the state and whose mean ones and rates of
+ * constraints are in `change` and `aimed`, gives what constraints join energy by far; */
+int se3di_convex_gains(const se3di_convex *c, const se3di_assembly *assembly);
 /* The energy that the springs of the contacts hold at the start of the step; */
 void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
 /* those of the contacts that were found at the end of the step, after `taken` [J] was taken
@@ -294,7 +300,11 @@ void se3di_convex_gyrate(se3di_convex *c, const se3di_convex_island *island);
 /* what the moment takes from a free body in the step [J]. */
 double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body);
 
-/* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
+/* convex_islands.c: what drifts in the step under way: machines that nothing touches, loads and
+ * constraints of which act in the middle of the step; @return OK, NO_MEMORY */
+se3d_status se3di_convex_find_drifting(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error);
+/* places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
 
 /* convex_rows.c: a body of a constraint that acts in steps; -1: it does not, or on none; */
@@ -336,11 +346,6 @@ void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island);
  * as they are with `impulse` and v; the cap of its friction there. Returns how much the impulse
  * would change. */
 double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3]);
-/* Whether a free body moves by the velocity at the end of a step in which something touches. */
-static inline int se3di_convex_leaps(const se3di_convex *c, size_t body)
-{
-    return c->touched[body] || c->linked[body];
-}
 /* Whether it is solved for: something touches it, or a constraint acts on it. */
 static inline int se3di_convex_takes_part(const se3di_convex *c, size_t body)
 {

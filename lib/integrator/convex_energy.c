@@ -16,7 +16,8 @@
 #include <math.h>
 
 /* of twice the kinetic energy: */
-#define GIVEN_MOST 1e-6 /* what an impact gives and may, */
+#define GAIN_MOST  0.01 /* what a step may give, */
+#define GIVEN_MOST 1e-6 /* an impact gives and may, */
 #define THROWN     1e-3 /* a spring does */
 #define STIFF      1e3  /* a damper that stops its bodies, over what moves them as one */
 
@@ -119,7 +120,7 @@ static double taken_by_leap(const se3di_convex *c, const se3di_assembly *assembl
 {
     const double mass = assembly->model->bodies[assembly->free_body[k]].mass;
     double dv[3];
-    if (c->drifts || !se3di_convex_leaps(c, k)) {
+    if (c->drifts[k]) {
         return 0.0;
     }
     se3di_sub(c->v + 6 * (size_t)k, c->start + 6 * (size_t)k, dv);
@@ -147,6 +148,56 @@ double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assem
         sum += convex->asleep[k] ? 0.0 : taken_from(convex, assembly, k);
     }
     return sum;
+}
+
+/* T_1 - T_0 - (v - v_0)^T M (v_0 + v)/2 of each island. */
+static void add_momenta(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *change = c->carried, *momentum = c->gradient, *pressed = c->moved;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k / 6]];
+        change[k] = (k % 6 < 3 ? frame->v[k % 6] : frame->w[k % 6 - 3]) - c->start[k];
+    }
+    se3di_assembly_mul_mass(assembly, change, momentum);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        momentum[k] *= c->start[k] + 0.5 * change[k];
+        change[k] = c->v[k] - c->start[k];
+    }
+    se3di_assembly_mul_mass(assembly, change, pressed);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        if (se3di_convex_takes_part(c, k / 6)) {
+            c->islands[c->number[k / 6]].gain += momentum[k] - pressed[k] * c->change[k];
+        }
+    }
+}
+
+/* Kinetic energy is to change by what loads and impulses do along the mean velocities:
+ *
+ *     T_1 - T_0 = (v - v_0)^T M (v_0 + v)/2 + lambda C (v_0 + v)/2
+ *
+ * of rows that do not change in time. What turns far in a step is carried off its constraints by
+ * it, and may come back to them faster. */
+int se3di_convex_gains(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    int gains = 0;
+    if (c->joint_count == 0) {
+        return 0;
+    }
+    for (size_t k = 0; k < c->island_count; ++k) {
+        c->islands[k].gain = 0.0;
+    }
+    add_momenta(c, assembly);
+    for (size_t k = 0; k < c->island_count; ++k) {
+        se3di_convex_island *island = &c->islands[k];
+        for (size_t j = island->joint; j < island->joint_end; ++j) {
+            const se3di_constraint *joint = &assembly->model->constraints[c->rows.joint[j]];
+            for (uint32_t r = 0; r < joint->row_count; ++r) {
+                island->gain -= c->lambda[joint->row_begin + r] * c->aimed[joint->row_begin + r];
+            }
+        }
+        gains |= island->gain > GAIN_MOST * island->momentum;
+    }
+    return gains;
 }
 
 double se3di_convex_fed(const se3di_convex *convex)

@@ -144,7 +144,7 @@ int se3di_convex_look(const se3di_convex *c, se3di_convex_contact *row, double m
     row->wanted = fmax(0.0, row->bound + share * gap);
     row->wanted_before = row->bound;
     row->gap = gap;
-    const double enough = c->shape_count > 0 ? CAP_BESIDE : CAP_CHANGE;
+    const double enough = c->is_beside ? CAP_BESIDE : CAP_CHANGE;
     return pull < fmin(cap, row->bound) || !(size > enough * cap) ||
            !(size * size * row->response[0] > CAP_LEAST * CAP_LEAST * momentum);
 }
@@ -158,7 +158,7 @@ static int jams(const se3di_convex *c, const se3di_convex_island *island,
     int slips;
     (void)pull_of(row, &slips);
     return slips && fabs(cap_of(c, row) - row->bound) > JAMS * row->bound &&
-           (c->shape_count == 0 || size > BEYOND * BEYOND * island->momentum);
+           (!c->is_beside || size > BEYOND * BEYOND * island->momentum);
 }
 
 int se3di_convex_jams(const se3di_convex *c, const se3di_convex_island *island)

@@ -65,7 +65,7 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
     const size_t bodies = assembly->body_count;
     void *bytes = c->asleep, *nest = c->nest, *reach = c->reach;
     se3d_status status = se3di_array_reserve(allocator, &bytes, &c->sleep_capacity,
-                                             2 * bodies + assembly->dense_count + 1, 1);
+                                             3 * bodies + assembly->dense_count + 1, 1);
     c->asleep = bytes;
     SE3DI_TRY(status);
     status = se3di_array_reserve(allocator, &nest, &c->nest_capacity, bodies + 1, sizeof *c->nest);
@@ -76,7 +76,8 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
     c->reach = reach;
     SE3DI_TRY(status);
     c->linked = c->asleep + bodies;
-    c->frozen = c->linked + bodies;
+    c->drifts = c->linked + bodies;
+    c->frozen = c->drifts + bodies;
     memset(c->asleep, 0, bodies);
     c->asleep_count = 0;
     link_all(c, assembly);

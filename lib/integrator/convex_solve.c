@@ -545,6 +545,10 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     mul_mass(c, island, c->change, c->moved);
     clear_blocks(c, island);
     c->reacts = 0;
+    c->is_beside = 0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        c->is_beside |= se3di_convex_at(c, k)->record != NULL;
+    }
     c->changed = island->contact_end - island->contact + 1; /* all */
     see(c, island);
     return is_far;
@@ -855,7 +859,7 @@ static void choose_elements(se3di_convex *c, se3di_equations *equations,
         }
         se3di_convex_choose_stop(c, stop, moved);
     }
-    if (c->recoils && se3di_convex_is_bound(island)) {
+    if (c->recoils && se3di_convex_is_bound(island) && !c->drifts[c->body_at[island->body]]) {
         find_recoil(c, equations, island);
     }
 }
@@ -888,7 +892,8 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(prepare(c, equations));
-    c->recoils = !c->drifts && assembly->row_count > 0 && se3di_convex_has_loads(c);
+    c->recoils =
+        c->drifting < assembly->body_count && assembly->row_count > 0 && se3di_convex_has_loads(c);
     if (c->recoils) {
         memset(c->recoil, 0, assembly->row_count * sizeof *c->recoil);
     }

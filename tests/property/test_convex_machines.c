@@ -383,6 +383,25 @@ static text_model open_flight(int with_ball)
     return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
 }
 
+/* To the bit, whatever touches elsewhere. */
+static void what_nothing_touches_moves_as_it_does_alone(void)
+{
+    static const size_t counts[] = {3, 3, 3, 3, 4};
+    text_model alone = open_flight(0), together = open_flight(1);
+    for (int step = 1; step <= 1000; ++step) {
+        CHECK(text_model_run(&alone, STEP * step));
+        CHECK(text_model_run(&together, STEP * step));
+        for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+            for (size_t part = 0; part < counts[k]; ++part) {
+                const double is = text_model_get(&together, k, part);
+                CHECK(is == text_model_get(&alone, k, part)); /* NOLINT */
+            }
+        }
+    }
+    text_model_close(&alone);
+    text_model_close(&together);
+}
+
 /* Forces of contacts press on the bodies that touch. */
 static void what_touches_pushes_no_other_body(void)
 {
@@ -405,6 +424,7 @@ int main(void)
     RUN(what_drivers_speed_up_by_themselves_is_counted);
     RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
     RUN(machines_that_do_not_touch_are_solved_apart);
+    RUN(what_nothing_touches_moves_as_it_does_alone);
     RUN(what_touches_pushes_no_other_body);
     return check_finish();
 }
