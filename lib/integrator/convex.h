@@ -290,6 +290,10 @@ void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
  * from the bodies: no more than they held before and that. */
 void se3di_convex_store(const se3di_convex *c, const se3di_assembly *assembly, double taken);
 
+/* convex_jam.c: what is driven against something that cannot give way goes by its law. Returns
+ * whether anything did not. */
+int se3di_convex_free_jams(const se3di_convex *c, const se3di_convex_island *island);
+
 /* convex_gyration.c: w that a torque [N m] makes of w0 in h, all in the frame of the body; */
 void se3di_convex_turn_freely(const double J[9], const double w0[3], const double torque[3],
                               double h, double w[3]);

@@ -94,7 +94,7 @@ int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island)
 {
     const double most = GIVEN_MOST * island->momentum;
     double sum = 0.0;
-    int is_tamed = 0;
+    int is_tamed = se3di_convex_free_jams(c, island);
     for (size_t k = island->contact; k < island->contact_end; ++k) {
         sum += gift_of(se3di_convex_at(c, k));
     }

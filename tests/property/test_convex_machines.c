@@ -413,12 +413,56 @@ static void what_touches_pushes_no_other_body(void)
     text_model_close(&m);
 }
 
+/* A ball on a rail is driven at 0.1 m/s against a wall, and another one before it, or is too heavy
+ * to be stopped by that. Forces are those of the overlaps. */
+static void what_is_driven_against_what_cannot_give_way_feels_the_law(void)
+{
+    static const char *const movers[2] = {"mass: 0.5, inertia: [1e-3, 1e-3, 1e-3]",
+                                          "mass: 1.0e+7, inertia: [1e5, 1e5, 1e5], "
+                                          "velocity: [0.1, 0, 0]"};
+    static const char *const rails[2] = {
+        "joints: [{name: s, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, "
+        "0, 0]}]\ndrivers: [{name: d, joint: s, value: 0.1*t}]\n",
+        ""};
+    for (int k = 0; k < 3; ++k) {
+        const int jams = k > 0, is_free = k > 1;
+        char text[2048];
+        (void)snprintf(
+            text, sizeof text,
+            "se3d: 1\ngravity: [0, 0, 0]\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, "
+            "friction: 0.3, restitution: 0.3}]\ncontact: {}\nbodies:\n"
+            "  - {name: wall, fixed: true, position: [%g, 0, 0], shapes: [{type: box, size: [0.1, "
+            "0.2, 0.2], material: m}]}\n"
+            "  - {name: a, %s, shapes: [{type: sphere, radius: 0.05, material: m}]}\n%s%s"
+            "analysis: {type: dynamics, duration: 0.2}\n"
+            "output: [{file: r.csv, channels: [a.position, a.contact_force, energy.balance]}]\n",
+            jams ? 0.201 : 0.101, movers[is_free],
+            jams ? "  - {name: b, position: [0.1005, 0, 0], shapes: [{type: sphere, radius: 0.05, "
+                   "material: m}]}\n"
+                 : "",
+            rails[is_free]);
+        text_model m = text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+        for (int step = 1; step <= 80; ++step) {
+            CHECK(text_model_run(&m, STEP * step));
+            const double depth = text_model_get(&m, 0, 0) - 1e-3;
+            const double force = -text_model_get(&m, 1, 0), springs = jams ? 2.0 : 1.0;
+            if (depth > 1e-3) {
+                CHECK_NEAR(force, 1e6 * depth / springs, 120.0); /* of up to 7000, with dampers */
+            } else {
+                CHECK(force >= 0.0 && force < 1200.0);
+            }
+        }
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
     RUN(an_angle_stays_within_its_range);
     RUN(what_swings_onto_a_stop_is_as_heavy_as_its_arm_makes_it);
     RUN(what_is_driven_over_its_stop_feels_the_law);
+    RUN(what_is_driven_against_what_cannot_give_way_feels_the_law);
     RUN(what_hangs_on_strings_pulls_them_tight);
     RUN(what_a_cam_is_driven_with_is_counted);
     RUN(what_drivers_speed_up_by_themselves_is_counted);
