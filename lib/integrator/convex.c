@@ -367,6 +367,7 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
         assembly->push = NULL;
+        se3di_convex_stay(c, equations);
         se3di_frictions_take_loads(assembly->model, assembly->model->lambda);
         return status;
     }
@@ -478,6 +479,7 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     c->driven = assembly->row_count > 0 ? drive(c, assembly) : 0.0;
     move(c, assembly);
     SE3DI_TRY(project(equations, t1));
+    se3di_convex_stay(c, equations);
     if (c->may_part && se3di_convex_gains(c, assembly)) {
         return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
                                "t = %g s: a step of %g s gives energy", assembly->model->time,

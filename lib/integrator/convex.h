@@ -142,6 +142,7 @@ typedef struct se3di_convex {
     uint8_t *asleep; /* [free bodies], */
     uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
     uint8_t *drifts; /* [free bodies]: nothing touches its machine, see convex_islands.c, */
+    uint8_t *urged;  /* [free bodies]: one of these may move it though it is at rest, */
     uint8_t *frozen; /* [bodies]: asleep or fixed */
     int32_t *nest;   /* [free bodies] */
     double *reach;   /* [free bodies]: of its shapes */
@@ -369,6 +370,10 @@ static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_
 se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly);
 /* What sleeps in a step from here, after what touches it has woken it. */
 void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly);
+/* What sleeps is where it was before the step; whether an element acts on it. */
+void se3di_convex_stay(const se3di_convex *c, se3di_equations *equations);
+int se3di_convex_element_sleeps(const se3di_convex *c, const se3di_assembly *assembly,
+                                const se3di_force *force);
 /* Nothing changes in a step. */
 int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly);
 /* Islands that have been at rest for long enough fall asleep at the end of a step. */

@@ -61,7 +61,8 @@ se3d_status se3di_convex_collect_friction(se3di_convex *c, const se3di_assembly 
     }
     SE3DI_TRY(se3di_convex_reserve(c, assembly, count, error));
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (acts(&model->forces[k])) {
+        if (acts(&model->forces[k]) &&
+            !se3di_convex_element_sleeps(c, assembly, &model->forces[k])) {
             add(c, assembly, &model->forces[k]);
         }
     }

@@ -212,7 +212,8 @@ se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *as
     SE3DI_TRY(se3di_convex_reserve(c, assembly, count, error));
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const int32_t body = body_of(assembly, &model->forces[k]);
-        if (body >= 0 && !c->drifts[body] && look(model, &model->forces[k], &x)) {
+        if (body >= 0 && !c->drifts[body] && !c->asleep[body] &&
+            look(model, &model->forces[k], &x)) {
             add_end(c, assembly, &x, 0);
             add_end(c, assembly, &x, 1);
         }
