@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* convex: for many contacts of bodies at steps of milliseconds. The velocities at the end of a
- * step are the optimum of a convex problem (convex.h). If nothing touches, order 2: loads and
- * constraints act in the middle of the step,
+ * step are the optimum of a convex problem (convex.h). What nothing touches, each machine by
+ * itself, is of order 2: loads and constraints act in the middle of the step,
  *
  *     q_m = q_0 + h/2 v_0,    v_1 = v_0 + h a(q_m),    q_1 = q_m + h/2 v_1
  *
- * Else they act at its start, contacts at its end, and bodies move by v_1, those that nothing acts
- * on by the mean of both ends. Then positions and velocities are projected onto their constraints.
+ * Else they act at its start, contacts at its end, and bodies move by v_1. Then positions and
+ * velocities are projected onto their constraints.
  *                                                                      docs/theory/convex.md */
 #include "integrator/convex.h"
 
@@ -30,12 +30,13 @@
 #include <math.h>
 #include <string.h>
 
-#define VECTORS     8 /* of unknowns */
-#define KEPT        7 /* numbers of each body in the history */
-#define ROW_VECTORS 3
-#define TURN_MAX    3.0   /* rad, of a body in a step */
-#define PROJECTED   1e-15 /* of lengths: what is left across the constraints */
-#define HALVINGS    8     /* of a step in which shapes meet too fast */
+#define VECTORS       8 /* of unknowns */
+#define KEPT          7 /* numbers of each body in the history */
+#define ROW_VECTORS   3
+#define TURN_MAX      3.0   /* rad, of a body in a step */
+#define PROJECTED     1e-15 /* of lengths: what is left across the constraints */
+#define HALVINGS      8     /* of a step in which shapes meet too fast, */
+#define GAIN_HALVINGS 3     /* or which gives energy */
 
 static size_t history_count(const se3di_assembly *assembly)
 {
@@ -131,26 +132,31 @@ static void recall_chords(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const double *history = assembly->model->history;
     const double *chord = history + 1 + assembly->body_count;
-    const int goes_on = !c->drifts && assembly->row_count > 0 && history[0] > 0.0;
+    const int goes_on = assembly->row_count > 0 && history[0] > 0.0;
     for (size_t k = 0; k < assembly->unknown_count; ++k) {
-        c->chord[k] = goes_on ? c->h / history[0] * chord[k] : 0.0;
+        c->chord[k] = goes_on && !c->drifts[k / 6] ? c->h / history[0] * chord[k] : 0.0;
     }
 }
 
-/* What loads make of them, as they are at the time t. */
-static se3d_status aim(se3di_convex *c, se3di_equations *equations, double t)
+/* What loads make of the velocities of what drifts, or of all else, as they are at the time t. */
+static se3d_status aim(se3di_convex *c, se3di_equations *equations, int drifts, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     const se3di_model *model = assembly->model;
     double *terms = c->change;
     SE3DI_TRY(se3di_assembly_eval_elements(assembly, t, equations->error));
-    SE3DI_TRY(se3di_gravity_eval(model, t, c->gravity, NULL));
+    if (!drifts) {
+        SE3DI_TRY(se3di_gravity_eval(model, t, c->gravity, NULL));
+    }
     memset(terms, 0, assembly->unknown_count * sizeof *terms);
     se3di_armatures_add_terms(assembly, terms);
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         const uint32_t body = assembly->free_body[k];
         const double *v0 = c->start + 6 * (size_t)k;
         double *v = c->aim + 6 * (size_t)k, *load = terms + 6 * (size_t)k, J[9];
+        if (c->drifts[k] != drifts) {
+            continue;
+        }
         memcpy(v, v0, 6 * sizeof *v);
         if (c->asleep[k]) {
             continue;
@@ -164,10 +170,11 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations, double t)
     return SE3D_OK;
 }
 
-/* C, and what C v is to be at the end of the step. If nothing touches C is that in the middle,
- * where the mean of v at both ends has the rates that are prescribed. Else it is that at the start,
- * and v is the chord to the end, which is the rate in the middle: f_t + h/2 gamma. */
-static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double t)
+/* C, and what C v is to be at the end of the step, of what drifts or of all else. If nothing
+ * touches C is that in the middle, where the mean of v at both ends has the rates that are
+ * prescribed. Else it is that at the start, and v is the chord to the end, which is the rate in
+ * the middle: f_t + h/2 gamma. */
+static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, int drifts, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
     if (assembly->row_count == 0) {
@@ -176,12 +183,18 @@ static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
     se3di_assembly_eval_mass(assembly);
     se3di_assembly_eval_rows(assembly, c->lambda);
-    if (c->drifts) {
+    if (drifts) {
         se3di_assembly_mul(assembly, c->start, c->lambda);
     }
-    for (uint32_t k = 0; k < assembly->row_count; ++k) {
-        const double rate = assembly->f[3 * (size_t)k + 1];
-        c->aimed[k] = c->drifts ? 2.0 * rate - c->lambda[k] : rate + 0.5 * c->h * c->lambda[k];
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        const int32_t body = se3di_convex_joined(assembly, j);
+        const uint32_t first = assembly->model->constraints[j].row_begin;
+        for (uint32_t k = first; body >= 0 && c->drifts[body] == drifts &&
+                                 k < first + (uint32_t)assembly->joint_rows[j];
+             ++k) {
+            const double rate = assembly->f[3 * (size_t)k + 1];
+            c->aimed[k] = drifts ? 2.0 * rate - c->lambda[k] : rate + 0.5 * c->h * c->lambda[k];
+        }
     }
     return SE3D_OK;
 }
@@ -209,6 +222,9 @@ static void drift(const se3di_convex *c, const se3di_assembly *assembly)
         const uint32_t body = assembly->free_body[k];
         se3di_frame *frame = &assembly->model->frames[body];
         const double *a = assembly->model->acceleration + 6 * (size_t)body;
+        if (!c->drifts[k]) {
+            continue;
+        }
         move_body(c, frame, c->start + 6 * (size_t)k, 0.5);
         se3di_add_scaled(0.5 * c->h, a, frame->v);
         se3di_add_scaled(0.5 * c->h, a + 3, frame->w);
@@ -216,9 +232,18 @@ static void drift(const se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
+/* What a row presses with along its rate in `aimed`, which is done with. */
+static double take_work(const se3di_convex *c, uint32_t row)
+{
+    const double work = c->lambda[row] * c->aimed[row];
+    c->aimed[row] = 0.0;
+    return work;
+}
+
 /* What drives the mechanism does in the step [J]: what rows that change in time press with, along
  * the mean of their rates at both ends, as impulses of contacts do; with them what took the chord
- * before from across the constraints, which is no power of rows that do not change. */
+ * before from across the constraints, which is no power of rows that do not change. Those rates are
+ * in `aimed` after it, the mean of the velocities in `change`. */
 static double drive(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
@@ -234,13 +259,13 @@ static double drive(const se3di_convex *c, const se3di_assembly *assembly)
     }
     se3di_assembly_mul(assembly, mean, rate);
     for (uint32_t k = 0; k < assembly->timed_count; ++k) {
-        sum -= c->lambda[assembly->timed_rows[k]] * rate[assembly->timed_rows[k]];
+        sum -= take_work(c, assembly->timed_rows[k]);
     }
     for (size_t k = 0; k < model->constraint_slots.count; ++k) {
         const se3di_constraint *user = &model->constraints[k];
         if (se3di_is_user(user) && !se3di_is_broken(user, model->rows)) {
             for (uint32_t row = user->row_begin; row < user->row_begin + user->row_count; ++row) {
-                sum -= c->lambda[row] * rate[row];
+                sum -= take_work(c, row);
             }
         }
     }
@@ -252,19 +277,8 @@ static void move(const se3di_convex *c, const se3di_assembly *assembly)
 {
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
-        const double *v0 = c->start + 6 * (size_t)k, *v = c->v + 6 * (size_t)k;
-        if (c->asleep[k]) {
-            continue;
-        }
-        if (!c->drifts && !se3di_convex_leaps(c, k)) {
-            double mean[6];
-            for (int e = 0; e < 6; ++e) {
-                mean[e] = 0.5 * (v0[e] + v[e]);
-            }
-            move_body(c, frame, mean, 1.0);
-            move_body(c, frame, v, 0.0);
-        } else {
-            move_body(c, frame, v, c->drifts ? 0.5 : 1.0);
+        if (!c->asleep[k]) {
+            move_body(c, frame, c->v + 6 * (size_t)k, c->drifts[k] ? 0.5 : 1.0);
         }
     }
 }
@@ -294,7 +308,7 @@ static void keep_chords(const se3di_convex *c, const se3di_assembly *assembly)
     for (uint32_t k = 0; k < assembly->body_count; ++k, chord += 6) {
         const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k]];
         const double *v = c->v + 6 * (size_t)k;
-        if (c->drifts || !c->linked[k]) {
+        if (c->drifts[k] || !c->linked[k]) {
             memset(chord, 0, 6 * sizeof *chord);
         } else {
             se3di_sub(v, frame->v, chord);
@@ -337,7 +351,7 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
         const se3di_convex_contact *contact = &c->contacts[k];
         for (int e = 0; e < 2; ++e) {
             if (contact->free[e] >= 0) {
-                const uint32_t body = assembly->free_body[contact->free[e]];
+                const uint32_t body = assembly->free_body[c->body_at[contact->free[e]]];
                 se3di_contact_push(&model->frames[body], contact->arm[e], (e ? 1.0 : -1.0) / c->h,
                                    contact->impulse, c->push + 6 * (size_t)body);
             }
@@ -358,6 +372,7 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
         assembly->push = c->push;
         const se3d_status status = se3di_acceleration_solve(equations, t1);
         assembly->push = NULL;
+        se3di_convex_stay(c, equations);
         se3di_frictions_take_loads(assembly->model, assembly->model->lambda);
         return status;
     }
@@ -432,28 +447,38 @@ static void wait(const se3di_convex *c, se3di_model *model, double t1)
     model->history[0] = c->h;
 }
 
-static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double t1)
+/* Velocities without contacts and constraints, and constraints: those of what touches at the start,
+ * then those of all else half a step on. */
+static se3d_status aim_all(se3di_convex *c, se3di_equations *equations, double t1)
 {
     const se3di_assembly *assembly = &equations->assembly;
     const double t0 = assembly->model->time;
+    if (c->drifting < assembly->body_count || assembly->body_count == 0) {
+        SE3DI_TRY(aim(c, equations, 0, t0));
+        SE3DI_TRY(aim_rows(c, equations, 0, t0));
+    }
+    if (c->drifting > 0) {
+        const double t = 0.5 * (t0 + t1);
+        drift(c, assembly);
+        SE3DI_TRY(aim(c, equations, 1, t));
+        SE3DI_TRY(aim_rows(c, equations, 1, t));
+    }
+    return SE3D_OK;
+}
+
+static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double t1)
+{
+    const se3di_assembly *assembly = &equations->assembly;
     c->model = assembly->model;
-    c->drifts =
-        assembly->model->contacts.count == 0 && !se3di_convex_nears_stops(c, assembly->model);
+    SE3DI_TRY(se3di_convex_find_drifting(c, assembly, equations->error));
     begin(c, assembly);
     recall_chords(c, assembly);
     c->gripped = se3di_convex_grip_energy(assembly->model);
-    if (c->drifts) {
-        drift(c, assembly);
-    }
-    const double t = c->drifts ? 0.5 * (t0 + t1) : t0;
-    SE3DI_TRY(aim(c, equations, t));
-    SE3DI_TRY(aim_rows(c, equations, t));
+    SE3DI_TRY(aim_all(c, equations, t1));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
     SE3DI_TRY(se3di_convex_collect_rolling(c, assembly, equations->error));
     c->roll_end = c->contact_count;
-    if (!c->drifts) {
-        SE3DI_TRY(se3di_convex_collect_stops(c, assembly, equations->error));
-    }
+    SE3DI_TRY(se3di_convex_collect_stops(c, assembly, equations->error));
     c->stop_end = c->contact_count;
     SE3DI_TRY(se3di_convex_collect_friction(c, assembly, equations->error));
     se3di_convex_hold(c, assembly->model);
@@ -461,6 +486,12 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     c->driven = assembly->row_count > 0 ? drive(c, assembly) : 0.0;
     move(c, assembly);
     SE3DI_TRY(project(equations, t1));
+    se3di_convex_stay(c, equations);
+    if (c->may_part && se3di_convex_gains(c, assembly)) {
+        return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,
+                               "t = %g s: a step of %g s gives energy", assembly->model->time,
+                               c->h);
+    }
     keep_chords(c, assembly);
     return conclude(c, equations, t1);
 }
@@ -525,11 +556,12 @@ static se3d_status take_step(se3di_integration *integration, double t1)
 }
 
 /* What meets too fast for a step, and would overlap too much or pass through, meets in its halves,
- * and so does what jams so that no velocities are found. */
+ * and so does what jams so that no velocities are found, or whips on its joints. */
 static se3d_status take_in_parts(se3di_integration *integration, double t1, int halvings)
 {
     const se3di_model *model = integration->equations->assembly.model;
     const double t0 = model->time, h = t1 - t0, middle = 0.5 * (t0 + t1);
+    integration->convex->may_part = halvings > HALVINGS - GAIN_HALVINGS;
     const se3d_status status = take_step(integration, t1);
     const int may_halve = (status == SE3D_ERR_STEP_SIZE || status == SE3D_ERR_NO_CONVERGENCE) &&
                           !(model->time > t0); /* it may be an event that was not found */

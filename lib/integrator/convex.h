@@ -80,6 +80,7 @@ typedef struct se3di_convex_island {
     se3di_kkt *kkt;          /* of an island with constraints */
     int is_factored;         /* its matrix of masses and constraints, without contacts */
     int is_traced;           /* nothing acts but impacts whose impulses are known */
+    double gain;             /* energy that the step itself gave [J] */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
 } se3di_convex_island;
 
@@ -151,6 +152,8 @@ typedef struct se3di_convex {
     /* What sleeps, see convex_sleep.c: */
     uint8_t *asleep; /* [free bodies], */
     uint8_t *linked; /* [free bodies]: a constraint or an element acts on it, */
+    uint8_t *drifts; /* [free bodies]: nothing touches its machine, see convex_islands.c, */
+    uint8_t *urged;  /* [free bodies]: one of these may move it though it is at rest, */
     uint8_t *frozen; /* [bodies]: asleep or fixed */
     int32_t *nest;   /* [free bodies] */
     double *reach;   /* [free bodies]: of its shapes */
@@ -161,14 +164,15 @@ typedef struct se3di_convex {
     se3di_body_contact *followed;
     size_t followed_count, mark_capacity, followed_capacity;
     size_t changed;    /* slopes of contacts since the preconditioner was made */
+    size_t drifting;   /* free bodies */
     int32_t sleeps;    /* it is wanted */
-    int32_t drifts;    /* nothing touches: loads and constraints act in the middle of the step */
+    int32_t is_beside; /* shapes touch in this island */
     double gravity[3]; /* at the start of the step */
     double h;
-    size_t reacts;   /* iterations in this island that lambda is of */
-    int32_t recoils; /* `recoil` is known */
-    int32_t unused;
-    double gripped; /* energy that friction of joints holds at the start of the step [J] */
+    size_t reacts;    /* iterations in this island that lambda is of */
+    int32_t recoils;  /* `recoil` is known */
+    int32_t may_part; /* the step may be taken in halves */
+    double gripped;   /* energy that friction of joints holds at the start of the step [J] */
     const se3di_model *model;
     double driven; /* in the step, by constraints that change in time [J] */
 } se3di_convex;
@@ -234,7 +238,7 @@ double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
 /* No impact of one step: it rests. */
-void se3di_convex_stay(const se3di_convex *c, se3di_convex_contact *contact);
+void se3di_convex_let_rest(const se3di_convex *c, se3di_convex_contact *contact);
 /* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */
 static inline double se3di_convex_hertz_depth(double k, double inverse_mass, double u)
 {
@@ -275,8 +279,8 @@ double se3di_convex_stuck(const se3di_model *model, const se3di_body_contact *r)
 double se3di_convex_leave(const se3di_model *model, const se3di_body_contact *r, double e,
                           double u);
 
-/* convex_stops.c: whether a stop may act in a step from the state under way; */
-int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model);
+/* convex_stops.c: what a stop may act on in a step from the state under way does not drift; */
+void se3di_convex_mark_stops(const se3di_convex *c, const se3di_assembly *assembly);
 /* stops become contacts behind those of shapes. @return OK, NO_MEMORY */
 se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *assembly,
                                        se3di_error *error);
@@ -317,11 +321,20 @@ double se3di_convex_rubbed(const se3di_convex *c, const se3di_model *model);
 double se3di_convex_taken_by(const se3di_convex_contact *contact);
 double se3di_convex_work(const se3di_convex *c, const se3di_assembly *assembly);
 double se3di_convex_fed(const se3di_convex *c);
+/* Contacts of an island that give energy are slowed down. Returns whether any are; */
+int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island);
+/* Whether the step itself, whose velocities are those of the state and whose mean ones and rates of
+ * constraints are in `change` and `aimed`, gives what constraints join energy by far; */
+int se3di_convex_gains(const se3di_convex *c, const se3di_assembly *assembly);
 /* The energy that the springs of the contacts hold at the start of the step; */
 void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
 /* those of the contacts that were found at the end of the step, after `taken` [J] was taken
  * from the bodies: no more than they held before and that. */
 void se3di_convex_store(const se3di_convex *c, const se3di_assembly *assembly, double taken);
+
+/* convex_jam.c: what is driven against something that cannot give way goes by its law. Returns
+ * whether anything did not. */
+int se3di_convex_free_jams(const se3di_convex *c, const se3di_convex_island *island);
 
 /* convex_gyration.c: w that a torque [N m] makes of w0 in h, all in the frame of the body; */
 void se3di_convex_turn_freely(const double J[9], const double w0[3], const double torque[3],
@@ -333,7 +346,11 @@ void se3di_convex_gyrate(se3di_convex *c, const se3di_convex_island *island);
 /* what the moment takes from a free body in the step [J]. */
 double se3di_convex_gyration_work(const se3di_convex *c, uint32_t body);
 
-/* convex_islands.c: places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
+/* convex_islands.c: what drifts in the step under way: machines that nothing touches, loads and
+ * constraints of which act in the middle of the step; @return OK, NO_MEMORY */
+se3d_status se3di_convex_find_drifting(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error);
+/* places of bodies, islands, couplings of their bodies. @return OK, NO_MEMORY */
 se3d_status se3di_convex_group(se3di_convex *c, const se3di_assembly *assembly);
 /* of what armatures couple, which of `pairs` it is; -1: it is not solved for. */
 int32_t se3di_convex_find_tie(const se3di_convex *c, const se3di_assembly *assembly, uint32_t tie);
@@ -402,11 +419,6 @@ void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island);
  * as they are with `impulse` and v; the cap of its friction there. Returns how much the impulse
  * would change. */
 double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3]);
-/* Whether a free body moves by the velocity at the end of a step in which something touches. */
-static inline int se3di_convex_leaps(const se3di_convex *c, size_t body)
-{
-    return c->touched[body] || c->linked[body];
-}
 /* Whether it is solved for: something touches it, or a constraint acts on it. */
 static inline int se3di_convex_takes_part(const se3di_convex *c, size_t body)
 {
@@ -426,6 +438,10 @@ static inline se3di_convex_contact *se3di_convex_at(const se3di_convex *c, size_
 se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly);
 /* What sleeps in a step from here, after what touches it has woken it. */
 void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly);
+/* What sleeps is where it was before the step; whether an element acts on it. */
+void se3di_convex_stay(const se3di_convex *c, se3di_equations *equations);
+int se3di_convex_element_sleeps(const se3di_convex *c, const se3di_assembly *assembly,
+                                const se3di_force *force);
 /* Nothing changes in a step. */
 int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly);
 /* Islands that have been at rest for long enough fall asleep at the end of a step. */

@@ -185,7 +185,7 @@ static void choose_way(se3di_convex_contact *c, const se3di_model *model, double
     }
 }
 
-void se3di_convex_stay(const se3di_convex *c, se3di_convex_contact *contact)
+void se3di_convex_let_rest(const se3di_convex *c, se3di_convex_contact *contact)
 {
     const double u = -se3di_dot(contact->before, contact->normal);
     se3di_convex_set_law(contact, c->model);

@@ -15,6 +15,12 @@
 
 #include <math.h>
 
+/* of twice the kinetic energy: */
+#define GAIN_MOST  0.01 /* what a step may give, */
+#define GIVEN_MOST 1e-6 /* an impact gives and may, */
+#define THROWN     1e-3 /* a spring does */
+#define STIFF      1e3  /* a damper that stops its bodies, over what moves them as one */
+
 /* What the impulse takes from the bodies, and from what moves surfaces on them: half a step before
  * and half a step on they have what they have at the start on the average. Of bodies that
  * constraints hold these are both chords: their parts across the constraints cancel, and the
@@ -32,6 +38,81 @@ static double taken_by_rolling(const se3di_convex *convex, const se3di_convex_co
     return c->partner >= 0 ? se3di_convex_taken_by(&convex->contacts[c->partner]) : 0.0;
 }
 
+static int is_impact(const se3di_convex_contact *contact)
+{
+    return contact->record && contact->way == SE3DI_CONVEX_IMPACT;
+}
+
+/* What a contact of shapes gives that no spring of it held. */
+static double gift_of(const se3di_convex_contact *contact)
+{
+    const int may_give = contact->record && !(contact->attraction > 0.0); /* that gives, too */
+    const double given = may_give ? -se3di_convex_taken_by(contact) : 0.0;
+    return is_impact(contact) ? given : fmax(0.0, given - contact->held);
+}
+
+/* A damper for a spring, so that it gives no more than it held: the impulse p and the velocity v
+ * that it so leaves with, if all others stay, are
+ *
+ *     p (before + v)/2 = held,    v = after - W (impulse - p) */
+static int hold_back(const se3di_convex *c, se3di_convex_contact *contact, double before,
+                     double after)
+{
+    const double W = contact->record->inverse_mass, damping = contact->damping;
+    const double normal = se3di_dot(contact->impulse, contact->normal);
+    const double both = before + after - W * normal;
+    const double p = 0.5 * (sqrt(both * both + 8.0 * W * contact->held) - both) / W;
+    const double v = after - W * (normal - p);
+    double slope;
+    if (!(v > 0.0 && p < normal)) {
+        return 0;
+    }
+    contact->damping = 0.0;
+    const double more = (se3di_convex_normal(contact, c->h, v, &slope) - p) / (c->h * v);
+    contact->damping = fmax(damping, fmin(more, STIFF / (c->h * W)));
+    return contact->damping > damping;
+}
+
+/* A contact that gives, as it leaves with more than it may, or all impacts, leaves more slowly.
+ * Returns whether it is to. */
+static int slow_down(const se3di_convex *c, se3di_convex_contact *contact, double momentum,
+                     int is_any)
+{
+    const double *n = contact->normal, before = se3di_dot(contact->before, n);
+    const double after = se3di_dot(contact->v, n), least = fmin(0.0, -before);
+    const double normal = se3di_dot(contact->impulse, n), gift = gift_of(contact);
+    if (is_impact(contact) && contact->rebound > least && normal > 0.0 && (is_any || gift > 0.0)) {
+        const double less = is_any ? 0.5 * contact->rebound : 2.0 * gift / normal;
+        contact->rebound = fmax(least, contact->rebound - less);
+        return 1;
+    }
+    if (!is_any && contact->way == SE3DI_CONVEX_SPRING && gift > THROWN * momentum && after > 0.0 &&
+        before + after > 0.0) {
+        return hold_back(c, contact, before, after);
+    }
+    return 0;
+}
+
+/* Contacts of an island together give no energy. If they did, those that do on the average of their
+ * velocities before and after, since others have turned a slip round or have stopped what was
+ * parting, or since a step has carried them deep, leave more slowly, or come as near as they were
+ * parting; if that is not enough, all impacts. Returns whether any are to. */
+int se3di_convex_tame(const se3di_convex *c, const se3di_convex_island *island)
+{
+    const double most = GIVEN_MOST * island->momentum;
+    double sum = 0.0;
+    int is_tamed = se3di_convex_free_jams(c, island);
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        sum += gift_of(se3di_convex_at(c, k));
+    }
+    for (int is_any = 0; is_any < 2 && !is_tamed && sum > most; ++is_any) {
+        for (size_t k = island->contact; k < island->contact_end; ++k) {
+            is_tamed |= slow_down(c, se3di_convex_at(c, k), island->momentum, is_any);
+        }
+    }
+    return is_tamed;
+}
+
 /* What of it springs may hold: an impact lifts its bodies, too. */
 static double left_by(const se3di_convex *convex, const se3di_convex_contact *c)
 {
@@ -46,7 +127,7 @@ static double taken_by_leap(const se3di_convex *c, const se3di_assembly *assembl
 {
     const double mass = assembly->model->bodies[assembly->free_body[k]].mass;
     double dv[3];
-    if (c->drifts || !se3di_convex_leaps(c, k)) {
+    if (c->drifts[k]) {
         return 0.0;
     }
     se3di_sub(c->v + 6 * (size_t)k, c->start + 6 * (size_t)k, dv);
@@ -74,6 +155,56 @@ double se3di_convex_work(const se3di_convex *convex, const se3di_assembly *assem
         sum += convex->asleep[k] ? 0.0 : taken_from(convex, assembly, k);
     }
     return sum;
+}
+
+/* T_1 - T_0 - (v - v_0)^T M (v_0 + v)/2 of each island. */
+static void add_momenta(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    double *change = c->carried, *momentum = c->gradient, *pressed = c->moved;
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        const se3di_frame *frame = &assembly->model->frames[assembly->free_body[k / 6]];
+        change[k] = (k % 6 < 3 ? frame->v[k % 6] : frame->w[k % 6 - 3]) - c->start[k];
+    }
+    se3di_assembly_mul_mass(assembly, change, momentum);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        momentum[k] *= c->start[k] + 0.5 * change[k];
+        change[k] = c->v[k] - c->start[k];
+    }
+    se3di_assembly_mul_mass(assembly, change, pressed);
+    for (size_t k = 0; k < assembly->unknown_count; ++k) {
+        if (se3di_convex_takes_part(c, k / 6)) {
+            c->islands[c->number[k / 6]].gain += momentum[k] - pressed[k] * c->change[k];
+        }
+    }
+}
+
+/* Kinetic energy is to change by what loads and impulses do along the mean velocities:
+ *
+ *     T_1 - T_0 = (v - v_0)^T M (v_0 + v)/2 + lambda C (v_0 + v)/2
+ *
+ * of rows that do not change in time. What turns far in a step is carried off its constraints by
+ * it, and may come back to them faster. */
+int se3di_convex_gains(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    int gains = 0;
+    if (c->joint_count == 0) {
+        return 0;
+    }
+    for (size_t k = 0; k < c->island_count; ++k) {
+        c->islands[k].gain = 0.0;
+    }
+    add_momenta(c, assembly);
+    for (size_t k = 0; k < c->island_count; ++k) {
+        se3di_convex_island *island = &c->islands[k];
+        for (size_t j = island->joint; j < island->joint_end; ++j) {
+            const se3di_constraint *joint = &assembly->model->constraints[c->rows.joint[j]];
+            for (uint32_t r = 0; r < joint->row_count; ++r) {
+                island->gain -= c->lambda[joint->row_begin + r] * c->aimed[joint->row_begin + r];
+            }
+        }
+        gains |= island->gain > GAIN_MOST * island->momentum;
+    }
+    return gains;
 }
 
 double se3di_convex_fed(const se3di_convex *convex)

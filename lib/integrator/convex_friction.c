@@ -61,7 +61,8 @@ se3d_status se3di_convex_collect_friction(se3di_convex *c, const se3di_assembly 
     }
     SE3DI_TRY(se3di_convex_reserve(c, assembly, count, error));
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (acts(&model->forces[k])) {
+        if (acts(&model->forces[k]) &&
+            !se3di_convex_element_sleeps(c, assembly, &model->forces[k])) {
             add(c, assembly, &model->forces[k]);
         }
     }
@@ -144,7 +145,7 @@ int se3di_convex_look(const se3di_convex *c, se3di_convex_contact *row, double m
     row->wanted = fmax(0.0, row->bound + share * gap);
     row->wanted_before = row->bound;
     row->gap = gap;
-    const double enough = c->shape_count > 0 ? CAP_BESIDE : CAP_CHANGE;
+    const double enough = c->is_beside ? CAP_BESIDE : CAP_CHANGE;
     return pull < fmin(cap, row->bound) || !(size > enough * cap) ||
            !(size * size * row->response[0] > CAP_LEAST * CAP_LEAST * momentum);
 }
@@ -158,7 +159,7 @@ static int jams(const se3di_convex *c, const se3di_convex_island *island,
     int slips;
     (void)pull_of(row, &slips);
     return slips && fabs(cap_of(c, row) - row->bound) > JAMS * row->bound &&
-           (c->shape_count == 0 || size > BEYOND * BEYOND * island->momentum);
+           (!c->is_beside || size > BEYOND * BEYOND * island->momentum);
 }
 
 int se3di_convex_jams(const se3di_convex *c, const se3di_convex_island *island)

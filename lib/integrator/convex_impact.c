@@ -246,7 +246,7 @@ static void let_stick(const tracing *t, const se3di_convex *c)
 {
     for (int k = 0; k < t->traced->points; ++k) {
         if (t->points[k].attraction > 0.0) {
-            se3di_convex_stay(c, t->traced->contacts[k]);
+            se3di_convex_let_rest(c, t->traced->contacts[k]);
         }
     }
 }

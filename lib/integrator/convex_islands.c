@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What touches or is jointed, directly or by others, is an island: each is solved by itself, with
  * its own search along lines and its own end. Bodies that nothing touches or holds move as loads
- * say. */
+ * say. A machine, that is what joints and elements join, drifts if nothing touches any of it. */
 #include "integrator/convex.h"
 
 #include "base/sort.h"
+#include "primitive/user.h"
 
 #include <string.h>
 
@@ -69,8 +70,7 @@ static void join_constraints(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* The first body of each island becomes its root. */
-static void join(se3di_convex *c, const se3di_assembly *assembly)
+static void begin_joining(se3di_convex *c, const se3di_assembly *assembly)
 {
     const int32_t bodies = (int32_t)assembly->body_count;
     for (int32_t k = 0; k < bodies; ++k) {
@@ -78,6 +78,98 @@ static void join(se3di_convex *c, const se3di_assembly *assembly)
         c->number[k] = c->touched[k] ? 0 : -1;
     }
     join_constraints(c, assembly);
+}
+
+/* What acts on one machine may be a function of any other one's state. */
+static int joins_all(const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    int joins = assembly->user_count > 0 || model->state_count > 0;
+    for (size_t k = 0; k < model->function_slots.count && !joins; ++k) {
+        joins = model->functions[k].signal_count > 0;
+    }
+    for (size_t k = 0; k < model->force_slots.count && !joins; ++k) {
+        joins = model->forces[k].type == SE3DI_FORCE_CALLBACK;
+    }
+    return joins;
+}
+
+static void join_elements(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    int32_t linked = -1;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const int32_t i = assembly->free_index[model->forces[k].body_i];
+        const int32_t j = assembly->free_index[model->forces[k].body_j];
+        if (i >= 0 && j >= 0) {
+            join_two(c, i, j);
+        }
+    }
+    for (uint32_t k = 0; k < assembly->body_count && joins_all(assembly); ++k) {
+        if (c->linked[k]) {
+            linked = linked < 0 ? (int32_t)k : linked;
+            join_two(c, linked, (int32_t)k);
+        }
+    }
+}
+
+/* Bodies that touch do not drift. */
+static void mark_touching(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    for (size_t k = 0; k < model->contacts.count; ++k) {
+        const se3di_body_contact *r = &model->contacts.list[k];
+        for (int side = 0; side < 2; ++side) {
+            const uint32_t shape = side ? r->shape_j : r->shape_i;
+            const int32_t free = assembly->free_index[model->shapes[shape].body];
+            if (free >= 0) {
+                c->drifts[free] = 0;
+            }
+        }
+    }
+}
+
+/* Nor does what they are joined to. */
+static void spread_touching(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const int32_t bodies = (int32_t)assembly->body_count;
+    begin_joining(c, assembly);
+    join_elements(c, assembly);
+    for (int32_t k = 0; k < bodies; ++k) {
+        c->drifts[find_root(c, k)] &= c->drifts[k];
+    }
+    for (int32_t k = 0; k < bodies; ++k) {
+        c->drifts[k] = !c->asleep[k] && c->drifts[find_root(c, k)];
+    }
+}
+
+se3d_status se3di_convex_find_drifting(se3di_convex *c, const se3di_assembly *assembly,
+                                       se3di_error *error)
+{
+    const se3di_model *model = assembly->model;
+    const uint32_t bodies = assembly->body_count;
+    if (reserve_all(c, assembly) < 0) {
+        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for a step",
+                               model->time);
+    }
+    memset(c->drifts, 1, bodies);
+    mark_touching(c, assembly);
+    se3di_convex_mark_stops(c, assembly);
+    if (c->asleep_count > 0 || memchr(c->drifts, 0, bodies)) {
+        spread_touching(c, assembly);
+    }
+    c->drifting = 0;
+    for (uint32_t k = 0; k < bodies; ++k) {
+        c->drifting += c->drifts[k];
+    }
+    return SE3D_OK;
+}
+
+/* The first body of each island becomes its root. */
+static void join(se3di_convex *c, const se3di_assembly *assembly)
+{
+    const int32_t bodies = (int32_t)assembly->body_count;
+    begin_joining(c, assembly);
     for (size_t k = 0; k < c->contact_count; ++k) {
         const se3di_convex_contact *contact = &c->contacts[k];
         if (contact->free[0] >= 0 && contact->free[1] >= 0) {

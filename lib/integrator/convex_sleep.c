@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Islands of bodies at rest sleep: they stay where they are, to the bit, with the contacts and
- * forces that they had, and are neither looked at nor solved for. An island falls asleep when all
- * of its bodies have been slower than SLOW for LONG. A body that something may set in motion
- * without touching it (force elements, constraints, gravity that changes, a surface that moves)
- * does not, and so does not what touches it. What touches a sleeping body wakes its whole island
- * before the step in which it acts; whatever is set wakes all (renew, start).
+/* Islands of bodies and machines at rest sleep: they stay where they are, to the bit, with the
+ * contacts and forces that they had, and are neither looked at nor solved for. An island falls
+ * asleep when all of its bodies have been slower than SLOW for LONG and some of them touch
+ * something. A body that something may set in motion without touching it (elements and constraints
+ * that are functions of time or of other bodies' states, gravity that changes, a surface that
+ * moves) does not, and so does not what touches it or is joined to it. What touches a sleeping
+ * body wakes its whole island before the step in which it acts; whatever is set wakes all (renew,
+ * start).
  *
  * The history has how long each body has been at rest, or ASLEEP.        docs/theory/convex.md */
 #include "integrator/convex.h"
 
 #include "contact/shape/shape.h"
+#include "integrator/state.h"
 #include "math/vec3.h"
+#include "primitive/user.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,24 +29,61 @@ static double *times_of(const se3di_assembly *assembly)
     return assembly->model->history + 1;
 }
 
-static void link_body(const se3di_convex *c, const se3di_assembly *assembly, uint32_t body)
+static void mark_body(const se3di_assembly *assembly, uint32_t body, uint8_t *marks)
 {
     const int32_t free = assembly->free_index[body];
     if (free >= 0) {
-        c->linked[free] = 1;
+        marks[free] = 1;
     }
+}
+
+static int is_constant(const se3di_function *function)
+{
+    return !function->expression && !function->callback && !function->table && !function->integral;
+}
+
+/* Whether a constraint may move what is at rest. */
+static int drives(const se3di_model *model, const se3di_constraint *constraint)
+{
+    int drives = se3di_is_user(constraint);
+    for (uint32_t k = 0; k < constraint->row_count && !drives; ++k) {
+        const int32_t function = model->rows[constraint->row_begin + k].function;
+        drives = function >= 0 && !is_constant(&model->functions[function]);
+    }
+    return drives;
+}
+
+/* Whether an element may. */
+static int urges(const se3di_model *model, const se3di_force *force)
+{
+    int urges = force->type == SE3DI_FORCE_CALLBACK || force->type == SE3DI_FORCE_STATE;
+    for (int k = 0; k < SE3DI_FORCE_FUNCTIONS && !urges; ++k) {
+        urges = force->function[k] >= 0 && !is_constant(&model->functions[force->function[k]]);
+    }
+    return urges;
 }
 
 static void link_all(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
     memset(c->linked, 0, assembly->body_count);
-    for (uint32_t k = 0; k < assembly->joint_body_count; ++k) {
-        c->linked[assembly->joint_body[k]] = 1;
+    memset(c->urged, 0, assembly->body_count);
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        const int is_urged = drives(model, &model->constraints[j]);
+        for (int32_t e = assembly->joint_begin[j]; e < assembly->joint_begin[j + 1]; ++e) {
+            c->linked[assembly->joint_body[e]] = 1;
+            c->urged[assembly->joint_body[e]] |= (uint8_t)is_urged;
+        }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        link_body(c, assembly, model->forces[k].body_i);
-        link_body(c, assembly, model->forces[k].body_j);
+        const se3di_force *force = &model->forces[k];
+        for (int side = 0; side < 2; ++side) {
+            const uint32_t body = side ? force->body_j : force->body_i;
+            mark_body(assembly, body, c->linked);
+            if (urges(model, force)) {
+                mark_body(assembly, body, c->urged);
+            }
+        }
     }
 }
 
@@ -57,6 +98,10 @@ static void measure_reaches(const se3di_convex *c, const se3di_assembly *assembl
             c->reach[free] = fmax(c->reach[free], shape->bound + se3di_norm(shape->x));
         }
     }
+    const double length = se3di_state_length(model);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        c->reach[k] = c->linked[k] ? fmax(c->reach[k], length) : c->reach[k];
+    }
 }
 
 se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
@@ -65,7 +110,7 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
     const size_t bodies = assembly->body_count;
     void *bytes = c->asleep, *nest = c->nest, *reach = c->reach;
     se3d_status status = se3di_array_reserve(allocator, &bytes, &c->sleep_capacity,
-                                             2 * bodies + assembly->dense_count + 1, 1);
+                                             4 * bodies + assembly->dense_count + 1, 1);
     c->asleep = bytes;
     SE3DI_TRY(status);
     status = se3di_array_reserve(allocator, &nest, &c->nest_capacity, bodies + 1, sizeof *c->nest);
@@ -76,7 +121,9 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
     c->reach = reach;
     SE3DI_TRY(status);
     c->linked = c->asleep + bodies;
-    c->frozen = c->linked + bodies;
+    c->drifts = c->linked + bodies;
+    c->urged = c->drifts + bodies;
+    c->frozen = c->urged + bodies;
     memset(c->asleep, 0, bodies);
     c->asleep_count = 0;
     link_all(c, assembly);
@@ -95,7 +142,32 @@ static int32_t find_nest(const se3di_convex *c, int32_t body)
     return body;
 }
 
-/* Bodies that touch are of one nest, called by its first body. */
+static void join(const se3di_convex *c, int32_t i, int32_t j)
+{
+    if (i >= 0 && j >= 0) {
+        const int32_t a = find_nest(c, i), b = find_nest(c, j);
+        c->nest[a < b ? b : a] = a < b ? a : b;
+    }
+}
+
+/* What constraints and elements join. */
+static void join_links(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    const se3di_model *model = assembly->model;
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        const int32_t first = se3di_convex_joined(assembly, j);
+        for (int32_t e = assembly->joint_begin[j]; first >= 0 && e < assembly->joint_begin[j + 1];
+             ++e) {
+            join(c, first, assembly->joint_body[e]);
+        }
+    }
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        join(c, assembly->free_index[model->forces[k].body_i],
+             assembly->free_index[model->forces[k].body_j]);
+    }
+}
+
+/* Bodies that touch or are joined are of one nest, called by its first body. */
 static void find_nests(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
@@ -104,13 +176,10 @@ static void find_nests(const se3di_convex *c, const se3di_assembly *assembly)
     }
     for (size_t k = 0; k < model->contacts.count; ++k) {
         const se3di_body_contact *r = &model->contacts.list[k];
-        const int32_t i = assembly->free_index[model->shapes[r->shape_i].body];
-        const int32_t j = assembly->free_index[model->shapes[r->shape_j].body];
-        if (i >= 0 && j >= 0) {
-            const int32_t a = find_nest(c, i), b = find_nest(c, j);
-            c->nest[a < b ? b : a] = a < b ? a : b;
-        }
+        join(c, assembly->free_index[model->shapes[r->shape_i].body],
+             assembly->free_index[model->shapes[r->shape_j].body]);
     }
+    join_links(c, assembly);
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         c->nest[k] = find_nest(c, (int32_t)k);
     }
@@ -164,8 +233,11 @@ void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly)
 int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
-    return c->asleep_count > 0 && c->asleep_count == assembly->body_count &&
-           assembly->row_count == 0 && model->force_slots.count == 0;
+    int rests = c->asleep_count > 0 && c->asleep_count == assembly->body_count;
+    for (size_t k = 0; k < model->force_slots.count && rests; ++k) {
+        rests = !urges(model, &model->forces[k]); /* on what is fixed */
+    }
+    return rests;
 }
 
 /* How long each body has been at rest. */
@@ -178,7 +250,7 @@ static void count_times(const se3di_convex *c, const se3di_assembly *assembly)
         const se3di_frame *frame = &model->frames[assembly->free_body[k]];
         const double turning =
             c->reach[k] < HUGE_VAL ? c->reach[k] * se3di_norm(frame->w) : HUGE_VAL;
-        const int stays = c->touched[k] && !c->linked[k] && !changes;
+        const int stays = (c->linked[k] ? !c->urged[k] : c->touched[k]) && !changes;
         const int rests = stays && se3di_norm(frame->v) + turning < SLOW;
         if (!c->asleep[k]) {
             times[k] = rests ? times[k] + c->h : 0.0;
@@ -193,6 +265,10 @@ static void find_restless(const se3di_convex *c, const se3di_assembly *assembly,
     const double *times = times_of(assembly);
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         restless[k] = !c->asleep[k] && !(times[k] >= LONG);
+    }
+    spread(c, assembly->body_count, c->drifts);
+    for (uint32_t k = 0; k < assembly->body_count; ++k) {
+        restless[k] |= c->drifts[c->nest[k]]; /* it hangs */
     }
     for (size_t k = 0; k < model->contacts.count; ++k) {
         const se3di_body_contact *r = &model->contacts.list[k];
@@ -222,6 +298,41 @@ static void stop(se3di_model *model, uint32_t body)
     memset(frame->w, 0, sizeof frame->w);
     memset(frame->pdot, 0, sizeof frame->pdot);
     memset(model->acceleration + 6 * (size_t)body, 0, 6 * sizeof *model->acceleration);
+}
+
+/* Positions, velocities, accelerations and multipliers of what sleeps, to the bit: they were among
+ * the unknowns of all constraints. */
+void se3di_convex_stay(const se3di_convex *c, se3di_equations *equations)
+{
+    const se3di_assembly *assembly = &equations->assembly;
+    const se3di_saved *kept = &equations->kept;
+    const se3di_frame *frames = kept->frames.data;
+    const double *accelerations = kept->acceleration.data, *lambda = kept->lambda.data;
+    se3di_model *model = assembly->model;
+    for (uint32_t k = 0; k < assembly->body_count && c->asleep_count > 0; ++k) {
+        const uint32_t body = assembly->free_body[k];
+        if (c->asleep[k]) {
+            model->frames[body] = frames[body];
+            memcpy(model->acceleration + 6 * (size_t)body, accelerations + 6 * (size_t)body,
+                   6 * sizeof *accelerations);
+        }
+    }
+    for (uint32_t j = 0; j < assembly->constraint_count && c->asleep_count > 0; ++j) {
+        const int32_t body = se3di_convex_joined(assembly, j);
+        const se3di_constraint *constraint = &model->constraints[j];
+        if (body >= 0 && c->asleep[body]) {
+            memcpy(model->lambda + constraint->row_begin, lambda + constraint->row_begin,
+                   constraint->row_count * sizeof *lambda);
+        }
+    }
+}
+
+int se3di_convex_element_sleeps(const se3di_convex *c, const se3di_assembly *assembly,
+                                const se3di_force *force)
+{
+    const int32_t i = assembly->free_index[force->body_i];
+    const int32_t body = i >= 0 ? i : assembly->free_index[force->body_j];
+    return body >= 0 && c->asleep[body];
 }
 
 void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly)

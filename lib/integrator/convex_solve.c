@@ -25,7 +25,6 @@
 #define GO_AHEAD    1e-3 /* of impulses: what is left where caps go on as they went, */
 #define AHEAD_MOST  4.0  /* at most so many times */
 #define ENOUGH      1e-6 /* of impulses, if rounding leaves no better */
-#define GIVEN_MOST  1e-6 /* of twice the kinetic energy: what an impact gives and may */
 #define TAMED_MOST  8    /* times */
 #define SHARE       1e-2 /* of the gradient: what the linear equations may leave */
 #define SAME        1e-2 /* of a slope: changes that the matrix need not know */
@@ -489,6 +488,10 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     se3di_convex_mul_own(c, island, c->change, c->moved); /* armatures begin with `start` */
     clear_blocks(c, island);
     c->reacts = 0;
+    c->is_beside = 0;
+    for (size_t k = island->contact; k < island->contact_end; ++k) {
+        c->is_beside |= se3di_convex_at(c, k)->record != NULL;
+    }
     c->changed = island->contact_end - island->contact + 1; /* all */
     see(c, island);
     return is_far;
@@ -635,36 +638,6 @@ static double share_of(double rest, double before)
     return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
-static int is_impact(const se3di_convex_contact *contact)
-{
-    return contact->record && contact->way == SE3DI_CONVEX_IMPACT;
-}
-
-/* Impacts together give no energy. If they did, those that do on the average of their velocities
- * before and after, since others have turned a slip round or have stopped what was parting, leave
- * more slowly, or come as near as they were parting. Returns whether any are to. */
-static int tame(const se3di_convex *c, const se3di_convex_island *island)
-{
-    double sum = 0.0;
-    int is_tamed = 0;
-    for (size_t k = island->contact; k < island->contact_end; ++k) {
-        const se3di_convex_contact *contact = se3di_convex_at(c, k);
-        sum -= is_impact(contact) ? se3di_convex_taken_by(contact) : 0.0;
-    }
-    for (size_t k = island->contact; k < island->contact_end && sum > GIVEN_MOST * island->momentum;
-         ++k) {
-        se3di_convex_contact *contact = se3di_convex_at(c, k);
-        const double least = fmin(0.0, -se3di_dot(contact->before, contact->normal));
-        const double normal = se3di_dot(contact->impulse, contact->normal);
-        const double given = -se3di_convex_taken_by(contact);
-        if (is_impact(contact) && contact->rebound > least && normal > 0.0 && given > 0.0) {
-            contact->rebound = fmax(least, contact->rebound - 2.0 * given / normal);
-            is_tamed = 1;
-        }
-    }
-    return is_tamed;
-}
-
 /* Whether caps and gyration follow, and how often they have, or wait; how often impacts were tamed.
  */
 typedef struct following {
@@ -712,7 +685,7 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         rest = measure(c, equations, island);
         const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
         if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= ACCURACY || stays) &&
-            !(f.waits && f.goes_on) && !(f.tamed++ < TAMED_MOST && tame(c, island))) {
+            !(f.waits && f.goes_on) && !(f.tamed++ < TAMED_MOST && se3di_convex_tame(c, island))) {
             return finish(c, equations, island, f.goes_on);
         }
         if (!with_slopes) {
@@ -826,7 +799,7 @@ static void choose_elements(se3di_convex *c, se3di_equations *equations,
         }
         se3di_convex_choose_stop(c, stop, moved);
     }
-    if (c->recoils && se3di_convex_is_bound(island)) {
+    if (c->recoils && se3di_convex_is_bound(island) && !c->drifts[c->body_at[island->body]]) {
         find_recoil(c, equations, island);
     }
 }
@@ -859,7 +832,8 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
     SE3DI_TRY(prepare(c, equations));
-    c->recoils = !c->drifts && assembly->row_count > 0 && se3di_convex_has_loads(c);
+    c->recoils =
+        c->drifting < assembly->body_count && assembly->row_count > 0 && se3di_convex_has_loads(c);
     if (c->recoils) {
         memset(c->recoil, 0, assembly->row_count * sizeof *c->recoil);
     }

@@ -6,8 +6,9 @@
  *     reach v + n (g_w . w),    n . that = g . (v, w)
  *
  * n and reach = 1 from the gradient by v where that is a unit vector, as of displacements and
- * distances; reach = 0 for angles. All stops are in every step in which anything touches: what
- * hits one body drives another onto its stop in the same step.       docs/theory/convex.md */
+ * distances; reach = 0 for angles. All stops of a machine are in every step in which anything
+ * touches it: what hits one body drives another onto its stop in the same step.
+ *                                                                      docs/theory/convex.md */
 #include "integrator/convex.h"
 
 #include "force/force.h"
@@ -41,6 +42,13 @@ static int look(const se3di_model *model, const se3di_force *force, coordinate *
     return 1;
 }
 
+/* A free body that it acts on, the other one moves in steps as this one does; -1: on none. */
+static int32_t body_of(const se3di_assembly *assembly, const se3di_force *force)
+{
+    const int32_t i = assembly->free_index[force->body_i];
+    return i >= 0 ? i : assembly->free_index[force->body_j];
+}
+
 /* Towards the upper end, or the lower one: how far it is off, and its speed. */
 static double gap_to(const coordinate *x, int upper, double *speed)
 {
@@ -49,20 +57,21 @@ static double gap_to(const coordinate *x, int upper, double *speed)
     return way * ((upper ? x->force->high : x->force->low) - x->measure.value);
 }
 
-int se3di_convex_nears_stops(const se3di_convex *c, const se3di_model *model)
+void se3di_convex_mark_stops(const se3di_convex *c, const se3di_assembly *assembly)
 {
+    const se3di_model *model = assembly->model;
     coordinate x;
     double speed;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (!look(model, &model->forces[k], &x)) {
+        const int32_t body = body_of(assembly, &model->forces[k]);
+        if (body < 0 || !look(model, &model->forces[k], &x)) {
             continue;
         }
         const double reach = NEAR * c->h * (fabs(x.measure.rate) + c->h * fabs(x.acceleration));
         if (gap_to(&x, 0, &speed) < reach || gap_to(&x, 1, &speed) < reach) {
-            return 1;
+            c->drifts[body] = 0;
         }
     }
-    return 0;
 }
 
 /* The force of friction on the coordinate of a stop against what moves towards it. */
@@ -191,7 +200,9 @@ se3d_status se3di_convex_collect_stops(se3di_convex *c, const se3di_assembly *as
     }
     SE3DI_TRY(se3di_convex_reserve(c, assembly, count, error));
     for (size_t k = 0; k < model->force_slots.count; ++k) {
-        if (look(model, &model->forces[k], &x)) {
+        const int32_t body = body_of(assembly, &model->forces[k]);
+        if (body >= 0 && !c->drifts[body] && !c->asleep[body] &&
+            look(model, &model->forces[k], &x)) {
             add_end(c, assembly, &x, 0);
             add_end(c, assembly, &x, 1);
         }

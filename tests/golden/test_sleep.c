@@ -2,6 +2,7 @@
 /* Bodies at rest sleep in convex: they stay to the bit, wake when something touches or changes
  * them, and what happens is what happens without. */
 #include "support/scene.h"
+#include "support/text_model.h"
 
 #define STEP 1e-3
 #define HIGH 5
@@ -232,6 +233,119 @@ static void a_joint_that_breaks_wakes_what_its_load_falls_on(void)
     scene_end(&q.s);
 }
 
+/* Two rods with a stop and friction in their joint lie on the ground, a pendulum swings elsewhere,
+ * and a ball falls on one of the rods at 1.43 s; %s: what the joint is loaded with. */
+static text_model lay_down(int sleep, const char *load)
+{
+    char text[2048];
+    (void)snprintf(
+        text, sizeof text,
+        "se3d: 1\nmaterials: [{name: m, density: 1000, friction: 0.5, restitution: 0.3, stiffness: "
+        "1.0e+6}]\ncontact: {overlap_limit: 0.5}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, material: m}]}\n"
+        "  - {name: a, position: [0, 0, 0.0501], shapes: [{type: box, size: [0.4, 0.1, 0.1], "
+        "material: m}]}\n"
+        "  - {name: b, position: [0.45, 0, 0.0501], shapes: [{type: box, size: [0.4, 0.1, 0.1], "
+        "material: m}]}\n"
+        "  - {name: p, mass: 1, inertia: [0.01, 0.01, 0.01], position: [-3, 0, 3]}\n"
+        "  - {name: c, position: [0.6, 0, 10.2], shapes: [{type: sphere, radius: 0.05, material: "
+        "m}]}\njoints:\n"
+        "  - {name: j, type: revolute, body_i: a, body_j: b, at: [0.225, 0, 0.05], axis: [0, 1, "
+        "0]}\n"
+        "  - {name: q, type: revolute, body_i: ground, body_j: p, at: [-2, 0, 3], axis: [0, 1, "
+        "0]}\n"
+        "forces:\n  - {name: s, type: stop, joint: j, lower: -0.001, upper: 1, k: 1.0e+4, "
+        "restitution: 0.1}\n"
+        "  - {name: f, type: friction, joint: j, limit: 0.5, viscous: 0.1}\n"
+        "  - {name: e, type: effort, joint: j, value: %s}\n"
+        "analysis: {type: dynamics, duration: 3, sleep: %s}\noutput: [{file: r.csv, channels: "
+        "[a.position, b.position, b.velocity, p.position, j.force, energy.balance, f.force]}]\n",
+        load, sleep ? "true" : "false");
+    return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+}
+
+static void get_vector(const text_model *m, size_t channel, double out[3])
+{
+    for (size_t k = 0; k < 3; ++k) {
+        out[k] = text_model_get(m, channel, k);
+    }
+}
+
+static int is_still(const text_model *m)
+{
+    double v[3];
+    get_vector(m, 2, v);
+    return !(fabs(v[0]) + fabs(v[1]) + fabs(v[2]) > 0.0);
+}
+
+/* To the bit, and the pendulum's motion does not depend on it. */
+static void machines_at_rest_sleep_until_something_falls_on_them(void)
+{
+    text_model p = lay_down(1, "0.2"), q = lay_down(0, "0.2");
+    double first[5][3], now[3], other[3], most = 0.0;
+    CHECK(text_model_run(&p, 1.2) && text_model_run(&q, 1.2));
+    CHECK(is_still(&p) && !is_still(&q));
+    for (size_t k = 0; k < 5; ++k) {
+        get_vector(&p, k, first[k]);
+    }
+    CHECK(text_model_run(&p, 1.4) && text_model_run(&q, 1.4));
+    for (size_t k = 0; k < 5; ++k) {
+        get_vector(&p, k, now);
+        get_vector(&q, k, other);
+        for (int c = 0; c < 3; ++c) {
+            CHECK(k == 3 || !(fabs(now[c] - first[k][c]) > 0.0));
+            CHECK_NEAR(now[c], other[c], k == 4 ? 0.05 : k == 3 ? 1e-13 : 1e-5);
+        }
+    }
+    for (int step = 1; step <= 200; ++step) {
+        CHECK(text_model_run(&p, 1.4 + STEP * step) && text_model_run(&q, 1.4 + STEP * step));
+        get_vector(&p, 2, now);
+        get_vector(&q, 2, other);
+        for (int c = 0; c < 3; ++c) {
+            most = fmax(most, fabs(now[c]));
+            CHECK_NEAR(now[c], other[c], 1e-3 + 0.02 * fabs(other[c]));
+        }
+        CHECK_NEAR(text_model_get(&p, 5, 0), text_model_get(&q, 5, 0), 1e-6);
+    }
+    CHECK(most > 0.1);
+    text_model_close(&p);
+    text_model_close(&q);
+}
+
+/* What is loaded by a function of time stays awake, with all that is joined to it. */
+static void machines_that_something_may_move_stay_awake(void)
+{
+    text_model p = lay_down(1, "30*t");
+    CHECK(text_model_run(&p, 1.2));
+    CHECK(!is_still(&p));
+    text_model_close(&p);
+}
+
+/* A box glides and turns on ice, slower than what falls asleep: what it moves with is lost. */
+static void what_it_moved_with_is_counted(void)
+{
+    text_model m = text_model_open(
+        "se3d: 1\nmaterials: [{name: ice, density: 1000, friction: 0, restitution: 0.3, stiffness: "
+        "1.0e+6}]\ncontact: {}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, material: ice}]}\n"
+        "  - {name: a, position: [0, 0, 0.05], velocity: [5.0e-6, 0, 0], angular_velocity: [0, 0, "
+        "3.0e-5], shapes: [{type: box, size: [0.2, 0.1, 0.1], material: ice}]}\n"
+        "analysis: {type: dynamics, duration: 3, sleep: true}\noutput: [{file: r.csv, channels: "
+        "[a.velocity, energy.balance, energy.kinetic]}]\n",
+        SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+    double before = 0.0, moves = 0.0;
+    int step = 0;
+    for (; step < 2000 && (step == 0 || fabs(text_model_get(&m, 0, 0)) > 0.0); ++step) {
+        before = step ? text_model_get(&m, 1, 0) : 0.0;
+        moves = step ? text_model_get(&m, 2, 0) : 0.0;
+        CHECK(text_model_run(&m, STEP * (step + 1)));
+    }
+    CHECK(step > 250 && step < 2000);
+    CHECK_NEAR(moves, 0.5 * 2.0 * (25e-12 + 0.05 / 12.0 * 9e-10), 1e-14);
+    CHECK_NEAR(text_model_get(&m, 1, 0), before, 1e-14);
+    text_model_close(&m);
+}
+
 int main(void)
 {
     RUN(what_rests_sleeps_and_is_where_it_is_without);
@@ -239,6 +353,9 @@ int main(void)
     RUN(what_is_set_wakes);
     RUN(what_loads_may_move_stays_awake);
     RUN(a_snapshot_knows_what_sleeps);
+    RUN(machines_at_rest_sleep_until_something_falls_on_them);
+    RUN(machines_that_something_may_move_stay_awake);
+    RUN(what_it_moved_with_is_counted);
     RUN(a_joint_that_breaks_wakes_what_its_load_falls_on);
     return check_finish();
 }

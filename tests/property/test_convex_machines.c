@@ -352,16 +352,123 @@ static void machines_that_do_not_touch_are_solved_apart(void)
     text_model_close(&m);
 }
 
+/* A double pendulum with friction and a stop, a weight on a spring, a top that flies; a ball that
+ * lies somewhere else. */
+static text_model open_flight(int with_ball)
+{
+    char text[4096];
+    (void)snprintf(
+        text, sizeof text,
+        "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, friction: 0.5}]\n"
+        "contact: {}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, material: m}]}\n"
+        "  - {name: a, position: [0.5, 0, 2], mass: 1, inertia: [0.01, 0.02, 0.03]}\n"
+        "  - {name: b, position: [1.5, 0, 2], mass: 1, inertia: [0.01, 0.02, 0.03]}\n"
+        "  - {name: s, position: [3, 0, 2], mass: 2, inertia: [0.1, 0.2, 0.3]}\n"
+        "  - {name: f, position: [5, 0, 9], mass: 2, inertia: [0.1, 0.2, 0.3], angular_velocity: "
+        "[3, 8, 2]}\n%s"
+        "joints:\n"
+        "  - {name: p, type: revolute, body_i: ground, body_j: a, at: [0, 0, 2], axis: [0, 1, 0]}\n"
+        "  - {name: q, type: revolute, body_i: a, body_j: b, at: [1, 0, 2], axis: [0, 1, 0]}\n"
+        "forces:\n"
+        "  - {name: k, type: tsda, body_i: ground, body_j: s, at: [3, 0, 3], at_2: [3, 0, 2], k: "
+        "100, c: 0.1, l0: 0.7}\n"
+        "  - {name: r, type: friction, joint: p, mu: 0.1, radius: 0.05}\n"
+        "  - {name: t, type: stop, joint: q, lower: -2, upper: 2, k: 1.0e+4, restitution: 0.5}\n"
+        "analysis: {type: dynamics, duration: 2}\noutput: [{file: r.csv, channels: [a.position, "
+        "b.position, s.position, f.position, f.orientation, s.acceleration, k.force]}]\n",
+        with_ball ? "  - {name: c, position: [-5, 0, 0.0999], shapes: [{type: sphere, radius: 0.1, "
+                    "material: m}]}\n"
+                  : "");
+    return text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+}
+
+/* To the bit, whatever touches elsewhere. */
+static void what_nothing_touches_moves_as_it_does_alone(void)
+{
+    static const size_t counts[] = {3, 3, 3, 3, 4};
+    text_model alone = open_flight(0), together = open_flight(1);
+    for (int step = 1; step <= 1000; ++step) {
+        CHECK(text_model_run(&alone, STEP * step));
+        CHECK(text_model_run(&together, STEP * step));
+        for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+            for (size_t part = 0; part < counts[k]; ++part) {
+                const double is = text_model_get(&together, k, part);
+                CHECK(is == text_model_get(&alone, k, part)); /* NOLINT */
+            }
+        }
+    }
+    text_model_close(&alone);
+    text_model_close(&together);
+}
+
+/* Forces of contacts press on the bodies that touch. */
+static void what_touches_pushes_no_other_body(void)
+{
+    text_model m = open_flight(1);
+    for (int step = 1; step <= 100; ++step) {
+        CHECK(text_model_run(&m, STEP * step));
+        CHECK_NEAR(text_model_get(&m, 5, 2), -9.81 + 0.5 * text_model_get(&m, 6, 0), 1e-9);
+    }
+    text_model_close(&m);
+}
+
+/* A ball on a rail is driven at 0.1 m/s against a wall, and another one before it, or is too heavy
+ * to be stopped by that. Forces are those of the overlaps. */
+static void what_is_driven_against_what_cannot_give_way_feels_the_law(void)
+{
+    static const char *const movers[2] = {"mass: 0.5, inertia: [1e-3, 1e-3, 1e-3]",
+                                          "mass: 1.0e+7, inertia: [1e5, 1e5, 1e5], "
+                                          "velocity: [0.1, 0, 0]"};
+    static const char *const rails[2] = {
+        "joints: [{name: s, type: prismatic, body_i: ground, body_j: a, at: [0, 0, 0], axis: [1, "
+        "0, 0]}]\ndrivers: [{name: d, joint: s, value: 0.1*t}]\n",
+        ""};
+    for (int k = 0; k < 3; ++k) {
+        const int jams = k > 0, is_free = k > 1;
+        char text[2048];
+        (void)snprintf(
+            text, sizeof text,
+            "se3d: 1\ngravity: [0, 0, 0]\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, "
+            "friction: 0.3, restitution: 0.3}]\ncontact: {}\nbodies:\n"
+            "  - {name: wall, fixed: true, position: [%g, 0, 0], shapes: [{type: box, size: [0.1, "
+            "0.2, 0.2], material: m}]}\n"
+            "  - {name: a, %s, shapes: [{type: sphere, radius: 0.05, material: m}]}\n%s%s"
+            "analysis: {type: dynamics, duration: 0.2}\n"
+            "output: [{file: r.csv, channels: [a.position, a.contact_force, energy.balance]}]\n",
+            jams ? 0.201 : 0.101, movers[is_free],
+            jams ? "  - {name: b, position: [0.1005, 0, 0], shapes: [{type: sphere, radius: 0.05, "
+                   "material: m}]}\n"
+                 : "",
+            rails[is_free]);
+        text_model m = text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+        for (int step = 1; step <= 80; ++step) {
+            CHECK(text_model_run(&m, STEP * step));
+            const double depth = text_model_get(&m, 0, 0) - 1e-3;
+            const double force = -text_model_get(&m, 1, 0), springs = jams ? 2.0 : 1.0;
+            if (depth > 1e-3) {
+                CHECK_NEAR(force, 1e6 * depth / springs, 120.0); /* of up to 7000, with dampers */
+            } else {
+                CHECK(force >= 0.0 && force < 1200.0);
+            }
+        }
+        text_model_close(&m);
+    }
+}
+
 int main(void)
 {
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
     RUN(an_angle_stays_within_its_range);
     RUN(what_swings_onto_a_stop_is_as_heavy_as_its_arm_makes_it);
     RUN(what_is_driven_over_its_stop_feels_the_law);
+    RUN(what_is_driven_against_what_cannot_give_way_feels_the_law);
     RUN(what_hangs_on_strings_pulls_them_tight);
     RUN(what_a_cam_is_driven_with_is_counted);
     RUN(what_drivers_speed_up_by_themselves_is_counted);
     RUN(a_figure_falls_down_within_the_ranges_of_its_joints);
     RUN(machines_that_do_not_touch_are_solved_apart);
+    RUN(what_nothing_touches_moves_as_it_does_alone);
+    RUN(what_touches_pushes_no_other_body);
     return check_finish();
 }
