@@ -30,8 +30,6 @@ INLINE = ("base/hash.h", "base/coder.h", "base/floats.h", "base/shortest.h", "ma
 CIRCLES = {
     "primitive/scale primitive/turn_counter":
         "an accepted state is looked at for rows left out, whose gap is measured as every row's",
-    "contact/narrow/convex contact/narrow/least":
-        "the least way out of an overlap begins at a distance, and a distance ends polished by it",
     "contact/narrow/flush contact/narrow/hollow contact/narrow/mesh contact/narrow/outlines contact/narrow/pieces contact/narrow/surfaces contact/narrow/ways":
         "a mesh is taken apart into pieces, which are meshes, and the whole judges their ways out",
     "tree/loop_points tree/loop_rows tree/loop_turns tree/loops":

@@ -185,7 +185,7 @@ static void distances_of_cores_are_exact(void)
         random_pose(&seed, 0.9, &at_two);
         se3di_solid i = {&one, &at_one}, j = {&two, &at_two};
         double radii = se3di_core_radius(&one) + se3di_core_radius(&two);
-        double overlap = se3di_convex_distance(&i, &j, n, on_i, on_j);
+        double overlap = se3di_convex_distance(&i, &j, HUGE_VAL, n, on_i, on_j);
         double sampled = brute_force(&i, &j); /* from above: its search may end on a ridge */
         CHECK(overlap + radii <= sampled + 1e-9 && overlap + radii > sampled - 5e-3);
         CHECK_NEAR(se3di_norm(n), 1.0, 1e-12);

@@ -192,10 +192,10 @@ static int holds(const simplex *s, const vertex *v)
     return 0;
 }
 
-/* The distance; 0 if the origin is within rounding of the simplex. If all that is asked is whether
- * it is more than `enough` (>= 0), a bound that tells is returned: D lies behind the plane through
- * its point farthest along any direction. */
-static double walk(const difference *D, simplex *s, double point[3], double enough)
+/* The distance; 0 if the origin is within rounding of the simplex. For one of `near` or less any
+ * such may be returned, for one beyond `far` a bound beyond it: D lies behind the plane through its
+ * point farthest along any direction. */
+static double walk(const difference *D, simplex *s, double point[3], double near, double far)
 {
     double d[3];
     se3di_sub(D->j->at->x, D->i->at->x, d);
@@ -207,7 +207,7 @@ static double walk(const difference *D, simplex *s, double point[3], double enou
     s->weight[0] = 1.0;
     se3di_copy(s->v[0].p, point);
     const double size = se3di_norm(d);
-    if (enough >= 0.0 && -se3di_dot(point, d) > enough * size) {
+    if (-se3di_dot(point, d) > far * size) {
         return -se3di_dot(point, d) / size;
     }
     for (int k = 0; k < WALKS; ++k) {
@@ -217,13 +217,13 @@ static double walk(const difference *D, simplex *s, double point[3], double enou
             return 0.0;
         }
         double distance = sqrt(square);
-        if (distance <= enough) {
+        if (distance <= near) {
             return distance;
         }
         se3di_scale(-1.0 / distance, point, d);
         support(D, d, &next);
         const double least = -se3di_dot(next.p, d);
-        if (enough >= 0.0 && least > enough) {
+        if (least > far) {
             return least;
         }
         if (distance - least <= GAIN * D->size || holds(s, &next)) {
@@ -346,15 +346,13 @@ static void begin(polytope *P, const simplex *s)
     }
 }
 
-/* The edge a -> b of a dead face is on the horizon where the face beyond it lives. */
-static int is_horizon(const polytope *P, int faces, int a, int b)
+/* The edge a -> b of a dying face is on the horizon unless the face beyond it dies, too. */
+static int is_horizon(const polytope *P, const int *dying, int count, int a, int b)
 {
-    for (int k = 0; k < faces; ++k) {
-        const polytope_face *f = &P->face[k];
-        for (int e = 0; e < 3 && f->alive == 2; ++e) {
-            if (f->v[e] == b && f->v[(e + 1) % 3] == a) {
-                return 0;
-            }
+    for (int k = 0; k < count; ++k) {
+        const int *v = P->face[dying[k]].v;
+        if ((v[0] == b && v[1] == a) || (v[1] == b && v[2] == a) || (v[2] == b && v[0] == a)) {
+            return 0;
         }
     }
     return 1;
@@ -363,27 +361,27 @@ static int is_horizon(const polytope *P, int faces, int a, int b)
 /* Faces that the new vertex sees give way to a cone from it. Returns 0 if there is no room. */
 static int grow(polytope *P, int vertex_index)
 {
-    int faces = P->face_count, seen = 0;
+    int dying[FACES], seen = 0;
     const double *p = P->v[vertex_index].p;
-    for (int k = 0; k < faces; ++k) {
+    for (int k = 0; k < P->face_count; ++k) {
         polytope_face *f = &P->face[k];
-        if (f->alive && height_over(P, f, p) > PLANE_SLACK * P->D->size) {
-            f->alive = 2; /* dying */
-            ++seen;
+        if (height_over(P, f, p) > PLANE_SLACK * P->D->size) {
+            f->alive = 0;
+            dying[seen++] = k;
         }
     }
-    for (int k = 0; k < faces; ++k) {
-        for (int e = 0; e < 3 && P->face[k].alive == 2; ++e) {
-            int a = P->face[k].v[e];
-            int b = P->face[k].v[(e + 1) % 3];
-            if (is_horizon(P, faces, a, b)) {
+    for (int k = 0; k < seen; ++k) {
+        for (int e = 0; e < 3; ++e) {
+            const int a = P->face[dying[k]].v[e];
+            const int b = P->face[dying[k]].v[(e + 1) % 3];
+            if (is_horizon(P, dying, seen, a, b)) {
                 add_face(P, a, b, vertex_index);
             }
         }
     }
-    int kept = 0;
-    for (int k = 0; k < P->face_count; ++k) {
-        if (P->face[k].alive == 1) {
+    int kept = seen > 0 ? dying[0] : P->face_count;
+    for (int k = kept; k < P->face_count; ++k) {
+        if (P->face[k].alive) {
             P->face[kept++] = P->face[k];
         }
     }
@@ -418,7 +416,7 @@ static polytope_face *next_face(polytope *P, const least_reach *best)
     for (int k = 0; k < P->face_count; ++k) {
         polytope_face *f = &P->face[k];
         double turn[3];
-        if (!f->alive || f->done || !(f->distance < (next ? next->distance : HUGE_VAL))) {
+        if (f->done || !(f->distance < (next ? next->distance : HUGE_VAL))) {
             continue;
         }
         se3di_sub(f->n, best->n, turn);
@@ -525,7 +523,7 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
     double point[3];
     memset(&s, 0, sizeof s);
     const double enough = fmax(distance, APART * D.size);
-    return walk(&D, &s, point, enough) > enough;
+    return walk(&D, &s, point, enough, enough) > enough;
 }
 
 int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const double n[3],
@@ -537,8 +535,41 @@ int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const do
     return -se3di_dot(v.p, n) > se3di_raised(APART * D.size, distance);
 }
 
-double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
-                             double on_i[3], double on_j[3])
+/* The overlap of cores that meet, from a simplex that is within rounding of the origin. */
+static double overlap_of(const difference *D, simplex *s, double normal[3], double on_i[3],
+                         double on_j[3])
+{
+    const int rims_i = se3di_solid_has_rims(D->i), rims_j = se3di_solid_has_rims(D->j);
+    if (!rims_i && !rims_j) {
+        double n[3], a[3], b[3];
+        const double overlap = known_overlap(D->i, D->j, n, a, b);
+        if (overlap > 0.0) {
+            se3di_copy(n, normal);
+            se3di_copy(a, on_i);
+            se3di_copy(b, on_j);
+            return overlap;
+        }
+    }
+    if (!complete(D, s)) {
+        return flat_normal(D, s, normal);
+    }
+    polytope P;
+    least_reach best = {.reach = HUGE_VAL};
+    P.D = D;
+    begin(&P, s);
+    expand(&P, &best);
+    const int is_smooth = se3di_solid_is_smooth(D->i) || se3di_solid_is_smooth(D->j);
+    if (!best.is_settled && (best.is_sliver || is_smooth || rims_i || rims_j)) {
+        (void)se3di_convex_polish(D->i, D->j, best.n, best.a, best.b, &best.reach);
+    }
+    se3di_copy(best.n, normal);
+    se3di_copy(best.a, on_i);
+    se3di_copy(best.b, on_j);
+    return best.reach;
+}
+
+double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double far,
+                             double normal[3], double on_i[3], double on_j[3])
 {
     const int smooth = se3di_solid_is_smooth(i) || se3di_solid_is_smooth(j);
     difference D = {i, j, size_of(i) + size_of(j),
@@ -553,7 +584,10 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
         return known;
     }
     memset(&s, 0, sizeof s);
-    double distance = walk(&D, &s, point, -1.0);
+    double distance = walk(&D, &s, point, -1.0, fmax(far, least));
+    if (distance > far && distance > least) {
+        return -distance;
+    }
     witness(s.v, s.weight, s.count, on_i, on_j);
     if (distance > least) {
         double overlap = smooth ? HUGE_VAL : -distance;
@@ -561,30 +595,5 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
         return smooth && se3di_convex_polish(i, j, normal, on_i, on_j, &overlap) ? overlap
                                                                                  : -distance;
     }
-    if (!se3di_solid_has_rims(i) && !se3di_solid_has_rims(j)) {
-        double n[3], a[3], b[3];
-        const double overlap = known_overlap(i, j, n, a, b);
-        if (overlap > 0.0) {
-            se3di_copy(n, normal);
-            se3di_copy(a, on_i);
-            se3di_copy(b, on_j);
-            return overlap;
-        }
-    }
-    if (!complete(&D, &s)) {
-        return flat_normal(&D, &s, normal);
-    }
-    polytope P;
-    least_reach best = {.reach = HUGE_VAL};
-    P.D = &D;
-    begin(&P, &s);
-    expand(&P, &best);
-    if (!best.is_settled &&
-        (best.is_sliver || smooth || se3di_solid_has_rims(i) || se3di_solid_has_rims(j))) {
-        (void)se3di_convex_polish(i, j, best.n, best.a, best.b, &best.reach);
-    }
-    se3di_copy(best.n, normal);
-    se3di_copy(best.a, on_i);
-    se3di_copy(best.b, on_j);
-    return best.reach;
+    return overlap_of(&D, &s, normal, on_i, on_j);
 }

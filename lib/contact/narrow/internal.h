@@ -43,9 +43,10 @@ void se3di_manifold_separate(se3di_manifold *manifold, const double R[9]);
 void se3di_bend_set(se3di_bend *bend, const double u[3], double along, double across);
 
 /* Two convex shapes: the normal from i to j along which the least translation of j (the overlap)
- * separates the cores, negative: their distance; and the nearest points of the cores. */
-double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double normal[3],
-                             double on_i[3], double on_j[3]);
+ * separates the cores, negative: their distance; and the nearest points of the cores. Of cores that
+ * are farther apart than `far` >= 0 only a bound of it beyond `far` is found. */
+double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double far,
+                             double normal[3], double on_i[3], double on_j[3]);
 
 /* Whether a side of a solid shows that it is apart from a line by more than a distance; if not, it
  * may be. */
@@ -72,7 +73,7 @@ int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3],
                         double b[3], double *overlap);
 
 /* The same to rounding and with the radii about the cores: the overlap, negative: the distance. */
-double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double normal[3],
+double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double far, double normal[3],
                           double on_i[3], double on_j[3]);
 
 void se3di_narrow_sphere(const se3di_solid *sphere, const se3di_solid *j, se3di_manifold *manifold);

@@ -555,10 +555,13 @@ static void meet_rest(void *ctx, uint32_t triangle)
     if (!se3di_mesh_face_of(m, triangle, &f) || !se3di_mesh_overlaps(m, triangle)) {
         return;
     }
-    const double overlap = se3di_convex_least(m->solid, &other, n, on_i, on_j);
+    const double overlap = se3di_convex_least(m->solid, &other, 0.0, n, on_i, on_j);
+    if (!(overlap > 0.0)) {
+        return;
+    }
     se3di_mul_transposed(m->mesh->at->R, n, back);
     se3di_scale(-1.0, back, back);
-    if (overlap > 0.0 && !(se3di_dot(back, f.n) < 0.0)) {
+    if (!(se3di_dot(back, f.n) < 0.0)) {
         se3di_solid_to_local(m->mesh, on_j, on_j);
         se3di_mesh_add(m, on_j, back, overlap, se3di_core_radius(m->solid->shape),
                        0x40000000u + triangle);
@@ -578,7 +581,7 @@ static void meet_through(void *ctx, uint32_t triangle)
     }
     const double radius = se3di_mesh_lowest(m, f.n, lowest);
     const double depth = radius - se3di_mesh_height(&f, lowest);
-    if (depth > 0.0 && se3di_convex_least(m->solid, &other, n, on_i, on_j) > 0.0) {
+    if (depth > 0.0 && se3di_convex_least(m->solid, &other, 0.0, n, on_i, on_j) > 0.0) {
         se3di_add_scaled(depth - radius, f.n, lowest);
         se3di_mesh_add(m, lowest, f.n, depth, radius, 0x40000000u + triangle);
     }

@@ -65,7 +65,7 @@ static double mesh_gap(const se3di_solid *i, const se3di_solid *mesh, double nor
 static double convex_gap(const se3di_solid *i, const se3di_solid *j, double normal[3])
 {
     double on_i[3], on_j[3];
-    return -se3di_convex_least(i, j, normal, on_i, on_j);
+    return -se3di_convex_least(i, j, HUGE_VAL, normal, on_i, on_j);
 }
 
 /* What shapes are to each other, in the order in which they are the first of a pair. */

@@ -525,7 +525,7 @@ void se3di_narrow_convex(const se3di_solid *i, const se3di_solid *j, se3di_manif
 {
     parting p = {.i = i, .j = j};
     p.radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
-    p.depth = se3di_convex_least(i, j, p.n, p.on_i, p.on_j);
+    p.depth = se3di_convex_least(i, j, 0.0, p.n, p.on_i, p.on_j);
     if (p.depth > 0.0) {
         touch(&p, manifold);
     }
