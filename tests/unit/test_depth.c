@@ -437,6 +437,51 @@ static void a_sliver_below_a_dome_leaves_over_an_edge_that_it_does_not_overlap(v
     surface_release(&s);
 }
 
+/* Side by side or across each other, with their middles or their ends: what the formula says is the
+ * least of all directions, and most need no other way. */
+static void logs_are_as_deep_as_all_directions_say(void)
+{
+    const int poses = poses_count(2000);
+    uint64_t seed = 12;
+    int known = 0, wrong = 0, counted = 0;
+    for (int k = 0; k < poses; ++k) {
+        se3di_shape log[2];
+        se3di_shape_pose at, of;
+        double n[3], wanted[3], a[3], b[3], axis[3], side[3], turn[3];
+        for (int c = 0; c < 2; ++c) {
+            log[c] = (se3di_shape){.kind = SE3DI_SHAPE_CYLINDER,
+                                   .radius = poses_between(&seed, 0.05, 0.2),
+                                   .half_length = poses_between(&seed, 0.1, 1.0)};
+            log[c].bound = se3di_shape_bound(&log[c]);
+        }
+        poses_turn(&seed, &of);
+        if (k % 2 == 0) {
+            poses_turn(&seed, &at);
+        } else {
+            poses_turn_slightly(&seed, &of, -12.0, -1.0, &at);
+        }
+        const se3di_solid i = {&log[0], &at}, j = {&log[1], &of};
+        se3di_solid_axis(&i, 2, axis);
+        se3di_perpendicular(axis, side);
+        const double deep = log[0].radius * pow(10.0, poses_between(&seed, -6.0, -0.3));
+        se3di_scale(log[0].radius + log[1].radius - deep, side, at.x);
+        se3di_add_scaled(log[0].half_length * check_random(&seed), axis, at.x);
+        const double least = separation_of(&log[0], &at, &log[1], &of, wanted);
+        const double overlap = se3di_cylinders_overlap(&i, &j, n, a, b);
+        counted += least > 0.0;
+        if (overlap > 0.0) {
+            ++known;
+            se3di_sub(n, wanted, turn);
+            wrong += !(fabs(overlap - least) < 1e-12 && se3di_norm(turn) < 1e-6);
+        }
+    }
+    if (poses_are_many()) {
+        printf("%d logs overlap, %d are known, %d wrong\n", counted, known, wrong);
+    }
+    CHECK(counted > poses / 4 && 5 * known > 2 * counted);
+    CHECK(wrong == 0);
+}
+
 int main(void)
 {
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
@@ -445,6 +490,7 @@ int main(void)
     RUN(sharp_hulls_are_as_deep_as_what_is_below_the_dome);
     RUN(solids_nearly_parallel_to_a_ridge_are_as_deep_as_others);
     RUN(a_cylinder_along_a_block_is_not_held_by_a_sliver);
+    RUN(logs_are_as_deep_as_all_directions_say);
     RUN(a_sliver_below_a_dome_leaves_over_an_edge_that_it_does_not_overlap);
     return check_finish();
 }

@@ -492,11 +492,14 @@ static double flat_normal(const difference *D, const simplex *s, double normal[3
     return 0.0;
 }
 
-/* The overlap of a box or line and a cylinder or line, <= 0 if they are apart; minus infinity: they
- * are other shapes, or two lines. */
+/* The overlap of a box or line and a cylinder or line, <= 0 if they are apart, and of two
+ * cylinders, 0 if it is not known; minus infinity: they are other shapes, or two lines. */
 static double known_overlap(const se3di_solid *i, const se3di_solid *j, double normal[3],
                             double on_i[3], double on_j[3])
 {
+    if (se3di_solid_has_rims(i) && se3di_solid_has_rims(j)) {
+        return se3di_cylinders_overlap(i, j, normal, on_i, on_j);
+    }
     for (int k = 0; k < 2; ++k) {
         const se3di_solid *one = k ? j : i, *other = k ? i : j;
         const int is_box = se3di_shape_class_of(one->shape)->flats == SE3DI_AXES_ALL;

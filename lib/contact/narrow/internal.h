@@ -67,6 +67,10 @@ int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const do
 double se3di_cylinder_overlap(const se3di_solid *block, const se3di_solid *cylinder, double n[3],
                               double on_block[3], double on_cylinder[3]);
 
+/* How far two cylinders that lie side by side or cross overlap, as above; 0: it is not known so. */
+double se3di_cylinders_overlap(const se3di_solid *i, const se3di_solid *j, double n[3],
+                               double on_i[3], double on_j[3]);
+
 /* Replace a direction that is near the one of the least overlap, the points of the cores that are
  * farthest in each other and the overlap by those to rounding. Returns whether there is one. */
 int se3di_convex_polish(const se3di_solid *i, const se3di_solid *j, double n[3], double a[3],
