@@ -255,6 +255,9 @@ void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island
                                 double *out)
 {
     const se3di_convex_rows *r = &c->rows;
+    if (island->joint == island->joint_end) {
+        return; /* there may be no rows at all */
+    }
     const double *lambda = r->lambda + island->row, *C = r->C + island->value;
     for (size_t j = 0; j < island->joint_end - island->joint; ++j) {
         const int32_t rows = r->count[island->joint + j];
