@@ -33,6 +33,9 @@ typedef struct se3d_material_def {
     double tangential_damping;     /* [1] <= 10, over that along the normal */
     double rolling_ratio;          /* [1] <= 100, stiffness of rolling and torsion over kt; 1 */
     double rolling_damping;        /* [1] <= 10, over sqrt(m* stiffness of rolling); 1.2 */
+    /* Of particles, in place of a restitution: hooke [1/s], damping over m*; hertz_mindlin
+     * [1/(m s)], over m* sqrt(R* overlap). Of two the mean, or of the one that has it. */
+    double damping_rate;
 } se3d_material_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */

@@ -21,6 +21,7 @@ typedef struct se3di_material {
     double stiffness, tangential_ratio;          /* hooke: kn of two spheres of it, kt/kn */
     double cohesion, adhesion;                   /* [J/m^3], [J/m^2] */
     double damping_ratio; /* 0: by restitution; these: 0 by the law, < 0 none */
+    double damping_rate;  /* of particles; 0: by restitution, < 0 none */
     double tangential_ratio_hertz, tangential_damping, rolling_ratio, rolling_damping;
     uint32_t users; /* shapes and sets of particles */
     uint32_t reserved;
@@ -41,6 +42,8 @@ typedef struct se3di_override {
  *
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
  *
+ * Of particles rn m* s and rt m* s stand in place of the two dampings, if rn is not below 0.
+ *
  * kr, dr: of rolling and torsion, like kt and dt. Attraction, taken from Fn after friction has seen
  * it:
  *
@@ -50,9 +53,10 @@ typedef struct se3di_pair {
     double friction, rolling, torsion, dr;
     double cohesion, pull_off, kr;
     double restitution;
+    double rn, rt;
 } se3di_pair;
 
-#define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need */
+#define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need, but rn and rt */
 
 typedef struct se3di_contact_settings {
     int32_t law; /* se3di_contact_law */

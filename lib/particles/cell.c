@@ -214,6 +214,7 @@ static se3di_pair hardest(const se3di_particles *set, size_t material)
             out.kn = fmax(out.kn, pair->kn);
             out.kt = fmax(out.kt, pair->kt);
             out.dn = fmax(out.dn, fmax(pair->dn, pair->dt));
+            out.rn = fmax(out.rn, fmax(pair->rn, pair->rt));
         }
     }
     return out;
@@ -230,7 +231,9 @@ static answer contact_answer(const se3di_particles *set, const se3di_particle *p
         s = se3di_pow(0.5 * particle->radius * load / pair.kn, 1.0 / 3.0);
         normal *= 1.5;
     }
-    return (answer){s * fmax(normal, pair.kt), pair.dn * sqrt(0.5 * s / particle->inverse_mass)};
+    const double damping = pair.dn * sqrt(0.5 * s / particle->inverse_mass);
+    return (answer){s * fmax(normal, pair.kt),
+                    damping + pair.rn * 0.5 * s / particle->inverse_mass};
 }
 
 /* Contacts lie in all directions; each particle has as many, with others like it, and carries by

@@ -59,6 +59,7 @@ static se3di_force_task task_of(const se3di_particles *set, couple *c)
         .law = (int32_t)set->law,
         .limit = 1e30,
         .cohesive = set->cohesive,
+        .rated = set->rated,
         .wall_sums = c->sums,
         .stuffs = set->stuffs,
         .callback = set->callback,

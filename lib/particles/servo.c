@@ -87,7 +87,7 @@ double se3di_servo_wanted(const se3di_servo *servo)
 }
 
 /* Stiffness and damping of what presses a wall: its bonds and what may touch it. */
-enum { BONDS_K, BONDS_C, TOUCHES_K, TOUCHES_C, TOTALS };
+enum { BONDS_K, BONDS_C, TOUCHES_K, TOUCHES_C, TOUCHES_RATE, TOTALS };
 
 typedef struct totals {
     double sum[TOTALS];
@@ -142,6 +142,7 @@ static void add_touches(const se3di_particles *set, const se3di_servo *servo, to
             const double root = hertz ? sqrt(g->radius) : 1.0;
             add(set, TOUCHES_K, pair->kn * root, out);
             add(set, TOUCHES_C, pair->dn * sqrt(root / g->inverse_mass), out);
+            add(set, TOUCHES_RATE, pair->rn * root / g->inverse_mass, out);
         }
     }
 }
@@ -154,13 +155,14 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
     add_bonds(set, servo, &of);
     add_touches(set, servo, &of);
     unite(set, &of);
-    const double K = of.sum[TOUCHES_K], C = of.sum[TOUCHES_C];
+    const double K = of.sum[TOUCHES_K], C = of.sum[TOUCHES_C], rate = of.sum[TOUCHES_RATE];
     const double bonds = STEPS * h * of.sum[BONDS_K] + DAMPS * of.sum[BONDS_C];
-    if (set->law == SE3DI_LAW_HERTZ_MINDLIN && K > 0.0) { /* F = K d^(3/2), C d^(1/4) */
+    if (set->law == SE3DI_LAW_HERTZ_MINDLIN &&
+        K > 0.0) { /* F = K d^(3/2), C d^(1/4), rate d^(1/2) */
         const double root = se3di_pow(force / K, 1.0 / 3.0);
-        return bonds + STEPS * h * 1.5 * K * root + DAMPS * C * sqrt(root);
+        return bonds + STEPS * h * 1.5 * K * root + DAMPS * (C * sqrt(root) + rate * root);
     }
-    return bonds + STEPS * h * K + DAMPS * C;
+    return bonds + STEPS * h * K + DAMPS * (C + rate);
 }
 
 static double choose_speed(const se3di_particles *set, const se3di_servo *servo, double h)

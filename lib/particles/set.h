@@ -409,9 +409,9 @@ typedef struct se3di_particles {
     int32_t threads;
     int32_t team; /* threads that evaluated the last forces */
     int32_t boundary[3];
-    int32_t rolling;  /* any material resists */
-    int32_t cohesive; /* any pair attracts */
-    int32_t reserved;
+    int32_t rolling;     /* any material resists */
+    int32_t cohesive;    /* any pair attracts */
+    int32_t rated;       /* any pair has a damping rate */
     int32_t list_valid;  /* the lists belong to the particles */
     int32_t force_valid; /* the forces belong to the state */
     double lower[3], upper[3];
@@ -567,7 +567,7 @@ typedef struct se3di_force_task {
     uint32_t materials;
     uint32_t material;   /* of all particles; SE3DI_NO_INDEX: several, or it is not known */
     uint32_t begin, end; /* blocks */
-    int32_t law, periodic, uniform, cohesive;
+    int32_t law, periodic, uniform, cohesive, rated, reserved;
     double h;                            /* what the springs advance by */
     double length[3], rate[3];           /* of the period and its inverse; 0: none */
     const se3di_strain *strain;          /* of a cell that strains; NULL: none */

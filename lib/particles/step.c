@@ -235,6 +235,7 @@ static se3di_force_task prepare(se3di_particles *set, double h, const se3di_stra
         .law = (int32_t)set->law,
         .uniform = set->uniform,
         .cohesive = set->cohesive,
+        .rated = set->rated,
         .h = h,
         .limit = set->overlap_limit,
         .unused = (uint32_t)set->capacity,

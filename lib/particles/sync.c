@@ -47,6 +47,18 @@ static se3d_status use(se3di_particles *set, const se3di_model *model, uint32_t 
     return SE3D_OK;
 }
 
+/* One damping is there, the other is none. */
+static se3di_pair of_particles(const se3di_pair *pair)
+{
+    se3di_pair out = *pair;
+    if (pair->rn < 0.0) {
+        out.rn = 0.0;
+    } else {
+        out.dn = out.dt = 0.0;
+    }
+    return out;
+}
+
 /* Copies of the model's materials and pairs. */
 static se3d_status mix(se3di_particles *set, const se3di_model *model)
 {
@@ -58,6 +70,7 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
     SE3DI_TRY(status);
     set->rolling = 0;
     set->cohesive = 0;
+    set->rated = 0;
     for (size_t k = 0; k < n * n; ++k) {
         se3di_handle a = set->stuffs[k / n].handle;
         se3di_handle b = set->stuffs[k % n].handle;
@@ -65,9 +78,10 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
         uint32_t column = se3di_slots_find(&model->material_slots, b.index1, b.generation);
         if (row != SE3DI_NO_INDEX && column != SE3DI_NO_INDEX) {
             set->stuffs[k / n].material = model->materials[row];
-            set->pairs[k] = model->pairs[row * m + column];
+            set->pairs[k] = of_particles(&model->pairs[row * m + column]);
             set->rolling |= set->pairs[k].rolling > 0.0 || set->pairs[k].torsion > 0.0;
             set->cohesive |= set->pairs[k].cohesion > 0.0 || set->pairs[k].pull_off > 0.0;
+            set->rated |= set->pairs[k].rn > 0.0;
         }
     }
     return SE3D_OK;

@@ -135,7 +135,8 @@ static se3di_material read_material(const se3d_material_def *def)
                             .tangential_ratio_hertz = def->tangential_ratio_hertz,
                             .tangential_damping = def->tangential_damping,
                             .rolling_ratio = def->rolling_ratio,
-                            .rolling_damping = def->rolling_damping};
+                            .rolling_damping = def->rolling_damping,
+                            .damping_rate = def->damping_rate};
 }
 
 /* What may be the law's own. */
@@ -148,7 +149,8 @@ static se3d_status check_choices(se3d_system *system, const se3d_material_def *d
                    {"tangential_ratio_hertz", def->tangential_ratio_hertz, 10.0},
                    {"tangential_damping", def->tangential_damping, 10.0},
                    {"rolling_ratio", def->rolling_ratio, 100.0},
-                   {"rolling_damping", def->rolling_damping, 10.0}};
+                   {"rolling_damping", def->rolling_damping, 10.0},
+                   {"damping_rate", def->damping_rate, 1e30}};
     for (size_t k = 0; k < sizeof choices / sizeof *choices; ++k) {
         if (!(isfinite(choices[k].value) && choices[k].value <= choices[k].most)) {
             return SE3DI_FAIL_OF(system, choices[k].what, SE3D_ERR_INVALID_ARGUMENT,
@@ -254,7 +256,8 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                     .tangential_ratio_hertz = data->tangential_ratio_hertz,
                                     .tangential_damping = data->tangential_damping,
                                     .rolling_ratio = data->rolling_ratio,
-                                    .rolling_damping = data->rolling_damping};
+                                    .rolling_damping = data->rolling_damping,
+                                    .damping_rate = data->damping_rate};
     return se3di_sized_give(def, size, &full, sizeof full);
 }
 

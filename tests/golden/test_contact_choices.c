@@ -163,6 +163,24 @@ static void a_damping_ratio_stands_for_a_restitution(void)
     }
 }
 
+/* Of two materials the mean, or the one that says so; 0 of a model file, here < 0, is none. */
+static void a_damping_rate_holds_for_the_pair(void)
+{
+    static const double rates[4][2] = {{200.0, 0.0}, {0.0, 200.0}, {100.0, 400.0}, {-1.0, 400.0}};
+    for (int k = 0; k < 8; ++k) {
+        se3d_material_def of = stuff(), plane = stuff();
+        double slip;
+        const double wn = sqrt(1e4 / (1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0)));
+        const double zeta = k / 2 < 3 ? 0.5 * 200.0 / wn : 0.0, root = sqrt(1.0 - zeta * zeta);
+        const double angle = PI - atan2(2.0 * zeta * root, root * root - zeta * zeta);
+        of.restitution = plane.restitution = 0.3; /* not looked at */
+        of.damping_rate = rates[k / 2][0];
+        plane.damping_rate = rates[k / 2][1];
+        CHECK_NEAR(impact(everyone[k % 2], SE3D_CONTACT_LAW_HOOKE, &of, &plane, &slip),
+                   exp(-zeta / root * angle), 5e-4);
+    }
+}
+
 /* A ball that is pressed on the plane and spins about the vertical: R^2 (kr theta + dr sqrt(m) w) =
  * -I w'. */
 static void torsion_swings_as_given(void)
@@ -237,14 +255,17 @@ static void model_files_say_so_too(void)
 {
     static const struct {
         const char *law, *keys;
-        double damping, linear, hertz, tangential, rolling, rolled;
-    } rows[] = {{"hooke", "restitution: 0.7", 0.0, 2.0 / 7.0, 0.0, 0.0, 0.0, 0.0},
+        double damping, linear, hertz, tangential, rolling, rolled, rate;
+    } rows[] = {{"hooke", "restitution: 0.7", 0.0, 2.0 / 7.0, 0.0, 0.0, 0.0, 0.0, 0.0},
                 {"hooke", "damping_ratio: 0.1, tangential_ratio: 0, rolling_damping: 0", 0.1, 0.0,
-                 0.0, 0.0, 0.0, -1.0},
+                 0.0, 0.0, 0.0, -1.0, 0.0},
                 {"hertz_mindlin", "damping_ratio: 0, tangential_ratio: 0.8, tangential_damping: 0",
-                 -1.0, 2.0 / 7.0, 0.8, -1.0, 0.0, 0.0},
+                 -1.0, 2.0 / 7.0, 0.8, -1.0, 0.0, 0.0, 0.0},
                 {"hertz_mindlin", "tangential_ratio: 0, rolling_ratio: 0, tangential_damping: 2",
-                 0.0, 2.0 / 7.0, -1.0, 2.0, -1.0, 0.0}};
+                 0.0, 2.0 / 7.0, -1.0, 2.0, -1.0, 0.0, 0.0},
+                {"hooke", "damping_rate: 0", 0.0, 2.0 / 7.0, 0.0, 0.0, 0.0, 0.0, -1.0},
+                {"hertz_mindlin", "damping_rate: 50, restitution: 0.9", 0.0, 2.0 / 7.0, 0.0, 0.0,
+                 0.0, 0.0, 50.0}};
     for (size_t k = 0; k < 2 * sizeof rows / sizeof *rows; ++k) {
         char text[600], written[4000];
         size_t length;
@@ -271,6 +292,7 @@ static void model_files_say_so_too(void)
             CHECK_NEAR(def.tangential_damping, rows[k / 2].tangential, 0.0);
             CHECK_NEAR(def.rolling_ratio, rows[k / 2].rolling, 0.0);
             CHECK_NEAR(def.rolling_damping, rows[k / 2].rolled, 0.0);
+            CHECK_NEAR(def.damping_rate, rows[k / 2].rate, 0.0);
         }
         se3d_model_destroy(model);
     }
@@ -291,6 +313,7 @@ int main(void)
     RUN(the_tangential_stiffness_of_hertz_is_that_given);
     RUN(tangential_damping_is_that_given);
     RUN(a_damping_ratio_stands_for_a_restitution);
+    RUN(a_damping_rate_holds_for_the_pair);
     RUN(torsion_swings_as_given);
     RUN(model_files_say_so_too);
     RUN(model_files_say_one_damping);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* The given restitution is the restitution obtained by particles at their automatic step, whatever
- * the part of a step in which they meet: a hundred impacts at random phases each. */
+ * the part of a step in which they meet: a hundred impacts at random phases each. So is the one
+ * that follows from a damping over the mass. */
 #include "check.h"
 #include "se3d/se3d.h"
 #include "support/bed.h"
@@ -10,12 +11,18 @@
 
 #define IMPACTS 100
 #define RADIUS  0.005
+#define SMALL   (0.7 * RADIUS)
+#define DENSITY 2500.0
+#define HOOKE   4e6 /* N/m: 10 m/s within the allowed overlap */
+#define YOUNG   1e9
+#define POISSON 0.3
 
 /* One kind of impact. */
 typedef struct kind {
     se3d_contact_law law;
     int wall, portable, sizes; /* sizes: radii differ */
     double e, v, divide;       /* divide: of the automatic step */
+    double rate;               /* > 0: damping, e follows */
 } kind;
 
 static double draw(uint32_t *state)
@@ -31,11 +38,12 @@ static bed open_bed(const kind *k)
     se3d_particles_def set = se3d_particles_def_default();
     se3d_material_def def = se3d_material_def_default();
     set.portable = k->portable;
-    def.density = 2500.0;
-    def.stiffness = 4e6; /* 10 m/s within the allowed overlap */
-    def.young = 1e9;
-    def.poisson = 0.3;
-    def.restitution = k->e;
+    def.density = DENSITY;
+    def.stiffness = HOOKE;
+    def.young = YOUNG;
+    def.poisson = POISSON;
+    def.restitution = k->rate > 0.0 ? 0.5 : k->e;
+    def.damping_rate = k->rate;
     bed_open(&b, (int32_t)k->law, none, &set, &def);
     return b;
 }
@@ -43,7 +51,7 @@ static bed open_bed(const kind *k)
 /* Column n: a sphere above another or above the floor, which it meets after some steps. */
 static void add_column(bed *b, const kind *k, int n, double gap)
 {
-    const double x = 0.1 * (n % 10), y = 0.1 * (n / 10), top = k->sizes ? 0.7 * RADIUS : RADIUS;
+    const double x = 0.1 * (n % 10), y = 0.1 * (n / 10), top = k->sizes ? SMALL : RADIUS;
     double z = k->wall ? top + gap : RADIUS + top + gap;
     const double r[6] = {x, y, z, x, y, 0.0}, radius[2] = {top, RADIUS};
     const double v[6] = {0.0, 0.0, k->wall ? -k->v : -0.5 * k->v, 0.0, 0.0, 0.5 * k->v};
@@ -106,8 +114,60 @@ static void restitution_typed_is_restitution_obtained_at_the_automatic_step(void
     }
 }
 
+/* x'' = -max(0, x^1.5 + beta x^.5 x') from x' = 1. */
+static double restitution_of_rate(double beta)
+{
+    const double h = 1e-5;
+    double x = 0.0, v = 1.0, force = 0.0;
+    for (int k = 0; k < 1000000 && (force > 0.0 || v > 0.0); ++k) {
+        x += 0.5 * h * v;
+        force = pow(fmax(x, 0.0), 1.5) + beta * sqrt(fmax(x, 0.0)) * v;
+        v -= h * fmax(force, 0.0);
+        x += 0.5 * h * v;
+    }
+    return -v;
+}
+
+/* Of two spheres, or of one and a wall: in units of the length (m v^2/(kn sqrt(R)))^(2/5). */
+static double restitution_of(const kind *k)
+{
+    const double top = k->sizes ? SMALL : RADIUS, density = 4.0 / 3.0 * 3.14159265358979 * DENSITY;
+    const double m1 = density * top * top * top, m2 = density * RADIUS * RADIUS * RADIUS;
+    const double m = k->wall ? m1 : m1 * m2 / (m1 + m2);
+    const double R = k->wall ? top : top * RADIUS / (top + RADIUS);
+    if (k->law == SE3D_CONTACT_LAW_HOOKE) {
+        const double zeta = 0.5 * k->rate * sqrt(m / HOOKE), w = sqrt(1.0 - zeta * zeta);
+        return exp(-zeta / w * (3.14159265358979 - atan2(2.0 * zeta * w, w * w - zeta * zeta)));
+    }
+    const double kn = 2.0 / 3.0 * YOUNG / (1.0 - POISSON * POISSON);
+    const double length = pow(m * k->v * k->v / (kn * sqrt(R)), 0.4);
+    return restitution_of_rate(k->rate * sqrt(R * length) * length / k->v);
+}
+
+/* Over the mass (hooke), or over mass and radius of contact (hertz_mindlin): small spheres lose
+ * less, and fast ones, too. */
+static void damping_over_the_mass_gives_the_restitution_that_follows(void)
+{
+    static const double rates[2] = {1e4, 1.5e7}; /* hooke, hertz_mindlin */
+    for (int n = 0; n < 64; ++n) {
+        kind k = {.law = n & 1 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE,
+                  .wall = n >> 1 & 1,
+                  .portable = n >> 2 & 1,
+                  .sizes = n >> 3 & 1,
+                  .v = n >> 4 & 1 ? 10.0 : 0.1,
+                  .rate = (n >> 5 ? 1.0 : 0.3) * rates[n & 1],
+                  .divide = 1.0};
+        double mean;
+        k.e = restitution_of(&k);
+        CHECK(k.e > 0.2 && k.e < 0.97);
+        CHECK_NEAR(worst_error(&k, &mean), 0.0, 5e-4);
+        CHECK_NEAR(mean, 0.0, 2e-4);
+    }
+}
+
 int main(void)
 {
     RUN(restitution_typed_is_restitution_obtained_at_the_automatic_step);
+    RUN(damping_over_the_mass_gives_the_restitution_that_follows);
     return check_finish();
 }

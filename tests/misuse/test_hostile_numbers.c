@@ -184,6 +184,7 @@ static const field material_fields[] = {NUMBERS(se3d_material_def, density),
                                         NUMBERS(se3d_material_def, tangential_damping),
                                         NUMBERS(se3d_material_def, rolling_ratio),
                                         NUMBERS(se3d_material_def, rolling_damping),
+                                        NUMBERS(se3d_material_def, damping_rate),
                                         FIELDS_END};
 
 FILL_IN(se3d_material_pair_def, pair)

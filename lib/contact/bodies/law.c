@@ -44,7 +44,7 @@ static void hooke(const se3di_material *a, const se3di_material *b, double stiff
     pair->kn = choose(stiffness, 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness));
     pair->kt = ratio * pair->kn;
     pair->dn = 2.0 * zeta * sqrt(pair->kn);
-    pair->dt = ratio * pair->dn; /* with 2/7: the same damping ratio as the normal direction */
+    pair->dt = ratio; /* over dn; with 2/7: the same damping ratio as the normal direction */
 }
 
 /* kt/kn between two of a material. */
@@ -64,18 +64,29 @@ static void hertz(const se3di_material *a, const se3di_material *b, double e, se
                    ? sqrt(hertz_ratio(a) * hertz_ratio(b)) * pair->kn
                    : 8.0 / shear;
     pair->dn = se3di_restitution_hertz_damping(e) * sqrt(pair->kn);
-    /* The damping ratio of the tangent stiffnesses, 3/2 kn s and kt s. */
-    pair->dt = pair->dn * sqrt(pair->kt / (1.5 * pair->kn));
+    /* Over dn: the damping ratio of the tangent stiffnesses, 3/2 kn s and kt s. */
+    pair->dt = sqrt(pair->kt / (1.5 * pair->kn));
 }
 
-/* Damping along the tangent that is given over dn. */
+/* Damping over the mass, of particles: less than 0 if neither says so. */
+static double mean_rate(double a, double b)
+{
+    if (!is_given(a, b)) {
+        return -1.0;
+    }
+    const double one = is_given(a, 0.0) ? a : b, other = is_given(b, 0.0) ? b : a;
+    return sqrt(own(one, 0.0) * own(other, 0.0));
+}
+
+/* Damping along the tangent, from what it is over that along the normal. */
 static void drag(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
 {
-    if (is_given(a->tangential_damping, b->tangential_damping) && pair->dn > 0.0) {
-        const double law = pair->dt / pair->dn;
+    if (is_given(a->tangential_damping, b->tangential_damping)) {
         pair->dt =
-            sqrt(own(a->tangential_damping, law) * own(b->tangential_damping, law)) * pair->dn;
+            sqrt(own(a->tangential_damping, pair->dt) * own(b->tangential_damping, pair->dt));
     }
+    pair->rt = pair->dt * fmax(pair->rn, 0.0);
+    pair->dt *= pair->dn;
 }
 
 static void roll(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
@@ -112,6 +123,7 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
         choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
     pair->cohesion = 2.0 * PI * choose(o->cohesion, sqrt(a->cohesion * b->cohesion));
     pair->pull_off = 1.5 * PI * choose(o->adhesion, sqrt(a->adhesion * b->adhesion));
+    pair->rn = o->restitution < 0.0 ? mean_rate(a->damping_rate, b->damping_rate) : -1.0;
     drag(a, b, pair);
     roll(a, b, pair);
 }
@@ -144,12 +156,14 @@ double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3
     const double stiffest = fmax(pair->kt, pair->kr) / pair->kn;
     if (law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
-        return 0.02 * PI / (rate + pair->dn / sqrt(reduced_mass));
+        return 0.02 * PI / (rate + fmax(pair->dn / sqrt(reduced_mass), pair->rn));
     }
     double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
     double shear_modulus = a->young / (2.0 * (1.0 + a->poisson));
     double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * a->poisson + 0.8766);
     /* Mindlin's springs have 1.5 at most */
-    return 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass) /
-           (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);
+    const double step = 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass) /
+                        (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);
+    const double circle = 0.3 * radius; /* of contact, at a tenth of the radius on a wall */
+    return step / (1.0 + step * fmax(pair->rn, 0.0) * circle / (0.02 * PI));
 }

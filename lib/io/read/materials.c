@@ -20,6 +20,10 @@ static const se3di_key material_keys[] = {
     {"damping_ratio", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, damping_ratio),
      .text = "in place of restitution: damping along the normal over the critical one"},
+    {"damping_rate", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, damping_rate),
+     .text = "of particles, in place of restitution: damping along the normal over the reduced "
+             "mass [1/s]; hertz_mindlin: over the radius of contact, too [1/(m s)]"},
     {"rolling_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, rolling_friction),
      .standard = "0", .text = "resisting moment over radius times normal force"},
     {"torsional_friction", SE3DI_KIND_NUMBER, SE3DI_INTO(se3d_material_def, torsional_friction),
@@ -96,6 +100,7 @@ static bool read_choices(se3di_reader *reader, const se3di_node *entry, se3d_mat
         choose(entry, "tangential_ratio", &def->tangential_ratio_hertz);
     }
     choose(entry, "damping_ratio", &def->damping_ratio);
+    choose(entry, "damping_rate", &def->damping_rate);
     choose(entry, "tangential_damping", &def->tangential_damping);
     choose(entry, "rolling_ratio", &def->rolling_ratio);
     choose(entry, "rolling_damping", &def->rolling_damping);

@@ -411,6 +411,7 @@ static void save_material(se3di_save *s, se3d_material material)
     se3di_save_number_but(s, "cohesion", def.cohesion, 0.0);
     se3di_save_number_but(s, "adhesion", def.adhesion, 0.0);
     save_choice(s, "damping_ratio", def.damping_ratio);
+    save_choice(s, "damping_rate", def.damping_rate);
     save_choice(s, "tangential_damping", def.tangential_damping);
     save_choice(s, "rolling_ratio", def.rolling_ratio);
     save_choice(s, "rolling_damping", def.rolling_damping);
