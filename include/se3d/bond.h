@@ -15,15 +15,17 @@ extern "C" {
 /* How stiff a bond of section A, second moments I = A radius^2/4, J = 2 I and length L is.
  * @since 0.1 */
 typedef enum se3d_bond_law {
-    SE3D_BOND_LAW_BEAM = 0,    /* Timoshenko's beam: E A/L, 12 E I/(L^3 (1 + Phi)), E I/L, G J/L,
+    SE3D_BOND_LAW_BEAM = 0,     /* Timoshenko's beam: E A/L, 12 E I/(L^3 (1 + Phi)), E I/L, G J/L,
                                 * Phi = 12 E I/(k G A L^2), k = 6 (1 + nu)/(7 + 6 nu) */
-    SE3D_BOND_LAW_SLENDER = 1, /* Euler and Bernoulli's: Phi = 0 */
-    SE3D_BOND_LAW_PARALLEL = 2 /* Potyondy and Cundall's parallel bond: kn A, ks A, kn I, ks J */
+    SE3D_BOND_LAW_SLENDER = 1,  /* Euler and Bernoulli's: Phi = 0 */
+    SE3D_BOND_LAW_PARALLEL = 2, /* Potyondy and Cundall's parallel bond: kn A, ks A, kn I, ks J */
+    SE3D_BOND_LAW_SPRINGS = 3   /* as given, whatever the section: `springs`, `dampers`, `limits` */
 } se3d_bond_law;
 
 /* What bonds are made like. Strengths are those of the outermost fibre, of the beams at the worse
- * end, of parallel bonds in the middle: tension is N/A + M radius/I, shear is Q/A + T radius/J.
- * @since 0.1 */
+ * end, of parallel bonds in the middle: tension is N/A + M radius/I, shear is Q/A + T radius/J. Of
+ * springs they are shares of the limits, N/N_max + M/M_max and Q/Q_max + T/T_max in the middle: the
+ * bond breaks when their sum is above 1. @since 0.1 */
 typedef struct se3d_bond_def {
     size_t struct_size;
     int32_t law;             /* se3d_bond_law */
@@ -40,6 +42,10 @@ typedef struct se3d_bond_def {
     double shear_strength;   /* [Pa]; 0: it does not break so */
     double gap;              /* of se3d_particles_bond_near and _bond_shape: the most between two
                               * surfaces [m], with 1e-9 of the radius for rounding */
+    /* Of springs: normal, shear, bending, twisting. @since 0.1 */
+    double springs[4]; /* > 0 [N/m], [N/m], [N m], [N m] */
+    double dampers[4]; /* >= 0, beside `damping` [N s/m], [N s/m], [N m s], [N m s] */
+    double limits[4];  /* [N], [N], [N m], [N m]; 0: it holds any */
 } se3d_bond_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_bond_def_default. @since 0.1 */
@@ -102,8 +108,8 @@ typedef struct se3d_bond_stats {
     double energy;     /* stored [J] */
     double dissipated; /* by damping so far [J] */
     double released;   /* stored in bonds when they broke, or were lost [J] */
-    double tension;    /* the largest [Pa], < 0 if all are pressed */
-    double shear;      /* the largest [Pa] */
+    double tension;    /* the largest [Pa], of springs [1]; < 0 if all are pressed */
+    double shear;      /* the largest [Pa], of springs [1] */
 } se3d_bond_stats;
 
 /* As se3d_particles_get_bond_stats, told the size of *stats in bytes. @return as
@@ -133,8 +139,8 @@ typedef struct se3d_particles_bond_state {
     double torque[3]; /* on j, about its centre or the point of the shape, ground frame [N m] */
     double length;    /* without load [m] */
     double radius;    /* of the section [m] */
-    double tension;   /* [Pa] */
-    double shear;     /* [Pa] */
+    double tension;   /* [Pa], of springs [1] */
+    double shear;     /* [Pa], of springs [1] */
     double energy;    /* stored [J] */
 } se3d_particles_bond_state;
 

@@ -142,8 +142,28 @@ static void find_stress(const se3di_particles *set, se3di_bond *bond, const doub
     const double most = set->bond_groups[bond->group].middle
                             ? 0.5 * se3di_norm(middle)
                             : fmax(se3di_norm(moment[0]), se3di_norm(moment[1]));
+    const se3di_bond_group *group = &set->bond_groups[bond->group];
+    if (group->springs) {
+        bond->stress[0] = tension / group->limits[0] + most / group->limits[2];
+        bond->stress[1] = se3di_norm(shear) / group->limits[1] + fabs(twist) / group->limits[3];
+        return;
+    }
     bond->stress[0] = tension / area + 4.0 * most / (area * r);
     bond->stress[1] = se3di_norm(shear) / area + 2.0 * fabs(twist) / (area * r);
+}
+
+/* What the stress makes of the bond. */
+static se3di_bond_fate find_fate(const se3di_bond_group *group, const double stress[2])
+{
+    if (group->springs) {
+        return stress[0] + stress[1] <= 1.0 ? SE3DI_BOND_HOLDS
+               : stress[0] >= stress[1]     ? SE3DI_BOND_TORN
+                                            : SE3DI_BOND_SHEARED;
+    }
+    if (group->tension > 0.0 && stress[0] > group->tension) {
+        return SE3DI_BOND_TORN;
+    }
+    return group->shear > 0.0 && stress[1] > group->shear ? SE3DI_BOND_SHEARED : SE3DI_BOND_HOLDS;
 }
 
 static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
@@ -165,10 +185,8 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     const double stretch = length - bond->length, tension = bond->stiffness[0] * stretch;
     bond->energy += 0.5 * tension * stretch;
     find_stress(set, bond, e, tension, bond->force);
-    if (h > 0.0 && group->tension > 0.0 && bond->stress[0] > group->tension) {
-        bond->fate = SE3DI_BOND_TORN;
-    } else if (h > 0.0 && group->shear > 0.0 && bond->stress[1] > group->shear) {
-        bond->fate = SE3DI_BOND_SHEARED;
+    if (h > 0.0) {
+        bond->fate = find_fate(group, bond->stress);
     }
     se3di_add_scaled(-tension, e, bond->force);
     brake(bond, &one, &two, v, e, length);
@@ -348,23 +366,30 @@ static void least_mass(const se3di_particles *set, const se3di_bond_end *end, do
 }
 
 /* By Rayleigh's quotient no frequency is above the largest of the sums over the bonds of one sphere
- * of 2 max(kn, 2 ks)/m and (ks L^2 + 2 max(kb, kt))/J. Of a clump all spheres count as if they were
+ * of 2 max(kn, 2 ks)/m and (ks L^2 + 2 max(kb, kt))/J. Dampers that are given for themselves count
+ * as the springs that they would be critical for. Of a clump all spheres count as if they were
  * bonded like this one. */
 double se3di_bonds_step(const se3di_particles *set)
 {
     double most = 0.0;
     for (size_t k = 0; k < set->bond_end_count; ++k) {
         const se3di_bond_end *end = &set->bond_ends[k];
-        double mass, inertia, shift = 0.0, turns = 0.0;
+        double mass, inertia, shift = 0.0, turns = 0.0, slows[2] = {0.0, 0.0};
         least_mass(set, end, &mass, &inertia);
         for (uint32_t n = 0; mass > 0.0 && n < end->count; ++n) {
             const se3di_bond *bond = &set->bonds[set->bond_places[end->begin + n] / 2];
             const double *s = bond->stiffness;
             shift += 2.0 * fmax(s[0], 2.0 * s[1]);
             turns += s[1] * bond->length * bond->length + 2.0 * fmax(s[2], s[3]);
+            if (set->bond_groups[bond->group].springs) {
+                const double *c = bond->damping;
+                slows[0] += fmax(c[0], 2.0 * c[1]);
+                slows[1] += 0.5 * c[1] * bond->length * bond->length + fmax(c[2], c[3]);
+            }
         }
         if (mass > 0.0) {
-            most = fmax(most, fmax(shift / mass, turns / inertia));
+            const double rate = fmax(slows[0] / mass, slows[1] / inertia);
+            most = fmax(most, fmax(fmax(shift / mass, turns / inertia), rate * rate));
         }
     }
     return most > 0.0 ? 2.0 / (SE3DI_BONDS_STABLE * sqrt(most)) : HUGE_VAL;

@@ -360,9 +360,12 @@ typedef struct se3di_bond_end {
 
 /* Bonds that were made together, and what became of them. */
 typedef struct se3di_bond_group {
-    int32_t touches;        /* what is bonded touches, too */
-    int32_t middle;         /* stresses are those of the middle, not of the worse end */
-    double tension, shear;  /* strengths [Pa]; 0: it does not break */
+    int32_t touches;       /* what is bonded touches, too */
+    int32_t middle;        /* stresses are those of the middle, not of the worse end */
+    double tension, shear; /* strengths [Pa]; 0: it does not break */
+    int32_t springs;       /* stresses are shares of the limits, which may be infinite */
+    int32_t reserved;
+    double limits[4];       /* [N], [N], [N m], [N m] */
     uint64_t made;          /* so far, */
     uint64_t torn, sheared; /* of those broken by tension, by shear, */
     uint64_t lost;          /* and gone with a particle or shape */
@@ -395,7 +398,7 @@ typedef struct se3di_bond {
     /* of the last forces */
     double force[3], torque[2][3]; /* all of them, */
     double drag[3], brake[2][3];   /* and what of them is damping */
-    double stress[2];              /* tension, shear [Pa] */
+    double stress[2];              /* tension, shear [Pa], or shares of limits */
     double energy, dissipated;
 } se3di_bond;
 

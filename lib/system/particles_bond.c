@@ -37,11 +37,24 @@ static se3d_status check_positive(se3d_system *system, const char *what, double 
     return se3di_check_range(system, what, value, LEAST, MOST);
 }
 
+static se3d_status check_springs(se3d_system *system, const se3d_bond_def *def)
+{
+    for (int k = 0; k < 4; ++k) {
+        SE3DI_TRY(check_positive(system, "springs", def->springs[k]));
+        SE3DI_TRY(se3di_check_range(system, "dampers", def->dampers[k], 0.0, MOST));
+        SE3DI_TRY(se3di_check_range(system, "limits", def->limits[k], 0.0, MOST));
+    }
+    return SE3D_OK;
+}
+
 static se3d_status check_stiffness(se3d_system *system, const se3d_bond_def *def)
 {
-    if (def->law < SE3D_BOND_LAW_BEAM || def->law > SE3D_BOND_LAW_PARALLEL) {
+    if (def->law < SE3D_BOND_LAW_BEAM || def->law > SE3D_BOND_LAW_SPRINGS) {
         return SE3DI_FAIL_OF(system, "law", SE3D_ERR_INVALID_ARGUMENT,
                              " = %d, must be an se3d_bond_law", (int)def->law);
+    }
+    if (def->law == SE3D_BOND_LAW_SPRINGS) {
+        return check_springs(system, def);
     }
     if (def->law == SE3D_BOND_LAW_PARALLEL) {
         SE3DI_TRY(check_positive(system, "normal_stiffness", def->normal_stiffness));
@@ -75,6 +88,10 @@ static se3d_status no_memory(se3d_particles *particles)
 static void find_stiffness(const se3d_bond_def *def, double r, double L, double k[4])
 {
     const double A = PI * r * r, I = 0.25 * A * r * r, J = 2.0 * I;
+    if (def->law == SE3D_BOND_LAW_SPRINGS) {
+        memcpy(k, def->springs, 4 * sizeof *k);
+        return;
+    }
     if (def->law == SE3D_BOND_LAW_PARALLEL) {
         k[0] = def->normal_stiffness * A;
         k[1] = def->shear_stiffness * A;
@@ -108,7 +125,8 @@ static void fill_bond(const se3di_particles *set, const se3d_bond_def *def, se3d
     find_stiffness(def, bond->radius, bond->length, bond->stiffness);
     for (int k = 0; k < 4; ++k) {
         const double m = k < 2 ? reduce(mass[0], mass[1]) : reduce(inertia[0], inertia[1]);
-        bond->damping[k] = 2.0 * def->damping * sqrt(bond->stiffness[k] * m);
+        const double given = def->law == SE3D_BOND_LAW_SPRINGS ? def->dampers[k] : 0.0;
+        bond->damping[k] = given + 2.0 * def->damping * sqrt(bond->stiffness[k] * m);
     }
 }
 
@@ -188,10 +206,15 @@ static se3d_status begin_group(se3d_particles *particles, const se3d_bond_def *d
     }
     set->bond_groups[set->bond_group_count++] = (se3di_bond_group){
         .touches = def->contact != 0,
-        .middle = def->law == SE3D_BOND_LAW_PARALLEL,
+        .middle = def->law >= SE3D_BOND_LAW_PARALLEL,
+        .springs = def->law == SE3D_BOND_LAW_SPRINGS,
         .tension = def->tensile_strength,
         .shear = def->shear_strength,
     };
+    for (int k = 0; k < 4; ++k) {
+        const double limit = def->limits[k];
+        set->bond_groups[set->bond_group_count - 1].limits[k] = limit > 0.0 ? limit : HUGE_VAL;
+    }
     return SE3D_OK;
 }
 

@@ -149,6 +149,103 @@ static void parallel_bonds_swing_at_their_frequencies(void)
     }
 }
 
+/* Springs of a bond as they are given, whatever the section. In mode 0 to 3 two spheres are pushed
+ * along, across (both turn about y, and the shear that this makes moves them), bent and twisted. */
+static const double springs[4] = {2e4, 5e3, 0.3, 0.7}, reach = 0.02; /* length of the bond */
+
+static void push_pair(const bed *b, int mode, double size)
+{
+    double v[6] = {0.0}, w[6] = {0.0};
+    for (int k = 0; k < 2; ++k) {
+        const double sign = k ? 1.0 : -1.0;
+        v[3 * k] = mode == 0 ? sign * size : 0.0;
+        w[3 * k + 1] = mode == 1 ? size : mode == 2 ? sign * size : 0.0;
+        w[3 * k] = mode == 3 ? sign * size : 0.0;
+    }
+    CHECK(!se3d_particles_set_all(b->particles, 2, NULL, v, w));
+}
+
+/* The inverse of the mass that the spring of this mode moves. */
+static double ease(int mode, double mass, double inertia)
+{
+    return mode == 0   ? 2.0 / mass
+           : mode == 1 ? 2.0 / mass + 0.5 * reach * reach / inertia
+                       : 2.0 / inertia;
+}
+
+static void given_springs_and_dampers_swing(void)
+{
+    const double small = 1e-6;
+    for (int mode = 0; mode < 4; ++mode) {
+        bed b;
+        se3d_bond_def def = se3d_bond_def_default();
+        double mass, inertia, v[6], w[6];
+        def.law = SE3D_BOND_LAW_SPRINGS;
+        memcpy(def.springs, springs, sizeof springs);
+        open_pair(&b, &def, &mass, &inertia);
+        bed_close(&b);
+        const double omega = sqrt(springs[mode] * ease(mode, mass, inertia)), zeta = 0.1;
+        def.dampers[mode] = 2.0 * zeta * springs[mode] / omega;
+        open_pair(&b, &def, &mass, &inertia);
+        push_pair(&b, mode, small);
+        const double t = 2.3 / omega, wd = omega * sqrt(1.0 - zeta * zeta);
+        CHECK(!se3d_particles_set_step(b.particles, 1e-3 / omega));
+        CHECK(!se3d_particles_run(b.particles, t));
+        CHECK(!se3d_particles_get_all(b.particles, 2, NULL, v, w));
+        const double left = exp(-zeta * omega * t) *
+                            (cos(wd * t) - zeta * omega / wd * sin(wd * t)); /* of the rate */
+        const double part = 0.5 * reach * reach / inertia / ease(1, mass, inertia);
+        CHECK_NEAR(mode == 0   ? v[3]
+                   : mode == 3 ? w[3]
+                               : w[4],
+                   small * (mode == 1 ? 1.0 - part * (1.0 - left) : left), 1e-4 * small);
+        bed_close(&b);
+    }
+}
+
+/* The largest that the swing of a push of this size holds. */
+static double most_of(int mode, double size, double spring, double mass, double inertia)
+{
+    return (mode == 1 ? reach : 2.0) * size * sqrt(spring / ease(mode, mass, inertia));
+}
+
+/* Just below and just above the limit, of each alone; of two that swing alike, what they hold over
+ * their limits adds up. */
+static void given_limits_decide(void)
+{
+    const double size = 1e-4;
+    for (int n = 0; n < 10; ++n) {
+        const int mode = n / 2, both = mode == 4;
+        const double factor = n % 2 ? 1.01 : 0.99;
+        bed b;
+        se3d_bond_def def = se3d_bond_def_default();
+        double mass, inertia;
+        def.law = SE3D_BOND_LAW_SPRINGS;
+        memcpy(def.springs, springs, sizeof springs);
+        open_pair(&b, &def, &mass, &inertia);
+        bed_close(&b);
+        for (int k = 0; k < 4; ++k) {
+            const int held = both ? k == 0 || k == 3 : k == mode;
+            def.springs[k] = both && k == 3 ? springs[0] * inertia / mass : springs[k];
+            const double most = most_of(k, size, def.springs[k], mass, inertia);
+            def.limits[k] = held ? (both ? 2.0 : 1.0) * factor * most : 0.0;
+        }
+        open_pair(&b, &def, &mass, &inertia);
+        if (both) {
+            const double v[6] = {-size, 0.0, 0.0, size, 0.0, 0.0};
+            CHECK(!se3d_particles_set_all(b.particles, 2, NULL, v, v));
+        } else {
+            push_pair(&b, mode, size);
+        }
+        CHECK(!se3d_particles_run(b.particles, 10.0 * sqrt(mass / springs[1])));
+        const se3d_bond_stats stats = stats_of(&b, 0);
+        CHECK(stats.count == (uint64_t)(n % 2));
+        CHECK(stats.torn + stats.sheared == (uint64_t)(n % 2 == 0));
+        CHECK(both || stats.torn == (uint64_t)(n % 2 == 0 && mode % 2 == 0));
+        bed_close(&b);
+    }
+}
+
 /* Spheres that turn as one body, far around, stay without strain but for what their spin pulls. */
 static void turns_of_the_whole_strain_nothing(void)
 {
@@ -522,6 +619,8 @@ int main(void)
 {
     RUN(cantilevers_sag_as_their_beams);
     RUN(parallel_bonds_swing_at_their_frequencies);
+    RUN(given_springs_and_dampers_swing);
+    RUN(given_limits_decide);
     RUN(turns_of_the_whole_strain_nothing);
     RUN(energy_and_momenta_of_a_block_stay);
     RUN(energy_of_a_block_that_breaks_is_told);

@@ -383,6 +383,7 @@ FILL_IN(se3d_bond_def, bond)
     CHECK(!se3d_particles_create(w->system, NULL, &w->set));
     CHECK(!se3d_particles_add(w->set, w->material, 2, r, radius, NULL, NULL, NULL));
     def->young = def->normal_stiffness = def->shear_stiffness = 1e5;
+    def->springs[0] = def->springs[1] = def->springs[2] = def->springs[3] = 1e3;
     def->poisson = 0.2;
 }
 static se3d_status create_bond(world *w, const void *def)
@@ -400,6 +401,9 @@ static const field bond_fields[] = {INTEGER(se3d_bond_def, law),
                                     NUMBERS(se3d_bond_def, gap),
                                     NUMBERS(se3d_bond_def, tensile_strength),
                                     INTEGER(se3d_bond_def, contact),
+                                    NUMBERS(se3d_bond_def, springs),
+                                    NUMBERS(se3d_bond_def, dampers),
+                                    NUMBERS(se3d_bond_def, limits),
                                     NUMBERS(se3d_bond_def, shear_strength),
                                     FIELDS_END};
 

@@ -19,6 +19,7 @@
 static const char *const laws[] = {[SE3D_BOND_LAW_BEAM] = "beam",
                                    [SE3D_BOND_LAW_SLENDER] = "slender",
                                    [SE3D_BOND_LAW_PARALLEL] = "parallel",
+                                   [SE3D_BOND_LAW_SPRINGS] = "springs",
                                    NULL};
 
 /* clang-format off */
@@ -36,7 +37,7 @@ static const se3di_key bond_keys[] = {
      .text = "the most between the surfaces of what is bonded [m]"},
     {"law", SE3DI_KIND_WORD, SE3DI_INTO(se3d_bond_def, law), .words = laws, .standard = "beam",
      .text = "beam: Timoshenko's; slender: Euler and Bernoulli's; parallel: the parallel bond of "
-         "Potyondy and Cundall"},
+         "Potyondy and Cundall; springs: as given"},
     {"radius", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_bond_def, radius),
      .standard = "by `ratio`", .text = "of the section [m]"},
     {"ratio", SE3DI_KIND_NUMBER, SE3DI_POSITIVE, SE3DI_INTO(se3d_bond_def, ratio),
@@ -57,6 +58,13 @@ static const se3di_key bond_keys[] = {
     {"shear_strength", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      SE3DI_INTO(se3d_bond_def, shear_strength), .standard = "does not break so",
      .text = "of the outermost fibre [Pa]"},
+    {"springs", SE3DI_KIND_NUMBERS,
+     .text = "of the law springs: 4, normal, shear [N/m], bending, twisting [N m]"},
+    {"dampers", SE3DI_KIND_NUMBERS, .standard = "none",
+     .text = "beside them [N s/m], [N m s]"},
+    {"limits", SE3DI_KIND_NUMBERS, .standard = "does not break",
+     .text = "of the law springs: 4 forces [N] and moments [N m]; it breaks when the sum of what "
+         "it holds over them is above 1, 0: does not count"},
     {"contact", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_bond_def, contact), .standard = "false",
      .text = "what is bonded touches, too"},
     {.key = NULL}};
@@ -143,6 +151,26 @@ static bool make_bonds(se3di_reader *reader, const se3di_node *node, const se3d_
                              def->gap);
 }
 
+/* Numbers of the four springs. */
+static bool read_springs(se3di_reader *reader, const se3di_node *node, se3d_bond_def *def)
+{
+    const struct {
+        const char *key;
+        double *into;
+    } fours[] = {{"springs", def->springs}, {"dampers", def->dampers}, {"limits", def->limits}};
+    for (size_t k = 0; k < sizeof fours / sizeof *fours; ++k) {
+        const se3di_node *value = se3di_node_get(node, fours[k].key);
+        if (value && def->law != SE3D_BOND_LAW_SPRINGS) {
+            return se3di_reader_fail_key(reader, node, fours[k].key,
+                                         "has no effect without `law: springs`");
+        }
+        if (value && !se3di_read_vector(reader, value, 4, fours[k].into)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool read_bond(se3di_reader *reader, const se3di_node *node)
 {
     se3di_tagged *particles = reader->model->particles;
@@ -157,7 +185,7 @@ static bool read_bond(se3di_reader *reader, const se3di_node *node)
     }
     if (!se3di_read_name(reader, name, &text) || !se3di_check_free_name(reader, name, text) ||
         !se3di_read_fields(reader, node, &se3di_object_bond, NULL, "se3d_bond_def", &def) ||
-        !check_beside(reader, node)) {
+        !read_springs(reader, node, &def) || !check_beside(reader, node)) {
         return false;
     }
     particles->bonds[particles->bond_count++] = text;
