@@ -52,6 +52,9 @@ double se3di_bonds_step(const se3di_particles *set);
 /* Mass and moment of inertia of what an end is on; 0: a wall. */
 void se3di_bond_end_mass(const se3di_particles *set, const se3di_bond_end *end, double *mass,
                          double *inertia);
+/* Dampers by the masses that the ends have now: of a bond, and of those of an id. */
+void se3di_bond_damp(const se3di_particles *set, se3di_bond *bond);
+void se3di_bonds_damp(se3di_particles *set, uint32_t id);
 
 #define SE3DI_BONDS_STABLE 5.0 /* of the steps above */
 

@@ -352,6 +352,33 @@ void se3di_bond_end_mass(const se3di_particles *set, const se3di_bond_end *end, 
     }
 }
 
+/* Of two masses; one that is 0 does not move. */
+static double reduce(double a, double b)
+{
+    return a > 0.0 && b > 0.0 ? a * b / (a + b) : a + b;
+}
+
+void se3di_bond_damp(const se3di_particles *set, se3di_bond *bond)
+{
+    const se3di_bond_group *group = &set->bond_groups[bond->group];
+    double mass[2], inertia[2];
+    for (int n = 0; n < 2; ++n) {
+        se3di_bond_end_mass(set, &set->bond_ends[bond->end[n]], &mass[n], &inertia[n]);
+    }
+    for (int k = 0; k < 4; ++k) {
+        const double m = k < 2 ? reduce(mass[0], mass[1]) : reduce(inertia[0], inertia[1]);
+        bond->damping[k] = group->dampers[k] + 2.0 * group->damping * sqrt(bond->stiffness[k] * m);
+    }
+}
+
+void se3di_bonds_damp(se3di_particles *set, uint32_t id)
+{
+    const uint32_t own = id < set->bond_end_of_capacity ? set->bond_end_of[id] : SE3DI_NO_INDEX;
+    for (uint32_t k = 0; own != SE3DI_NO_INDEX && k < set->bond_ends[own].count; ++k) {
+        se3di_bond_damp(set, &set->bonds[set->bond_places[set->bond_ends[own].begin + k] / 2]);
+    }
+}
+
 /* As se3di_bond_end_mass, but of one sphere's part of its clump where it moves most easily. */
 static void least_mass(const se3di_particles *set, const se3di_bond_end *end, double *mass,
                        double *inertia)

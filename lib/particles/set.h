@@ -366,6 +366,8 @@ typedef struct se3di_bond_group {
     int32_t springs;       /* stresses are shares of the limits, which may be infinite */
     int32_t reserved;
     double limits[4];       /* [N], [N], [N m], [N m] */
+    double damping;         /* part of the critical one of each spring, */
+    double dampers[4];      /* and what is beside it [N s/m], [N m s] */
     uint64_t made;          /* so far, */
     uint64_t torn, sheared; /* of those broken by tension, by shear, */
     uint64_t lost;          /* and gone with a particle or shape */

@@ -76,7 +76,8 @@ static se3d_status report_overlap(const se3di_particles *set, se3di_error *error
         "(overlap_limit: %g); %s",
         set->failed, of, name, with, set->failed_amount, set->failed_time, set->overlap_limit,
         set->failed_placed ? "they were placed with this overlap; move them apart"
-                           : "try a stiffer material or, where a step is given, a smaller one");
+                           : "try a stiffer material, a smaller step if one is given, or a larger "
+                             "overlap_limit for grains that are soft");
 }
 
 /* Record why a step of particles failed; returns `status`. */

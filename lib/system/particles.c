@@ -6,6 +6,7 @@
 #include "force/force.h"
 #include "math/vec3.h"
 #include "particles/audit.h"
+#include "particles/bond.h"
 #include "particles/chain.h"
 #include "particles/clump.h"
 #include "particles/energy.h"
@@ -354,6 +355,7 @@ se3d_status se3d_particles_set_fixed(se3d_particles *particles, size_t count, co
     }
     for (size_t k = 0; k < count; ++k) {
         se3di_particles_fix(&particles->set, ids[k], fixed != 0);
+        se3di_bonds_damp(&particles->set, ids[k]);
     }
     return SE3D_OK;
 }

@@ -109,27 +109,6 @@ static void find_stiffness(const se3d_bond_def *def, double r, double L, double 
     k[3] = se3di_over(G * J, L);
 }
 
-/* Of two masses; one that is 0 does not move. */
-static double reduce(double a, double b)
-{
-    return a > 0.0 && b > 0.0 ? a * b / (a + b) : a + b;
-}
-
-/* What a new bond is made like: after its ends exist, its length is known. */
-static void fill_bond(const se3di_particles *set, const se3d_bond_def *def, se3di_bond *bond)
-{
-    double mass[2], inertia[2];
-    for (int n = 0; n < 2; ++n) {
-        se3di_bond_end_mass(set, &set->bond_ends[bond->end[n]], &mass[n], &inertia[n]);
-    }
-    find_stiffness(def, bond->radius, bond->length, bond->stiffness);
-    for (int k = 0; k < 4; ++k) {
-        const double m = k < 2 ? reduce(mass[0], mass[1]) : reduce(inertia[0], inertia[1]);
-        const double given = def->law == SE3D_BOND_LAW_SPRINGS ? def->dampers[k] : 0.0;
-        bond->damping[k] = given + 2.0 * def->damping * sqrt(bond->stiffness[k] * m);
-    }
-}
-
 static se3d_status check_place(se3d_particles *particles, const se3d_bond_def *def,
                                const se3di_bond_place *place, double radius)
 {
@@ -210,10 +189,12 @@ static se3d_status begin_group(se3d_particles *particles, const se3d_bond_def *d
         .springs = def->law == SE3D_BOND_LAW_SPRINGS,
         .tension = def->tensile_strength,
         .shear = def->shear_strength,
+        .damping = def->damping,
     };
+    se3di_bond_group *group = &set->bond_groups[set->bond_group_count - 1];
     for (int k = 0; k < 4; ++k) {
-        const double limit = def->limits[k];
-        set->bond_groups[set->bond_group_count - 1].limits[k] = limit > 0.0 ? limit : HUGE_VAL;
+        group->limits[k] = def->limits[k] > 0.0 ? def->limits[k] : HUGE_VAL;
+        group->dampers[k] = group->springs ? def->dampers[k] : 0.0;
     }
     return SE3D_OK;
 }
@@ -223,7 +204,9 @@ static void make_bond(se3di_particles *set, const se3d_bond_def *def, const se3d
 {
     const se3di_bond like = {.group = (uint32_t)set->bond_group_count - 1, .radius = radius};
     se3di_bonds_append(set, place, &like);
-    fill_bond(set, def, &set->bonds[set->bond_count - 1]);
+    se3di_bond *bond = &set->bonds[set->bond_count - 1];
+    find_stiffness(def, bond->radius, bond->length, bond->stiffness);
+    se3di_bond_damp(set, bond);
 }
 
 static void end_group(se3d_particles *particles, uint32_t *group)

@@ -203,6 +203,39 @@ static void given_springs_and_dampers_swing(void)
     }
 }
 
+/* What is fixed later is a wall, also for the damping of its bonds; let go, it is as before. */
+static void bonds_of_what_is_fixed_damp_by_the_other_mass(void)
+{
+    const double small = 1e-6, zeta = 0.1;
+    const uint32_t first = 0;
+    for (int fixed = 0; fixed < 3; ++fixed) { /* 2: and let go */
+        bed b;
+        se3d_bond_def def = se3d_bond_def_default();
+        double mass, inertia, v[6], w[6];
+        def.law = SE3D_BOND_LAW_SPRINGS;
+        def.damping = zeta;
+        memcpy(def.springs, springs, sizeof springs);
+        open_pair(&b, &def, &mass, &inertia);
+        if (fixed > 0) {
+            CHECK(!se3d_particles_set_fixed(b.particles, 1, &first, 1));
+        }
+        if (fixed == 2) {
+            CHECK(!se3d_particles_set_fixed(b.particles, 1, &first, 0));
+        }
+        const double m = fixed == 1 ? mass : 0.5 * mass, omega = sqrt(springs[0] / m);
+        const double push[6] = {fixed == 1 ? 0.0 : -small, 0.0, 0.0, small, 0.0, 0.0};
+        CHECK(!se3d_particles_set_all(b.particles, 2, NULL, push, none));
+        const double t = 5.0 / omega, wd = omega * sqrt(1.0 - zeta * zeta);
+        CHECK(!se3d_particles_set_step(b.particles, 1e-3 / omega));
+        CHECK(!se3d_particles_run(b.particles, t));
+        CHECK(!se3d_particles_get_all(b.particles, 2, NULL, v, w));
+        CHECK_NEAR(v[3],
+                   small * exp(-zeta * omega * t) * (cos(wd * t) - zeta * omega / wd * sin(wd * t)),
+                   1e-3 * small);
+        bed_close(&b);
+    }
+}
+
 /* The largest that the swing of a push of this size holds. */
 static double most_of(int mode, double size, double spring, double mass, double inertia)
 {
@@ -621,6 +654,7 @@ int main(void)
     RUN(parallel_bonds_swing_at_their_frequencies);
     RUN(given_springs_and_dampers_swing);
     RUN(given_limits_decide);
+    RUN(bonds_of_what_is_fixed_damp_by_the_other_mass);
     RUN(turns_of_the_whole_strain_nothing);
     RUN(energy_and_momenta_of_a_block_stay);
     RUN(energy_of_a_block_that_breaks_is_told);
