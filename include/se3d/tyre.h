@@ -382,6 +382,16 @@ typedef enum se3d_tyre_value {
 SE3D_API se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,
                                           size_t count, double *values);
 
+/* Get some of what a tyre tells in the present state: the same numbers, and no more than they need
+ * is computed, as of forces without moments.
+ * @param[in] which    bit k: value k, se3d_tyre_value
+ * @param[out] values  [SE3D_TYRE_VALUES], 0 of what was not asked for
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (nothing asked for, unknown bits, or no tyre),
+ * NOT_FINITE, CALLBACK (of the road).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_tyre_get_some(const se3d_system *system, se3d_force force, uint32_t which,
+                                        double *values);
+
 #ifdef __cplusplus
 }
 #endif

@@ -233,9 +233,9 @@ static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_sli
         forces->of[4], se3di_dual_mul(forces->of[0], se3di_dual_sub(length, slip->rolling_radius)));
 }
 
-/* The same values, to the bit. */
+/* The same values, to the bit; moments: 0: without them. */
 static void find_values(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
-                        double of[6])
+                        int moments, double of[6])
 {
     se3di_tyre_forces forces;
     memset(of, 0, 6 * sizeof *of);
@@ -246,7 +246,7 @@ static void find_values(const se3di_force *force, const patch *c, se3di_tyre_sli
         if (!(slip->load.v > 0.0)) {
             return;
         }
-        se3di_tyre_magic_values(force, slip, &forces);
+        se3di_tyre_magic_values(force, slip, moments, &forces);
         forces.of[2].v = slip->load.v;
         for (int k = 1; k < 6 && force->tyre->mirrored; k += 2) { /* Fy, Mx, Mz */
             forces.of[k].v = -forces.of[k].v;
@@ -506,7 +506,7 @@ static void eval_patch(const se3di_model *model, const se3di_force *force, const
             of[k] = forces.of[k].v;
         }
     } else {
-        find_values(force, c, slip, of);
+        find_values(force, c, slip, 1, of);
     }
     to_wrench(frames, c, of, effect->wrench);
     const double *in = c->input;
@@ -652,10 +652,14 @@ static void tell_lag(const se3di_force *force, se3di_tyre_slip *slip,
     values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(aside);
 }
 
+/* All values before number `end` */
+#define BEFORE(end) ((UINT32_C(1) << (end)) - 1)
+
 /* Forces, and slips of the instant; `slip` is left with those that the forces follow. */
-static void tell_slip(const se3di_force *force, const patch *c, int wants_forces,
+static void tell_slip(const se3di_force *force, const patch *c, uint32_t which,
                       se3di_tyre_slip *slip, double values[SE3D_TYRE_VALUES])
 {
+    const uint32_t forces = BEFORE(SE3D_TYRE_MX), all = BEFORE(SE3D_TYRE_SLIP_RATIO);
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
     if (c->touches) {
         take_slip(force, c, 0, slip);
@@ -664,8 +668,8 @@ static void tell_slip(const se3di_force *force, const patch *c, int wants_forces
     }
     values[SE3D_TYRE_SLIP_RATIO] = slip->ratio.v;
     values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip->tangent.v);
-    if (c->touches && wants_forces) {
-        find_values(force, c, slip, values + SE3D_TYRE_FX);
+    if (c->touches && (which & all)) {
+        find_values(force, c, slip, (which & all & ~forces) != 0, values + SE3D_TYRE_FX);
     } else {
         memset(values + SE3D_TYRE_FX, 0, 6 * sizeof *values);
         take_lag(force, c, 0, slip);
@@ -685,14 +689,14 @@ static void tell_place(const se3di_force *force, const patch *c, se3di_tyre_slip
     values[SE3D_TYRE_SPEED] = c->input[SE3DI_PATCH_SPEED];
 }
 
-se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, size_t first,
-                            size_t end, double values[SE3D_TYRE_VALUES])
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, uint32_t which,
+                            double values[SE3D_TYRE_VALUES])
 {
     patch c;
     se3di_tyre_slip slip;
     SE3DI_TRY(take_patch(model, force, model->time, &c));
-    tell_slip(force, &c, first <= SE3D_TYRE_MZ, &slip, values);
-    if (end > SE3D_TYRE_INCLINATION) {
+    tell_slip(force, &c, which, &slip, values);
+    if (which & ~BEFORE(SE3D_TYRE_INCLINATION)) {
         tell_place(force, &c, &slip, values);
         se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
     }

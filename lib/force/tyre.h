@@ -77,8 +77,8 @@ void se3di_tyre_fiala(const se3di_force *force, const se3di_tyre_slip *slip,
 
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces);
-/* The same values; derivatives stay as they are. */
-void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip,
+/* The same values; derivatives stay as they are. moments: 0: without them. */
+void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int moments,
                              se3di_tyre_forces *forces);
 /* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
 typedef struct se3di_tyre_lag {
@@ -104,9 +104,9 @@ se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyr
 se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
                                        double deflection[2]);
 
-/* What it tells at the present state, se3d_tyre_value from `first` to before `end`; the others may
+/* What it tells at the present state, bit k of `which`: value k (se3d_tyre_value); the others may
  * be left out. @return as se3di_force_eval */
-se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, size_t first,
-                            size_t end, double values[SE3D_TYRE_VALUES]);
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, uint32_t which,
+                            double values[SE3D_TYRE_VALUES]);
 
 #endif

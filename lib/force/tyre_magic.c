@@ -16,7 +16,7 @@ typedef se3di_dual dual;
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces)
 {
-    find_all(force, slip, forces);
+    find_all(force, slip, 1, forces);
 }
 
 void se3di_tyre_take_slip(const se3di_force *force, double cosine, const double *in,

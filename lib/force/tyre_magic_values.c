@@ -13,10 +13,10 @@ typedef se3di_value dual;
 #include "force/tyre_magic.inc"
 #include "force/tyre_slip.inc"
 
-void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip,
+void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int moments,
                              se3di_tyre_forces *forces)
 {
-    find_all(force, slip, forces);
+    find_all(force, slip, moments, forces);
 }
 
 void se3di_tyre_take_slip_values(const se3di_force *force, double cosine, const double *in,

@@ -278,20 +278,31 @@ se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def
     return se3di_give_created(system, added, "a tyre", handle, force);
 }
 
-se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,
-                                 size_t count, double *values)
+se3d_status se3d_tyre_get_some(const se3d_system *system, se3d_force force, uint32_t which,
+                               double *values)
 {
     const se3di_force *data;
     double all[SE3D_TYRE_VALUES];
     SE3DI_TRY(se3di_force_find_reader(system, force, values, &data));
-    if (data->type != SE3DI_FORCE_TYRE || count == 0 || first >= SE3D_TYRE_VALUES ||
-        count > SE3D_TYRE_VALUES - first) {
+    if (data->type != SE3DI_FORCE_TYRE || which == 0 || which >> SE3D_TYRE_VALUES != 0) {
         return SE3D_ERR_INVALID_ARGUMENT;
     }
     se3di_reading reading;
     SE3DI_TRY(se3di_read_begin(system, &reading));
-    SE3DI_TRY(
-        se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, first, first + count, all)));
+    SE3DI_TRY(se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, which, all)));
+    for (uint32_t k = 0; k < SE3D_TYRE_VALUES; ++k) {
+        values[k] = which >> k & 1 ? all[k] : 0.0;
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,
+                                 size_t count, double *values)
+{
+    double all[SE3D_TYRE_VALUES];
+    const int is_range = first < SE3D_TYRE_VALUES && count <= SE3D_TYRE_VALUES - first;
+    const uint32_t which = is_range ? ((UINT32_C(1) << count) - 1) << first : 0;
+    SE3DI_TRY(se3d_tyre_get_some(system, force, which, values ? all : NULL));
     memcpy(values, all + first, count * sizeof *values);
     return SE3D_OK;
 }

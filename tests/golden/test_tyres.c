@@ -22,6 +22,20 @@ static void check_ranges(const se3d_system *system, se3d_force tyre, const doubl
     }
 }
 
+/* Any two, and zeros beside them. */
+static void check_pairs(const se3d_system *system, se3d_force tyre, const double *all)
+{
+    for (uint32_t i = 0; i < SE3D_TYRE_VALUES; ++i) {
+        for (uint32_t j = i; j < SE3D_TYRE_VALUES; ++j) {
+            double some[SE3D_TYRE_VALUES], wanted[SE3D_TYRE_VALUES] = {0.0};
+            wanted[i] = all[i];
+            wanted[j] = all[j];
+            CHECK(!se3d_tyre_get_some(system, tyre, 1u << i | 1u << j, some));
+            CHECK(memcmp(some, wanted, sizeof some) == 0);
+        }
+    }
+}
+
 /* A wheel in the state {h, g, u, v, W} over the road z = 0, turning about its normal. */
 static void get_forces(const se3d_tyre_def *given, const double state[5], double turning,
                        int on_right, double values[SE3D_TYRE_VALUES])
@@ -49,6 +63,7 @@ static void get_forces(const se3d_tyre_def *given, const double state[5], double
     CHECK(!se3d_force_create_tyre(system, &def, &tyre));
     CHECK(!se3d_tyre_get_values(system, tyre, 0, SE3D_TYRE_VALUES, values));
     check_ranges(system, tyre, values);
+    check_pairs(system, tyre, values);
     se3d_system_destroy(system);
 }
 

@@ -184,6 +184,12 @@ static void check_tyre(arguments *a, const settable *m)
     INVALID(se3d_tyre_get_values(a->system, m->spring, 0, 1, values));
     CHECK(se3d_tyre_get_values(NULL, tyre, 0, 1, values) == SE3D_ERR_NULL);
     CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, NULL) == SE3D_ERR_NULL);
+    CHECK(!se3d_tyre_get_some(a->system, tyre, 1u << (SE3D_TYRE_VALUES - 1), values));
+    INVALID(se3d_tyre_get_some(a->system, tyre, 0, values));
+    INVALID(se3d_tyre_get_some(a->system, tyre, 1u << SE3D_TYRE_VALUES, values));
+    INVALID(se3d_tyre_get_some(a->system, m->spring, 1, values));
+    CHECK(se3d_tyre_get_some(NULL, tyre, 1, values) == SE3D_ERR_NULL);
+    CHECK(se3d_tyre_get_some(a->system, tyre, 1, NULL) == SE3D_ERR_NULL);
     CHECK(!se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, 7.0));
     CHECK(!se3d_force_get_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, &k));
     CHECK_NEAR(k, 7.0, 0.0);
@@ -209,6 +215,7 @@ static void check_tyre(arguments *a, const settable *m)
     def.coefficient_count = SE3D_TYRE_COEFFICIENTS + 1;
     INVALID(se3d_force_create_tyre(a->system, &def, &tyre));
     CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, values) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_tyre_get_some(a->system, tyre, 1, values) == SE3D_ERR_STALE_HANDLE);
 }
 
 static void check_prescribed(arguments *a)

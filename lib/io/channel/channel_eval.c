@@ -145,8 +145,6 @@ static se3d_status ask_element(se3di_question question, const se3di_channel *c,
     case SE3DI_ASK_WHEEL_LOAD:
         return se3d_wheel_get_measures(system, c->wheel, SE3D_WHEEL_WHEEL_LOAD,
                                        SE3D_WHEEL_MEASURES - SE3D_WHEEL_WHEEL_LOAD, numbers);
-    case SE3DI_ASK_TYRE:
-        return se3d_tyre_get_values(system, c->force, 0, SE3D_TYRE_INCLINATION, numbers);
     case SE3DI_ASK_TYRE_PLACE:
         return se3d_tyre_get_values(system, c->force, SE3D_TYRE_INCLINATION,
                                     SE3D_TYRE_VALUES - SE3D_TYRE_INCLINATION, numbers);
@@ -304,7 +302,6 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     case SE3DI_ASK_WRENCH:
     case SE3DI_ASK_FORCE:
     case SE3DI_ASK_ARMATURE_MOTION:
-    case SE3DI_ASK_TYRE:
     case SE3DI_ASK_TYRE_PLACE:
         return c->force.index1;
     case SE3DI_ASK_STATE_VALUE:
@@ -326,6 +323,30 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     default: /* of sets, sinks and regions */
         return c->tagged ? c->index : 0;
     }
+}
+
+/* Of a tyre the forces, moments and slips that some channel has asked for until now. */
+static se3d_status answer_tyre(const se3di_channel *c, size_t first, se3di_sample *sample,
+                               double room[SE3DI_ANSWER_NUMBERS], const double **numbers)
+{
+    const uint32_t own = UINT32_C(1) << first;
+    *numbers = room;
+    if (sample->state == 0) {
+        return se3d_tyre_get_some(sample->system, c->force, own, room);
+    }
+    se3di_answer *kept = se3di_sample_find(sample, SE3DI_ASK_TYRE, c->force.index1);
+    if (!kept) {
+        return SE3D_ERR_NO_MEMORY;
+    }
+    *numbers = kept->numbers;
+    if (kept->state == sample->state && (kept->which & own)) {
+        return SE3D_OK;
+    }
+    kept->which |= own;
+    const se3d_status status =
+        se3d_tyre_get_some(sample->system, c->force, kept->which, kept->numbers);
+    kept->state = status < 0 ? 0 : sample->state;
+    return status;
 }
 
 /* As `ask`, once in a state; failures are not kept. *numbers: where they are, in `room` if nothing
@@ -370,7 +391,9 @@ static se3d_status eval_quantity(const se3di_channel *channel, se3di_sample *sam
     if (question == SE3DI_ASK_ITSELF) {
         return eval_body(channel, sample->system, value);
     }
-    const se3d_status status = answer(question, channel, sample, room, &numbers);
+    const se3d_status status = question == SE3DI_ASK_TYRE
+                                   ? answer_tyre(channel, first, sample, room, &numbers)
+                                   : answer(question, channel, sample, room, &numbers);
     const size_t width = status < 0 ? 0 : se3di_channel_get_width(channel);
     for (size_t k = 0; k < width; ++k) {
         value[k] = numbers[first + k];

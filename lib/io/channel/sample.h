@@ -10,6 +10,8 @@ enum { SE3DI_ANSWER_NUMBERS = 22 };
 
 typedef struct se3di_answer {
     uint64_t state; /* that it is of; 0: none */
+    uint32_t which; /* of its numbers some has been asked for, if it is made of these alone */
+    uint32_t reserved;
     double numbers[SE3DI_ANSWER_NUMBERS];
 } se3di_answer;
 
