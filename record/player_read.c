@@ -79,14 +79,14 @@ static size_t room_of(const layout_struct *of, uint64_t said)
 static int read_struct(stage *s, const layout_struct *of, unsigned char *to, player_place place,
                        bytes_reader *r)
 {
-    const size_t room = room_of(of, bytes_get_u64(r));
+    const uint64_t said = bytes_get_u64(r);
     const uint32_t count = bytes_get_u32(r);
-    size_t size = 0;
     if (check_reader(s, r) != 0) {
         return -1;
     }
-    if (count > of->member_count) {
-        return stage_end(s, PLAYER_MALFORMED, "%s has more members than are known", of->name);
+    if (count > of->member_count ||
+        (count > 0 && !layout_has(of, &of->members[count - 1], (size_t)said))) {
+        return stage_end(s, PLAYER_MALFORMED, "%s has more members than its size", of->name);
     }
     place.base = to;
     place.is_member = 1;
@@ -95,8 +95,7 @@ static int read_struct(stage *s, const layout_struct *of, unsigned char *to, pla
             return -1;
         }
     }
-    memcpy(&size, to, of->is_sized ? sizeof size : 0);
-    if (size > room && size <= of->size + GROWTH) {
+    if (of->is_sized && layout_said(of, to, of->size) != said) {
         return stage_end(s, PLAYER_MALFORMED, "%s says two sizes", of->name);
     }
     return 0;
