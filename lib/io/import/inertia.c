@@ -12,12 +12,13 @@
 static double missing(const double moments[3], double mass)
 {
     const double triangle = moments[2] - moments[0] - moments[1];
-    double add = triangle > 1e-10 * moments[2] ? triangle : 0.0;
-    if (!(moments[2] > 1e-24 * mass)) {
+    const double size = fmax(fabs(moments[0]), fabs(moments[2]));
+    double add = triangle > 1e-10 * size ? triangle : 0.0;
+    if (!(size > 1e-24 * mass)) {
         return 1e-6 * mass - moments[0];
     }
-    if (moments[0] + add < 1e-12 * moments[2]) {
-        add = 1e-9 * moments[2] - moments[0];
+    if (moments[0] + add < 1e-12 * size) {
+        add = 1e-9 * size - moments[0];
     }
     return add;
 }
