@@ -276,11 +276,12 @@ void se3di_convex_add_reactions(const se3di_convex *c, const se3di_convex_island
 void se3di_convex_take_back_rows(const se3di_convex *c, const se3di_assembly *assembly,
                                  const se3di_convex_island *island, double *out)
 {
-    const double *lambda = c->rows.lambda + island->row;
+    size_t row = island->row;
     for (size_t k = island->joint; k < island->joint_end; ++k) {
         const uint32_t j = (uint32_t)c->rows.joint[k];
+        const double *lambda = c->rows.lambda + row;
         memcpy(out + assembly->model->constraints[j].row_begin, lambda,
                (size_t)assembly->joint_rows[j] * sizeof *lambda);
-        lambda += assembly->joint_rows[j];
+        row += (size_t)assembly->joint_rows[j];
     }
 }
