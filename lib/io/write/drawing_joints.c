@@ -296,12 +296,15 @@ void se3di_lister_add_joints(se3di_lister *l)
     const se3d_model *model = l->model;
     for (size_t e = 0; e < model->element_count; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
+        const bool is_i = se3di_drawing_is_body(model, l->body, entry->body_i);
+        const bool is_j = se3di_drawing_is_body(model, l->body, entry->body_j);
+        if (!is_i && !is_j) {
+            continue; /* the look is read from its text */
+        }
         const se3di_joint_look look = se3di_joint_get_look(entry);
         if (look == SE3DI_JOINT_NONE && se3di_drawing_count_between(entry) == 0) {
             continue;
         }
-        const bool is_i = se3di_drawing_is_body(model, l->body, entry->body_i);
-        const bool is_j = se3di_drawing_is_body(model, l->body, entry->body_j);
         const side here = make_side(l, entry, is_j);
         if (is_j && look != SE3DI_JOINT_NONE) {
             add_moving(&here, look);

@@ -58,14 +58,16 @@ static void find_places(web *w, bool bare)
     const size_t k = w->l->body;
     for (size_t e = 0; e < model->element_count; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
-        if (se3di_joint_get_look(entry) == SE3DI_JOINT_NONE &&
-            se3di_drawing_count_between(entry) == 0) {
+        const bool is_i = se3di_drawing_is_body(model, k, entry->body_i);
+        const bool is_j = se3di_drawing_is_body(model, k, entry->body_j);
+        if ((!is_i && !is_j) || (se3di_joint_get_look(entry) == SE3DI_JOINT_NONE &&
+                                 se3di_drawing_count_between(entry) == 0)) {
             continue;
         }
-        if (se3di_drawing_is_body(model, k, entry->body_i)) {
+        if (is_i) {
             add_place(w, entry->point_i);
         }
-        if (se3di_drawing_is_body(model, k, entry->body_j)) {
+        if (is_j) {
             add_place(w, entry->point_j);
         }
     }

@@ -494,10 +494,10 @@ void se3di_lister_add_roads(se3di_lister *l)
     size_t rises = 0;
     for (size_t e = 0; e < model->element_count && !l->failed; ++e) {
         const se3di_element_entry *entry = &model->elements[e];
+        const bool is_here = se3di_drawing_is_body(model, l->body, entry->body_i);
         const bool is_road = entry->kind == SE3DI_ELEMENT_ROAD;
-        const bool is_plane = is_tyre(entry) && entry->road.index1 == 0;
-        if ((is_road || (is_plane && !is_drawn_before(model, e))) &&
-            se3di_drawing_is_body(model, l->body, entry->body_i)) {
+        if (is_here && (is_road || (is_tyre(entry) && entry->road.index1 == 0 &&
+                                    !is_drawn_before(model, e)))) {
             strip s = {.l = l, .owner = entry, .body = l->body};
             add_surface(&s, rises);
         }
