@@ -43,10 +43,12 @@ typedef struct se3di_body_contacts {
      * `reference`; of edit `version` of the model. */
     uint32_t *pairs; /* [2 * pairs], ascending */
     size_t pair_count, pair_capacity;
-    double *reference; /* [3 * shapes] */
-    uint32_t *order;   /* [shapes] by their lower ends along an axis */
-    double *swept;     /* [4 * shapes] in that order: centre, bound; while the list is made */
-    size_t reference_capacity, order_capacity, swept_capacity;
+    double *reference;   /* [3 * shapes] */
+    uint32_t *order;     /* [shapes] by their lower ends along an axis */
+    double *swept;       /* [4 * shapes] in that order: centre, bound; while the list is made */
+    uint32_t *joints;    /* constraints of body 0, 1, ...; while the list is made */
+    size_t *joint_begin; /* [bodies + 2] where those of a body begin */
+    size_t reference_capacity, order_capacity, swept_capacity, joints_capacity, begin_capacity;
     double margin;
     double time, next_time; /* of the states of `list` and `next` */
     uint64_t version;       /* 0: none */

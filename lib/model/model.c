@@ -93,7 +93,7 @@ typedef struct model_array {
     size_t count, size;
 } model_array;
 
-#define MODEL_ARRAYS 25
+#define MODEL_ARRAYS 27
 
 static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
 {
@@ -129,6 +129,8 @@ static void list_arrays(se3di_model *m, model_array list[MODEL_ARRAYS])
         {(void **)&c->reference, &c->reference_capacity, listed, 3 * sizeof *c->reference},
         {(void **)&c->order, &c->order_capacity, listed, sizeof *c->order},
         {(void **)&c->swept, &c->swept_capacity, 0, 4 * sizeof *c->swept},
+        {(void **)&c->joints, &c->joints_capacity, 0, sizeof *c->joints},
+        {(void **)&c->joint_begin, &c->begin_capacity, 0, sizeof *c->joint_begin},
         {&c->met, &c->met_bytes, 0, 1},
         {(void **)&m->history, &m->history_capacity, m->history_count, sizeof *m->history},
     };

@@ -37,14 +37,18 @@ static int is_plane(const se3di_shape *s)
     return se3di_shape_is(s, SE3DI_SHAPE_IS_HALF_SPACE);
 }
 
-/* As far as it is the user's to say. */
-static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
+/* As far as it is the user's to say, but for joints. */
+static int are_free_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
 {
     const se3di_shape *s = &model->shapes[a];
     const se3di_shape *t = &model->shapes[b];
     return s->body != t->body && se3di_shapes_meet(s, t) &&
-           !(model->bodies[s->body].fixed && model->bodies[t->body].fixed) &&
-           !se3di_shapes_are_joined(model, a, b);
+           !(model->bodies[s->body].fixed && model->bodies[t->body].fixed);
+}
+
+static int are_meant_to_touch(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    return are_free_to_touch(model, a, b) && !se3di_shapes_are_joined(model, a, b);
 }
 
 int se3di_shapes_may_touch(const se3di_model *model, uint32_t a, uint32_t b)
@@ -270,11 +274,19 @@ static int are_apart(const double *a, const double *b, double margin)
     return se3di_dot(d, d) > CLEARLY * (reach * reach);
 }
 
+/* As se3di_shapes_may_touch. */
+static int may_touch(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    return se3di_narrow_is_known(&model->shapes[a], &model->shapes[b]) &&
+           are_free_to_touch(model, a, b) && !se3di_joints_keep_apart(model, a, b);
+}
+
 static se3d_status sweep(se3di_model *model)
 {
     se3di_body_contacts *c = &model->contacts;
     uint32_t shapes = (uint32_t)model->shape_slots.count;
     c->pair_count = 0;
+    SE3DI_TRY(se3di_joints_gather(model));
     line_up(model);
     for (uint32_t k = 0; k < shapes; ++k) {
         const double *a = c->swept + 4 * (size_t)k, *b = a + 4;
@@ -282,7 +294,7 @@ static se3d_status sweep(se3di_model *model)
         for (uint32_t m = k + 1; m < shapes && !(b[0] - b[3] > high); ++m, b += 4) {
             if (!are_apart(a, b, c->margin) &&
                 were_near(model, c->order[k], c->order[m], c->margin) &&
-                se3di_shapes_may_touch(model, c->order[k], c->order[m])) {
+                may_touch(model, c->order[k], c->order[m])) {
                 SE3DI_TRY(add_pair(model, c->order[k], c->order[m]));
             }
         }

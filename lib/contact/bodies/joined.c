@@ -89,3 +89,46 @@ int se3di_shapes_are_joined(const se3di_model *model, uint32_t a, uint32_t b)
     }
     return 0;
 }
+
+se3d_status se3di_joints_gather(se3di_model *model)
+{
+    se3di_body_contacts *c = &model->contacts;
+    const size_t bodies = model->body_slots.count;
+    SE3DI_TRY(se3di_array_reserve_at(&model->allocator, &c->joint_begin, &c->begin_capacity,
+                                     bodies + 2, sizeof *c->joint_begin));
+    size_t *begin = c->joint_begin, total = 0;
+    memset(begin, 0, (bodies + 2) * sizeof *begin);
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *one = &model->constraints[k];
+        total += one->body_count;
+        for (uint32_t n = 0; n < one->body_count; ++n) {
+            ++begin[one->bodies[n] + 2];
+        }
+    }
+    SE3DI_TRY(se3di_array_reserve_at(&model->allocator, &c->joints, &c->joints_capacity, total,
+                                     sizeof *c->joints));
+    for (size_t b = 2; b < bodies + 2; ++b) {
+        begin[b] += begin[b - 1];
+    }
+    for (size_t k = 0; k < model->constraint_slots.count; ++k) {
+        const se3di_constraint *one = &model->constraints[k];
+        for (uint32_t n = 0; n < one->body_count; ++n) {
+            c->joints[begin[one->bodies[n] + 1]++] = (uint32_t)k;
+        }
+    }
+    return SE3D_OK;
+}
+
+int se3di_joints_keep_apart(const se3di_model *model, uint32_t a, uint32_t b)
+{
+    const se3di_body_contacts *c = &model->contacts;
+    const se3di_shape *s = &model->shapes[a], *t = &model->shapes[b];
+    const size_t *i = c->joint_begin + s->body, *j = c->joint_begin + t->body;
+    const size_t *fewer = i[1] - i[0] < j[1] - j[0] ? i : j;
+    for (size_t k = fewer[0]; k < fewer[1]; ++k) {
+        if (se3di_joint_keeps_apart(model, &model->constraints[c->joints[k]], s, t)) {
+            return 1;
+        }
+    }
+    return 0;
+}
