@@ -61,11 +61,34 @@ static double line_distance(const se3di_solid *line, const se3di_solid *j, doubl
     return distance;
 }
 
+/* A bound of the distance of two cores: that of the planes across the way between their centres. */
+static double gap_between(const se3di_solid *i, const se3di_solid *j)
+{
+    double n[3], back[3], on_i[3], on_j[3], d[3];
+    se3di_sub(j->at->x, i->at->x, n);
+    const double size = se3di_norm(n);
+    if (!(size > 0.0)) {
+        return 0.0;
+    }
+    se3di_scale(1.0 / size, n, n);
+    se3di_scale(-1.0, n, back);
+    se3di_core_support(i, n, on_i);
+    se3di_core_support(j, back, on_j);
+    se3di_sub(on_j, on_i, d);
+    return se3di_dot(d, n);
+}
+
 double se3di_convex_least(const se3di_solid *i, const se3di_solid *j, double far, double n[3],
                           double on_i[3], double on_j[3])
 {
     const double radius = se3di_core_radius(i->shape) + se3di_core_radius(j->shape);
     const double apart = APART * (i->shape->bound + j->shape->bound);
+    if (far < HUGE_VAL && (se3di_solid_is_line(i) || se3di_solid_is_line(j))) {
+        const double gap = gap_between(i, j);
+        if (gap > radius + far + apart) {
+            return radius - gap;
+        }
+    }
     if (se3di_solid_is_line(i) && !j->shape->triangles) {
         const double distance = line_distance(i, j, n, on_i, on_j);
         if (distance > apart) {
