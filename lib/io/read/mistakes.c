@@ -67,42 +67,41 @@ static void insert(search *s, const se3d_model_error *error, const se3di_fault *
     s->parents[k] = fault->node ? fault->node->parent : NULL;
 }
 
-/* Read what is left. @return MODEL: there is another mistake, in *next. */
-static se3d_status read_again(const se3di_attempt *first, se3di_attempt *next)
+/* Read what is left into next->model. @return MODEL: there is another mistake, in *next, some of
+ * which is the model's. */
+static se3d_status read_again(const se3d_model *like, se3di_attempt *next)
 {
-    const se3d_model *like = first->model;
-    next->model = se3di_model_create(first->options->allocator);
+    next->model = se3di_model_create(next->options->allocator);
     if (!next->model) {
         return SE3D_ERR_NO_MEMORY;
     }
     next->model->file = like->file;
     next->model->name = like->name;
     next->model->root = like->root;
-    const se3d_status status = se3di_model_fill(next);
-    se3d_model_destroy(next->model);
-    return status;
+    return se3di_model_fill(next);
 }
 
-static void look_further(search *s, const se3di_attempt *first, size_t length)
+/* `next` is the first attempt and ends as the last one. */
+static void look_further(search *s, se3di_attempt *next, size_t length)
 {
-    se3d_model_error error = *first->error;
-    se3di_attempt next = *first;
+    const se3d_model *first = next->model;
     se3d_status status = SE3D_ERR_MODEL;
     size_t work = 0;
-    next.error = &error;
-    next.warns = false;
     for (int k = 0; k < READINGS_MAX && work < WORK_MAX && status == SE3D_ERR_MODEL; ++k) {
-        const bool new = !se3di_recovery_expects(&s->recovery, &next.fault) &&
-                         !is_repeated(s, &error, &next.fault);
+        const bool new = !se3di_recovery_expects(&s->recovery, &next->fault) &&
+                         !is_repeated(s, next->error, &next->fault);
         if (new) {
-            insert(s, &error, &next.fault);
+            insert(s, next->error, &next->fault);
         }
         if (s->count == SE3D_MODEL_MISTAKES_MAX ||
-            !se3di_recovery_mend(&s->recovery, &next.fault, new)) {
+            !se3di_recovery_mend(&s->recovery, &next->fault, new)) {
             return;
         }
-        work += length + next.attached;
-        status = read_again(first, &next);
+        if (next->model != first) {
+            se3d_model_destroy(next->model);
+        }
+        work += length + next->attached;
+        status = read_again(first, next);
     }
 }
 
@@ -115,7 +114,14 @@ void se3di_mistakes_report_all(se3di_attempt *attempt, size_t length)
         return;
     }
     s->recovery.pool = &model->pool;
-    look_further(s, attempt, length);
+    se3d_model_error error = *attempt->error;
+    se3di_attempt last = *attempt;
+    last.error = &error;
+    last.warns = false;
+    look_further(s, &last, length);
+    if (last.model != model) {
+        se3d_model_destroy(last.model);
+    }
     for (size_t k = 0; k < s->count; ++k) {
         attempt->options->report(attempt->options->report_ctx, &s->list[k]);
     }
