@@ -12,6 +12,7 @@
 #include "integrator/convex.h"
 
 #include "contact/shape/shape.h"
+#include "expression/expression.h"
 #include "integrator/state.h"
 #include "math/vec3.h"
 #include "primitive/user.h"
@@ -53,12 +54,22 @@ static int drives(const se3di_model *model, const se3di_constraint *constraint)
     return drives;
 }
 
+/* Whether a function is one of what the element measures between its bodies alone, for certain: not
+ * of its first variable, which may be the time. */
+static int is_own(const se3di_function *function)
+{
+    return function->expression && !function->integral && function->signal_count == 0 &&
+           !se3di_expression_reads(function->expression, 1u);
+}
+
 /* Whether an element may. */
 static int urges(const se3di_model *model, const se3di_force *force)
 {
     int urges = force->type == SE3DI_FORCE_CALLBACK || force->type == SE3DI_FORCE_STATE;
     for (int k = 0; k < SE3DI_FORCE_FUNCTIONS && !urges; ++k) {
-        urges = force->function[k] >= 0 && !is_constant(&model->functions[force->function[k]]);
+        const se3di_function *function =
+            force->function[k] >= 0 ? &model->functions[force->function[k]] : NULL;
+        urges = function && !is_constant(function) && !is_own(function);
     }
     return urges;
 }

@@ -279,9 +279,9 @@ static int is_still(const text_model *m)
 }
 
 /* To the bit, and the pendulum's motion does not depend on it. */
-static void machines_at_rest_sleep_until_something_falls_on_them(void)
+static void sleep_until_something_falls(const char *load)
 {
-    text_model p = lay_down(1, "0.2"), q = lay_down(0, "0.2");
+    text_model p = lay_down(1, load), q = lay_down(0, load);
     double first[5][3], now[3], other[3], most = 0.0;
     CHECK(text_model_run(&p, 1.2) && text_model_run(&q, 1.2));
     CHECK(is_still(&p) && !is_still(&q));
@@ -310,6 +310,13 @@ static void machines_at_rest_sleep_until_something_falls_on_them(void)
     CHECK(most > 0.1);
     text_model_close(&p);
     text_model_close(&q);
+}
+
+/* Also with loads that are functions of their joint alone. */
+static void machines_at_rest_sleep_until_something_falls_on_them(void)
+{
+    sleep_until_something_falls("0.2");
+    sleep_until_something_falls("0.2 - 0.05*qdot - 0.3*q");
 }
 
 /* What is loaded by a function of time stays awake, with all that is joined to it. */
