@@ -595,7 +595,7 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
 static void rouse(se3di_integration *integration)
 {
     const se3di_assembly *assembly = &integration->equations->assembly;
-    memset(assembly->model->history + 1, 0, KEPT * (size_t)assembly->body_count * sizeof(double));
+    memset(assembly->model->history + 1, 0, (size_t)assembly->body_count * sizeof(double));
 }
 
 /* What contacts, stops and friction do is counted by steps, not by powers. */
@@ -612,7 +612,10 @@ static se3d_status renew(se3di_integration *integration)
 
 static se3d_status start(se3di_integration *integration, double h)
 {
-    integration->equations->assembly.model->history[0] = h;
+    const se3di_assembly *assembly = &integration->equations->assembly;
+    double *kept = assembly->model->history;
+    kept[0] = h;
+    memset(kept + 1, 0, (history_count(assembly) - 1) * sizeof *kept);
     SE3DI_TRY(open_convex(integration));
     return renew(integration);
 }

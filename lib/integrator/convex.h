@@ -237,6 +237,10 @@ double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact
                                const se3di_convex_contact *j);
 /* What the materials of a contact make of its law, of which the stretch may be. */
 void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *model);
+/* Its attraction in a step of length h for an approach u: that at the start of the step, or in its
+ * middle if it is no short one. */
+void se3di_convex_set_attraction(se3di_convex_contact *contact, const se3di_model *model, double h,
+                                 double u);
 /* No impact of one step: it rests. */
 void se3di_convex_let_rest(const se3di_convex *c, se3di_convex_contact *contact);
 /* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */

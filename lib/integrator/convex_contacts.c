@@ -132,10 +132,10 @@ static double hertz_stiffness(double k, double overlap, double inverse_mass, dou
     return 1.5 * k * sqrt(fmax(overlap, se3di_convex_hertz_depth(k, inverse_mass, u)));
 }
 
-/* Of the start of the step, or its middle. */
-static void set_attraction(se3di_convex_contact *c, const se3di_model *model,
-                           const se3di_pair *pair, double h, double u)
+void se3di_convex_set_attraction(se3di_convex_contact *c, const se3di_model *model, double h,
+                                 double u)
 {
+    const se3di_pair *pair = se3di_pair_of(model, c->record->shape_i, c->record->shape_j);
     if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
         const se3di_body_contact *r = c->record;
         const double radius =
@@ -163,7 +163,7 @@ static void choose_way(se3di_convex_contact *c, const se3di_model *model, double
     const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
     c->way = SE3DI_CONVEX_SPRING;
     c->is_short = se3di_convex_is_short(k, record->inverse_mass, h);
-    set_attraction(c, model, pair, h, u);
+    se3di_convex_set_attraction(c, model, h, u);
     if (!c->is_short) {
         c->damping = fmax(0.0, damping - 0.5 * h * now);
         c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));

@@ -44,6 +44,8 @@ static void follow_law(const se3di_convex *c, se3di_convex_contact *contact)
     const double root = sqrt(contact->stiffness * share / pair->kn / record->inverse_mass);
     const double yields = h * contact->tangential;
     contact->way = SE3DI_CONVEX_SPRING;
+    contact->is_short = 0;
+    se3di_convex_set_attraction(contact, c->model, h, speed);
     contact->damping = fmax(0.0, pair->dn * root - 0.5 * h * stiffness);
     contact->drag = h * (yields + fmax(0.0, pair->dt * root - 0.5 * yields));
 }

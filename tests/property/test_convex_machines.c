@@ -456,8 +456,81 @@ static void what_is_driven_against_what_cannot_give_way_feels_the_law(void)
     }
 }
 
+/* A ball that adheres is driven at 0.5 m/s against a plane: it is pulled as by its law, too. */
+static void what_is_driven_against_what_it_adheres_to_is_pulled(void)
+{
+    static const char *const text =
+        "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+6, restitution: 0.9, "
+        "friction: 0.3, adhesion: 20}]\ncontact: {}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, material: m}]}\n"
+        "  - {name: b, mass: 2, inertia: [0.02, 0.02, 0.02], position: [0, 0, 0.1005], velocity: "
+        "[0, 0, -0.5], shapes: [{type: sphere, radius: 0.1, material: m}]}\n"
+        "joints: [{name: j, type: prismatic, body_i: ground, body_j: b, at: [0, 0, 0], axis: [0, "
+        "0, 1]}]\ndrivers: [{name: d, joint: j, value: -0.5*t}]\n"
+        "analysis: {type: dynamics, duration: 0.012}\noutput: [{file: r.csv, channels: "
+        "[d.effort]}]\n";
+    text_model m = text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+    text_model by_law = text_model_open(text, SE3D_METHOD_DOP853, SE3D_FORMULATION_AUTO, STEP);
+    CHECK(text_model_run(&m, 0.01) && text_model_run(&by_law, 0.01));
+    const double effort = text_model_get(&by_law, 0, 0);
+    CHECK(fabs(effort) > 3000.0);
+    CHECK_NEAR(text_model_get(&m, 0, 0) / effort, 1.0, 0.04);
+    text_model_close(&m);
+    text_model_close(&by_law);
+}
+
+/* An arm with friction in its joints turns on a box that lies: what is set between two steps, with
+ * the value that it had, changes nothing. */
+static void what_is_set_between_steps_leaves_the_rest_as_it_is(void)
+{
+    static const char *const text =
+        "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1.0e+5, restitution: 0.3, "
+        "friction: 0.8}]\ncontact: {}\nbodies:\n"
+        "  - {name: ground, shapes: [{type: plane, position: [0, 0, -1], material: m}]}\n"
+        "  - {name: base, mass: 8, inertia: [0.2, 0.2, 0.2], position: [0, 0, -0.9], shapes: "
+        "[{type: box, size: [0.8, 0.8, 0.2], material: m}]}\n"
+        "  - {name: col, mass: 1, inertia: [0.01, 0.01, 0.01], position: [0, 0, -0.6], "
+        "angular_velocity: [0, 0, 8]}\n"
+        "  - {name: arm, mass: 1, inertia: [0.002, 0.02, 0.02], position: [0.3, 0, -0.5], "
+        "velocity: [0, 2.4, 0], angular_velocity: [0, 0, 8]}\n"
+        "  - {name: pend, mass: 0.5, inertia: [0.001, 0.002, 0.001], position: [0.6, 0, -0.6], "
+        "velocity: [0, 4.8, 0], angular_velocity: [0, 0, 8]}\n"
+        "joints:\n"
+        "  - {name: j1, type: revolute, body_i: base, body_j: col, at: [0, 0, -0.7], axis: [0, 0, "
+        "1]}\n"
+        "  - {name: j2, type: revolute, body_i: col, body_j: arm, at: [0, 0, -0.5], axis: [0, 1, "
+        "0]}\n"
+        "  - {name: j3, type: revolute, body_i: arm, body_j: pend, at: [0.6, 0, -0.5], axis: [1, "
+        "0, 0]}\n"
+        "forces:\n"
+        "  - {name: f2, type: friction, joint: j2, mu: 0.2, radius: 0.05, length: 0.1}\n"
+        "  - {name: f3, type: friction, joint: j3, mu: 0.2, radius: 0.05, length: 0.1}\n"
+        "  - {name: s2, type: rsda, joint: j2, k: 40, c: 0.2}\n"
+        "  - {name: e, type: effort, joint: j1, value: 0}\n"
+        "analysis: {type: dynamics, duration: 1}\n"
+        "output: [{file: r.csv, channels: [pend.position, energy.balance]}]\n";
+    text_model m[2];
+    se3d_force effort;
+    for (int k = 0; k < 2; ++k) {
+        m[k] = text_model_open(text, SE3D_METHOD_CONVEX, SE3D_FORMULATION_AUTO, STEP);
+    }
+    CHECK(!se3d_force_find(m[1].system, "e", &effort));
+    for (int step = 1; step <= 500; ++step) {
+        CHECK(text_model_run(&m[0], STEP * step) && text_model_run(&m[1], STEP * step));
+        CHECK(!se3d_effort_set(m[1].system, effort, 0.0));
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        CHECK_NEAR(text_model_get(&m[1], 0, c), text_model_get(&m[0], 0, c), 1e-9);
+    }
+    CHECK_NEAR(text_model_get(&m[1], 1, 0), text_model_get(&m[0], 1, 0), 1e-6);
+    text_model_close(&m[0]);
+    text_model_close(&m[1]);
+}
+
 int main(void)
 {
+    RUN(what_is_driven_against_what_it_adheres_to_is_pulled);
+    RUN(what_is_set_between_steps_leaves_the_rest_as_it_is);
     RUN(what_falls_onto_a_stop_bounces_and_comes_to_rest);
     RUN(an_angle_stays_within_its_range);
     RUN(what_swings_onto_a_stop_is_as_heavy_as_its_arm_makes_it);
