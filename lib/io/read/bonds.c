@@ -151,6 +151,39 @@ static bool make_bonds(se3di_reader *reader, const se3di_node *node, const se3d_
                              def->gap);
 }
 
+/* Keys of other laws. */
+static bool check_law(se3di_reader *reader, const se3di_node *node, se3d_bond_law law)
+{
+    enum {
+        BEAMS = 1 << SE3D_BOND_LAW_BEAM | 1 << SE3D_BOND_LAW_SLENDER,
+        PARALLEL = 1 << SE3D_BOND_LAW_PARALLEL,
+        SPRINGS = 1 << SE3D_BOND_LAW_SPRINGS
+    };
+    static const struct {
+        const char *key;
+        int laws;
+    } keys[] = {{"young", BEAMS},
+                {"poisson", BEAMS},
+                {"normal_stiffness", PARALLEL},
+                {"shear_stiffness", PARALLEL},
+                {"radius", BEAMS | PARALLEL},
+                {"ratio", BEAMS | PARALLEL},
+                {"tensile_strength", BEAMS | PARALLEL},
+                {"shear_strength", BEAMS | PARALLEL},
+                {"springs", SPRINGS},
+                {"dampers", SPRINGS},
+                {"limits", SPRINGS}};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
+        if (!(keys[k].laws >> law & 1) && se3di_node_get(node, keys[k].key)) {
+            return se3di_reader_fail_key(reader, node, keys[k].key,
+                                         keys[k].laws == SPRINGS
+                                             ? "has no effect without `law: springs`"
+                                             : "has no effect with this `law`");
+        }
+    }
+    return true;
+}
+
 /* Numbers of the four springs. */
 static bool read_springs(se3di_reader *reader, const se3di_node *node, se3d_bond_def *def)
 {
@@ -160,10 +193,6 @@ static bool read_springs(se3di_reader *reader, const se3di_node *node, se3d_bond
     } fours[] = {{"springs", def->springs}, {"dampers", def->dampers}, {"limits", def->limits}};
     for (size_t k = 0; k < sizeof fours / sizeof *fours; ++k) {
         const se3di_node *value = se3di_node_get(node, fours[k].key);
-        if (value && def->law != SE3D_BOND_LAW_SPRINGS) {
-            return se3di_reader_fail_key(reader, node, fours[k].key,
-                                         "has no effect without `law: springs`");
-        }
         if (value && !se3di_read_vector(reader, value, 4, fours[k].into)) {
             return false;
         }
@@ -185,7 +214,8 @@ static bool read_bond(se3di_reader *reader, const se3di_node *node)
     }
     if (!se3di_read_name(reader, name, &text) || !se3di_check_free_name(reader, name, text) ||
         !se3di_read_fields(reader, node, &se3di_object_bond, NULL, "se3d_bond_def", &def) ||
-        !read_springs(reader, node, &def) || !check_beside(reader, node)) {
+        !check_law(reader, node, def.law) || !read_springs(reader, node, &def) ||
+        !check_beside(reader, node)) {
         return false;
     }
     particles->bonds[particles->bond_count++] = text;
