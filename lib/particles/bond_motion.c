@@ -186,7 +186,7 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     bond->energy += 0.5 * tension * stretch;
     find_stress(set, bond, e, tension, bond->force);
     if (h > 0.0) {
-        bond->fate = find_fate(group, bond->stress);
+        bond->fate = (int32_t)find_fate(group, bond->stress);
     }
     se3di_add_scaled(-tension, e, bond->force);
     brake(bond, &one, &two, v, e, length);
