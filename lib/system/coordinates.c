@@ -5,6 +5,7 @@
 
 #include "assembly/loads.h"
 #include "assembly/user.h"
+#include "base/floats.h"
 #include "linsol/rank.h"
 #include "math/vec3.h"
 #include "system/coordinate.h"
@@ -278,9 +279,13 @@ static se3d_status place(se3d_coordinates *c)
 se3d_status se3d_coordinates_get(se3d_coordinates *coordinates, double *q, double *qdot)
 {
     SE3DI_OWNED(coordinates);
-    SE3DI_TRY(begin(coordinates));
-    se3di_tree_get(&coordinates->tree, q, qdot);
-    return SE3D_OK;
+    const se3di_floats host = se3di_floats_set();
+    const se3d_status status = begin(coordinates);
+    if (status >= 0) {
+        se3di_tree_get(&coordinates->tree, q, qdot);
+    }
+    se3di_floats_restore(host);
+    return status;
 }
 
 static se3d_status check_numbers(se3d_system *system, const char *what, const double *values,
@@ -408,7 +413,9 @@ se3d_status se3d_coordinates_move(se3d_coordinates *coordinates, const double *q
     if (!q || !dq || !out) {
         return SE3DI_FAIL(coordinates->system, SE3D_ERR_NULL, "q, dq or out is NULL");
     }
+    const se3di_floats host = se3di_floats_set();
     se3di_tree_move(&coordinates->tree, q, dq, out);
+    se3di_floats_restore(host);
     return SE3D_OK;
 }
 
@@ -573,9 +580,12 @@ se3d_status se3d_coordinates_compute_mass_matrix(se3d_coordinates *coordinates, 
 {
     SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "M", M));
-    SE3DI_TRY(place(coordinates));
-    se3di_tree_mass_matrix(&coordinates->tree, M);
-    return SE3D_OK;
+    se3di_work_begin(coordinates->system);
+    const se3d_status status = place(coordinates);
+    if (status >= 0) {
+        se3di_tree_mass_matrix(&coordinates->tree, M);
+    }
+    return se3di_work_end(coordinates->system, status);
 }
 
 se3d_status se3d_coordinates_multiply_mass(se3d_coordinates *coordinates, const double *x,
@@ -584,9 +594,12 @@ se3d_status se3d_coordinates_multiply_mass(se3d_coordinates *coordinates, const 
     SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "x", x));
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "out", out));
-    SE3DI_TRY(place(coordinates));
-    se3di_tree_mul(&coordinates->tree, x, out);
-    return SE3D_OK;
+    se3di_work_begin(coordinates->system);
+    const se3d_status status = place(coordinates);
+    if (status >= 0) {
+        se3di_tree_mul(&coordinates->tree, x, out);
+    }
+    return se3di_work_end(coordinates->system, status);
 }
 
 /* Nodes are prescribed by drivers or, `given` 0, free. */
@@ -599,12 +612,8 @@ static void prescribe(se3di_tree *tree, int given)
     }
 }
 
-se3d_status se3d_coordinates_solve_mass(se3d_coordinates *coordinates, const double *x, double *out)
+static se3d_status solve_mass(se3d_coordinates *c, const double *x, double *out)
 {
-    se3d_coordinates *c = coordinates;
-    SE3DI_EDIT_PAST_OF(c);
-    SE3DI_TRY(se3di_check_pointer(c->system, "x", x));
-    SE3DI_TRY(se3di_check_pointer(c->system, "out", out));
     SE3DI_TRY(place(c));
     memset(c->tree.wrench, 0, 6 * c->nodes * sizeof *c->tree.wrench);
     prescribe(&c->tree, 0);
@@ -614,6 +623,16 @@ se3d_status se3d_coordinates_solve_mass(se3d_coordinates *coordinates, const dou
     }
     prescribe(&c->tree, 1);
     return status;
+}
+
+se3d_status se3d_coordinates_solve_mass(se3d_coordinates *coordinates, const double *x, double *out)
+{
+    se3d_coordinates *c = coordinates;
+    SE3DI_EDIT_PAST_OF(c);
+    SE3DI_TRY(se3di_check_pointer(c->system, "x", x));
+    SE3DI_TRY(se3di_check_pointer(c->system, "out", out));
+    se3di_work_begin(c->system);
+    return se3di_work_end(c->system, solve_mass(c, x, out));
 }
 
 /* ---- points, momentum ---- */
@@ -636,14 +655,15 @@ se3d_status se3d_coordinates_compute_jacobian(se3d_coordinates *coordinates, se3
     uint32_t body;
     double point[3];
     SE3DI_EDIT_PAST_OF(coordinates);
-    SE3DI_TRY(place_marker(coordinates, marker, &body, point));
-    if (J) {
+    se3di_work_begin(coordinates->system);
+    const se3d_status status = place_marker(coordinates, marker, &body, point);
+    if (status >= 0 && J) {
         se3di_tree_jacobian(&coordinates->tree, body, point, J);
     }
-    if (rate) {
+    if (status >= 0 && rate) {
         se3di_tree_jacobian_rate(&coordinates->tree, body, point, rate);
     }
-    return SE3D_OK;
+    return se3di_work_end(coordinates->system, status);
 }
 
 se3d_status se3d_coordinates_compute_transposed(se3d_coordinates *coordinates, se3d_marker marker,
@@ -654,10 +674,13 @@ se3d_status se3d_coordinates_compute_transposed(se3d_coordinates *coordinates, s
     SE3DI_EDIT_PAST_OF(coordinates);
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "wrench", wrench));
     SE3DI_TRY(se3di_check_pointer(coordinates->system, "effort", effort));
-    SE3DI_TRY(place_marker(coordinates, marker, &body, point));
-    memset(effort, 0, coordinates->velocities * sizeof *effort);
-    se3di_tree_add_transposed(&coordinates->tree, body, point, wrench, effort);
-    return SE3D_OK;
+    se3di_work_begin(coordinates->system);
+    const se3d_status status = place_marker(coordinates, marker, &body, point);
+    if (status >= 0) {
+        memset(effort, 0, coordinates->velocities * sizeof *effort);
+        se3di_tree_add_transposed(&coordinates->tree, body, point, wrench, effort);
+    }
+    return se3di_work_end(coordinates->system, status);
 }
 
 /* Of each body, about the centre. */
@@ -684,20 +707,26 @@ static void sum_momentum(const se3d_coordinates *c, const double centre[3], doub
     }
 }
 
+static se3d_status find_momentum(se3d_coordinates *c, double momentum[6], double *H)
+{
+    double centre[3];
+    SE3DI_TRY(place(c));
+    (void)se3di_tree_centre(&c->tree, centre);
+    if (momentum) {
+        sum_momentum(c, centre, momentum);
+    }
+    if (H) {
+        se3di_tree_momentum_matrix(&c->tree, centre, H);
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_coordinates_compute_momentum(se3d_coordinates *coordinates, double momentum[6],
                                               double *H)
 {
-    double centre[3];
     SE3DI_EDIT_PAST_OF(coordinates);
-    SE3DI_TRY(place(coordinates));
-    (void)se3di_tree_centre(&coordinates->tree, centre);
-    if (momentum) {
-        sum_momentum(coordinates, centre, momentum);
-    }
-    if (H) {
-        se3di_tree_momentum_matrix(&coordinates->tree, centre, H);
-    }
-    return SE3D_OK;
+    se3di_work_begin(coordinates->system);
+    return se3di_work_end(coordinates->system, find_momentum(coordinates, momentum, H));
 }
 
 /* ---- loops ---- */
