@@ -152,7 +152,7 @@ static bool make_bonds(se3di_reader *reader, const se3di_node *node, const se3d_
 }
 
 /* Keys of other laws. */
-static bool check_law(se3di_reader *reader, const se3di_node *node, se3d_bond_law law)
+static bool check_law(se3di_reader *reader, const se3di_node *node, int32_t law)
 {
     enum {
         BEAMS = 1 << SE3D_BOND_LAW_BEAM | 1 << SE3D_BOND_LAW_SLENDER,
