@@ -24,6 +24,7 @@
 
 #define ASKEW 1e-3  /* sine; axes that are less nearly parallel cross somewhere */
 #define NEAR  0.015 /* rad; what is found so near e is the least there */
+#define FALL  (0.5 * NEAR * NEAR * (1.0 - NEAR * NEAR / 12.0)) /* below 1 - cos NEAR */
 
 typedef struct axes {
     const se3di_solid *i, *j;
@@ -77,7 +78,7 @@ static int is_least(const axes *a, double overlap, double size)
     const double g = a->reach - size, k = overlap - g;
     const double from = a->margin / a->reach, slope = a->margin - across, bend = fmax(g, 0.0);
     /* the second is concave in x: it holds between two places where it does */
-    return size * (1.0 - cos(NEAR)) >= k &&
+    return size * FALL >= k &&
            (from >= 1.0 || (slope * from >= k + bend * from * from && slope >= k + bend));
 }
 
