@@ -97,6 +97,7 @@ static int joins_all(const se3di_assembly *assembly)
 static void join_elements(se3di_convex *c, const se3di_assembly *assembly)
 {
     const se3di_model *model = assembly->model;
+    const uint32_t joined = joins_all(assembly) ? assembly->body_count : 0;
     int32_t linked = -1;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const int32_t i = assembly->free_index[model->forces[k].body_i];
@@ -105,7 +106,7 @@ static void join_elements(se3di_convex *c, const se3di_assembly *assembly)
             join_two(c, i, j);
         }
     }
-    for (uint32_t k = 0; k < assembly->body_count && joins_all(assembly); ++k) {
+    for (uint32_t k = 0; k < joined; ++k) {
         if (c->linked[k]) {
             linked = linked < 0 ? (int32_t)k : linked;
             join_two(c, linked, (int32_t)k);
