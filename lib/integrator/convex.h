@@ -15,6 +15,7 @@
 #ifndef SE3DI_INTEGRATOR_CONVEX_H
 #define SE3DI_INTEGRATOR_CONVEX_H
 
+#include "contact/bodies/encounter.h"
 #include "integrator/integrator.h"
 #include "linsol/block_cg.h"
 #include "math/elementary.h"
@@ -243,6 +244,11 @@ void se3di_convex_set_attraction(se3di_convex_contact *contact, const se3di_mode
                                  double u);
 /* No impact of one step: it rests. */
 void se3di_convex_let_rest(const se3di_convex *c, se3di_convex_contact *contact);
+/* R* of a contact of shapes. */
+static inline double se3di_convex_radius(const se3di_model *model, const se3di_body_contact *r)
+{
+    return se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
+}
 /* The overlap of a Hertzian spring, k sqrt(R), that meets an approach u. */
 static inline double se3di_convex_hertz_depth(double k, double inverse_mass, double u)
 {

@@ -10,7 +10,6 @@
  * up to are the impulses of the step.                                 docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
 #include "math/vec3.h"
 
@@ -313,12 +312,10 @@ static void begin(tracing *t, const se3di_convex *c, const se3di_model *model)
         const se3di_convex_contact *contact = t->traced->contacts[k];
         point *presser = presser_of(t, c, contact);
         const se3di_body_contact *record = presser ? presser->contact->record : contact->record;
-        t->points[k] =
-            (point){.contact = contact,
-                    .presser = presser,
-                    .pair = se3di_pair_of(model, record->shape_i, record->shape_j),
-                    .radius = se3di_shapes_contact_radius(&model->shapes[record->shape_i],
-                                                          &model->shapes[record->shape_j])};
+        t->points[k] = (point){.contact = contact,
+                               .presser = presser,
+                               .pair = se3di_pair_of(model, record->shape_i, record->shape_j),
+                               .radius = se3di_convex_radius(model, record)};
         se3di_copy(contact->before, t->points[k].v);
         if (meets(contact)) {
             since = fmax(since, -record->overlap / se3di_dot(contact->before, contact->normal));

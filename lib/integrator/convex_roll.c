@@ -10,7 +10,6 @@
  * step has no spring: it stops what rolls, as far as the caps let it.  docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
 #include "math/inertia.h"
 #include "math/vec3.h"
@@ -20,17 +19,12 @@
 #define SETTLING 4.0 /* steps in which what is hard comes to rest */
 #define RIGID    1e3 /* an impact of one step, over what turns its bodies */
 
-static double radius_of(const se3di_model *model, const se3di_body_contact *r)
-{
-    return se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
-}
-
 /* k and c of the law. */
 static double stiffness_of(const se3di_model *model, const se3di_body_contact *r, double *damping)
 {
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
-    const double s = hertz ? sqrt(radius_of(model, r) * r->overlap) : 1.0;
+    const double s = hertz ? sqrt(se3di_convex_radius(model, r) * r->overlap) : 1.0;
     *damping = pair->dr * sqrt(s / r->inverse_mass);
     return pair->kr * s;
 }
@@ -59,7 +53,7 @@ static void set_way(const se3di_convex *c, const se3di_convex_contact *contact,
 {
     const se3di_body_contact *r = contact->record;
     const se3di_model *model = assembly->model;
-    const double radius = radius_of(model, r), h = c->h;
+    const double radius = se3di_convex_radius(model, r), h = c->h;
     double damping, twist = r->twist;
     if (contact->way == SE3DI_CONVEX_IMPACT) {
         row->drag = row->steepness = RIGID / response_of(row, assembly, radius);
@@ -95,7 +89,7 @@ static void add(se3di_convex *c, const se3di_assembly *assembly, size_t partner)
     se3di_convex_contact *contact = &c->contacts[partner];
     const se3di_body_contact *r = contact->record;
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
-    const double radius = radius_of(model, r), most = fmax(pair->rolling, pair->torsion);
+    const double radius = se3di_convex_radius(model, r), most = fmax(pair->rolling, pair->torsion);
     se3di_convex_contact *row = &c->contacts[c->contact_count];
     if (!(most > 0.0)) {
         return;
@@ -189,7 +183,7 @@ void se3di_convex_add_moment(const se3di_convex *c, const se3di_convex_contact *
                              const se3di_model *model, double torque[3])
 {
     if (contact->partner >= 0) {
-        const double radius = radius_of(model, contact->record);
+        const double radius = se3di_convex_radius(model, contact->record);
         se3di_add_scaled(radius / c->h, c->contacts[contact->partner].impulse, torque);
     }
 }

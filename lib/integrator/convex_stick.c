@@ -8,7 +8,6 @@
  * would by the law if it were alone, if it does.                       docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
 #include "math/elementary.h"
 
@@ -16,11 +15,6 @@
 
 #define PHASE 0.05 /* of a swing of its spring, in a step */
 #define STEPS 400  /* what is not out by then stays */
-
-static double radius_of(const se3di_model *model, const se3di_body_contact *r)
-{
-    return se3di_shapes_contact_radius(&model->shapes[r->shape_i], &model->shapes[r->shape_j]);
-}
 
 static int is_sticky(const se3di_pair *pair)
 {
@@ -54,7 +48,7 @@ double se3di_convex_stuck(const se3di_model *model, const se3di_body_contact *r)
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
     return is_sticky(pair) && r->kind != SE3DI_CONTACT_PARTING
-               ? integral_of(pair, hertz, radius_of(model, r), r->overlap)
+               ? integral_of(pair, hertz, se3di_convex_radius(model, r), r->overlap)
                : 0.0;
 }
 
@@ -91,6 +85,6 @@ double se3di_convex_leave(const se3di_model *model, const se3di_body_contact *r,
 {
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     return is_sticky(pair) && u > 0.0 ? follow(pair, model->contact.law == SE3DI_LAW_HERTZ_MINDLIN,
-                                               radius_of(model, r), r->inverse_mass, u)
+                                               se3di_convex_radius(model, r), r->inverse_mass, u)
                                       : e * u;
 }
