@@ -391,7 +391,9 @@ static void surface_wander(const se3di_shape *s, const se3di_frame *frame,
 }
 
 /* How the velocity of the two surfaces at the point changes as the point wanders on them, and turns
- * with them: w x d(arm)/dt, of j less that of i. A point that jumps says nothing of it. */
+ * with them: w x d(arm)/dt, of j less that of i. A point that jumps says nothing of it. And what of
+ * it becomes normal as the normal turns: on a dome, what slides recedes from the plane that it
+ * touches. */
 static void set_wander(const se3di_convex_contact *c, const se3di_model *model, double h,
                        se3di_body_contact *r)
 {
@@ -411,6 +413,12 @@ static void set_wander(const se3di_convex_contact *c, const se3di_model *model, 
             }
             se3di_add_scaled((k ? 1.0 : -1.0) / h, rate, r->wander);
         }
+    }
+    double turned[3], v[3];
+    se3di_sub(r->normal, c->normal, turned);
+    if (se3di_norm(turned) < WANDER_MOST) {
+        se3di_sub(c->v, c->drift, v);
+        se3di_add_scaled(se3di_dot(turned, v) / h, r->normal, r->wander);
     }
 }
 
