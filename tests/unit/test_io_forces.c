@@ -2,6 +2,8 @@
 /* What the keys of force elements mean: models are read, and what the elements do at the given
  * state is compared with their definition. */
 #include "check.h"
+#include "io/document/guess.h"
+#include "io/read/objects.h"
 #include "se3d/io.h"
 
 /* Two bodies in a general position; `b` turned about z by 0.3 and moving. */
@@ -191,6 +193,52 @@ static void gravity_and_held_bodies_reach_the_system(void)
     se3d_model_destroy(model);
 }
 
+static void what_is_in_the_wrong_place_is_told_where_it_belongs(void)
+{
+    static const struct {
+        const char *text;
+        const char *part;
+    } cases[] = {
+        {"  - {type: tsda, body_i: a, body_j: b}\n",
+         "`tsda` is not a joint type, but a type of `forces`"},
+        {"constraints: [{type: gear}]\n",
+         "`gear` is not a constraint type, but a type of `joints`; allow"},
+        {"forces: [{type: gravity}]\n", "`gravity` is not a force type, but a key of the model"},
+        {"forces: [{type: driver}]\n", "`driver` is not a force type, but an entry of `drivers`"},
+        {"forces: [{type: tsd}]\n", "did you mean `tsda`?"},
+        {CHANNELS("a"), "`a` is not a channel, it has: position, orientation"},
+        {CHANNELS("a."), "`a` is not a channel, it has: position, orientation"},
+        {CHANNELS("rail"), "`rail` is not a channel, it has: "},
+        {CHANNELS("energy"), "`energy` is not a channel, it has: kinetic"},
+        {CHANNELS("d"), "`d` is unknown, did you mean `a`?"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        char text[2000];
+        se3d_model *model = NULL;
+        se3d_model_error error = {0};
+        snprintf(text, sizeof text, BODIES "%s", cases[k].text);
+        CHECK(se3d_model_read_text(text, strlen(text), "m.yaml", NULL, &model, &error) ==
+              SE3D_ERR_MODEL);
+        CHECK_CONTAINS(error.message, cases[k].part);
+    }
+}
+
+static void every_type_has_a_place(void)
+{
+    int count = 0;
+    for (size_t k = 0; se3di_objects_get(k); ++k) {
+        const se3di_object *o = se3di_objects_get(k);
+        const int is_listed = strcmp(o->name, "joint") == 0 || strcmp(o->name, "force") == 0 ||
+                              strcmp(o->name, "constraint") == 0 || strcmp(o->name, "state") == 0;
+        for (const char *const *type = o->types; is_listed && *type; ++type, ++count) {
+            const char *place = se3di_guess_place(*type);
+            CHECK(place && strstr(place, o->name));
+        }
+    }
+    CHECK(count > 30);
+    CHECK(!se3di_guess_place("dsda") && !se3di_guess_place("") && !se3di_guess_place(" "));
+}
+
 int main(void)
 {
     RUN(spring_adds_coefficients_functions_tables_and_preload);
@@ -199,5 +247,7 @@ int main(void)
     RUN(loads_are_reported_at_their_point);
     RUN(stop_pushes_beyond_its_range_only);
     RUN(gravity_and_held_bodies_reach_the_system);
+    RUN(every_type_has_a_place);
+    RUN(what_is_in_the_wrong_place_is_told_where_it_belongs);
     return check_finish();
 }

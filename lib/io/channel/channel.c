@@ -342,7 +342,11 @@ static void explain(const offer *o, const char *owner, const char *name, char *p
         se3di_guess_offer(&guess, o->list[k].name);
     }
     const char *meant = se3di_guess_get(&guess);
-    snprintf(problem, size, "`%.60s` has no channel `%.60s`, ", owner, name);
+    if (*name) {
+        snprintf(problem, size, "`%.60s` has no channel `%.60s`, ", owner, name);
+    } else {
+        snprintf(problem, size, "`%.60s` is not a channel, ", owner);
+    }
     if (meant) {
         append(problem, size, "did you mean `", meant);
         append(problem, size, "`?", "");
@@ -592,14 +596,10 @@ static bool find_absolute(const se3d_model *model, const char *name, se3di_chann
         return true;
     }
     snprintf(head, sizeof head, "%s", name);
-    char *tail = strchr(head, '.');
-    if (!tail) {
-        if (!explain_system(head, "", problem, problem_size)) {
-            explain_unknown(model, name, problem, problem_size);
-        }
-        return false;
+    char *tail = head + strcspn(head, ".");
+    if (*tail) {
+        *tail++ = '\0';
     }
-    *tail++ = '\0';
     if (find_element(model, head, tail, channel, &o)) {
         return true;
     }

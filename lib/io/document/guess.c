@@ -67,6 +67,33 @@ static const char synonyms[] =
     "dynamic=dynamics kinematic=kinematics transient=dynamics static=equilibrium "
     "statics=equilibrium eigen=modes modal=modes linear=modes ground_frame=ground world=ground ";
 
+/* Types that are looked for in the wrong list, and keys that are taken for types. */
+static const struct {
+    const char *types, *place;
+} places[] = {
+    {" fixed revolute prismatic cylindrical spherical universal planar screw point_on_line "
+     "point_on_plane revolute_spherical revolute_cylindrical parallel perpendicular orientation "
+     "distance gear rack_pinion coupler ",
+     "a type of `joints`"},
+    {" dp1 dp2 d cd perpendicular1 perpendicular2 ", "a type of `constraints`"},
+    {" tsda rsda bushing friction stop effort force torque tyre armature ", "a type of `forces`"},
+    {" ode integrator lag transfer pid ", "a type of `states`"},
+    {" driver ", "an entry of `drivers`"},
+    {" gravity ", "a key of the model"}};
+
+const char *se3di_guess_place(const char *word)
+{
+    const size_t length = strlen(word);
+    for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {
+        for (const char *at = places[k].types; length > 0 && (at = strstr(at, word)); ++at) {
+            if (at > places[k].types && at[-1] == ' ' && at[length] == ' ') {
+                return places[k].place;
+            }
+        }
+    }
+    return NULL;
+}
+
 /* Equal but for capitals. */
 static bool differ_in_case(const char *a, const char *b)
 {

@@ -116,6 +116,11 @@ static bool fail_unknown_type(se3di_reader *reader, const se3di_node *map, const
         return se3di_reader_fail(reader, node, "is %s, must be one of: %s",
                                  se3di_node_describe(node), list);
     }
+    const char *place = se3di_guess_place(text);
+    if (place) {
+        return se3di_reader_fail(reader, node, "`%.60s` is not a %s type, but %s; allowed are: %s",
+                                 text, object->name, place, list);
+    }
     se3di_reader_fail(reader, node, "the %s type `%.60s` is not supported, %s%s%s", object->name,
                       text, meant ? "did you mean `" : "allowed are: ", meant ? meant : list,
                       meant ? "`?" : "");
