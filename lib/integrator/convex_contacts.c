@@ -9,6 +9,7 @@
 #include "integrator/convex.h"
 
 #include "contact/bodies/body_contacts.h"
+#include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
 #include "math/vec3.h"
 
@@ -336,11 +337,20 @@ se3d_status se3di_convex_collect(se3di_convex *convex, const se3di_assembly *ass
     return SE3D_OK;
 }
 
+/* Of spring and damper together at the end of the step [N]. */
+static void pull_of(const se3di_convex_contact *c, double h, const double xi[3], double pull[3])
+{
+    const double damper = c->drag / h - h * c->tangential;
+    for (int k = 0; k < 3; ++k) {
+        pull[k] = -c->tangential * xi[k] - damper * (xi[k] - c->xi[k]) / h;
+    }
+}
+
 /* The stretch at the end of the step, no longer than what friction holds. */
 static void stretch_after(const se3di_convex_contact *c, double h, double xi[3])
 {
     const double vn = se3di_dot(c->v, c->normal);
-    double held[3];
+    double held[3], pull[3];
     xi[0] = xi[1] = xi[2] = 0.0;
     if (!(c->tangential > 0.0)) {
         return;
@@ -352,9 +362,15 @@ static void stretch_after(const se3di_convex_contact *c, double h, double xi[3])
     se3di_add_scaled(-se3di_dot(c->impulse, c->normal), c->normal, held);
     const double cap = c->bound / (h * c->tangential);
     const double size = se3di_norm(held), length = se3di_norm(xi);
-    if (size >= (1.0 - 1e-9) * c->bound) { /* it slips: the spring pulls as friction does */
+    if (size >= (1.0 - 1e-9) * c->bound && !c->is_short) { /* it slips, as the law says */
+        pull_of(c, h, xi, pull);
+        const double wanted = se3di_norm(pull);
+        se3di_encounter_settle(c->tangential, c->bound / h, size / fmax(size, h * wanted), pull, xi,
+                               held);
+        se3di_copy(held, xi);
+    } else if (size >= (1.0 - 1e-9) * c->bound) { /* the spring pulls as friction does */
         se3di_scale(size > 0.0 ? -fmin(cap, length) / size : 0.0, held, xi);
-    } else if (length > cap) {
+    } else if (length > cap && c->is_short) {
         se3di_scale(cap / length, xi, xi);
     }
 }
