@@ -486,7 +486,8 @@ static double find_support(disc *d, double *best)
     double value[ROOM];
     double s = refine(d, step, sample(d, step, value, best), best);
     for (int k = 0; k + 1 < SAMPLES; ++k) {
-        const double low = (k - SAMPLES / 2) * step, end[2] = {low, low + step};
+        const int from_middle = k - SAMPLES / 2;
+        const double low = from_middle * step, end[2] = {low, low + step};
         const double drops[2] = {drop(d, end[0]), drop(d, end[1])};
         const double top = fmax(value[k] + drops[0], value[k + 1] + drops[1]);
         if (top - fmin(drops[0], drops[1]) > *best + TIGHT * d->radius &&

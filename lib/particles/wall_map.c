@@ -79,9 +79,10 @@ static void funnel_point(const se3di_shape *s, double part, double turn, double 
 static double place_on_funnel(const se3di_shape *s, size_t patch, double middle[3])
 {
     const double rings = (double)count_rings(s);
-    const double part = ((double)(patch / SECTORS) + 0.5) / rings;
+    const size_t ring = patch / SECTORS, sector = patch % SECTORS;
+    const double part = ((double)ring + 0.5) / rings;
     const double side = se3di_hypot(s->top_radius - s->radius, 2.0 * s->half_length);
-    funnel_point(s, part, ((double)(patch % SECTORS) + 0.5) / SECTORS, middle);
+    funnel_point(s, part, ((double)sector + 0.5) / SECTORS, middle);
     return 2.0 * PI / SECTORS * (s->radius + part * (s->top_radius - s->radius)) * side / rings;
 }
 
@@ -123,8 +124,9 @@ void se3di_wall_map_get_corners(const se3di_shape *shape, size_t patch, double *
     for (int k = 0; k < 4; ++k) {
         double local[3];
         if (is_turned(shape)) {
-            funnel_point(shape, (double)(patch / SECTORS + (size_t)up[k]) / rings,
-                         (double)((patch % SECTORS + (size_t)on[k]) % SECTORS) / SECTORS, local);
+            const size_t ring = patch / SECTORS + (size_t)up[k];
+            const size_t sector = (patch + (size_t)on[k]) % SECTORS;
+            funnel_point(shape, (double)ring / rings, (double)sector / SECTORS, local);
         } else {
             const uint32_t corner = shape->triangles[3 * patch + (k < 2 ? (size_t)k : 2)];
             se3di_copy(shape->vertices + 3 * (size_t)corner, local);

@@ -199,8 +199,9 @@ static bool eval_heights(se3di_reader *reader, const se3di_node *node, const dou
     const double middle[2] = {0.5 * (double)(grid->column_count - 1),
                               0.5 * (double)(grid->row_count - 1)};
     for (size_t k = 0; k < grid->row_count * grid->column_count; ++k) {
-        const double x[2] = {((double)(k % grid->column_count) - middle[0]) * spacing[0],
-                             ((double)(k / grid->column_count) - middle[1]) * spacing[1]};
+        const size_t column = k % grid->column_count, row = k / grid->column_count;
+        const double x[2] = {((double)column - middle[0]) * spacing[0],
+                             ((double)row - middle[1]) * spacing[1]};
         if (se3d_expression_eval(expression, x, &grid->heights[k]) < 0) {
             return se3di_reader_fail(reader, node, "is %g at x = %g m, y = %g m, must be finite",
                                      grid->heights[k], x[0], x[1]);

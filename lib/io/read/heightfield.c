@@ -90,8 +90,9 @@ static void put_points(const se3di_height_grid *grid, const double spacing[2], s
     const size_t columns = grid->column_count, rows = grid->row_count;
     for (size_t k = 0; k < rows * columns; ++k) {
         double *p = mesh->points + 3 * k;
-        p[0] = ((double)(k % columns) - 0.5 * (double)(columns - 1)) * spacing[0];
-        p[1] = ((double)(k / columns) - 0.5 * (double)(rows - 1)) * spacing[1];
+        const size_t column = k % columns, row = k / columns;
+        p[0] = ((double)column - 0.5 * (double)(columns - 1)) * spacing[0];
+        p[1] = ((double)row - 0.5 * (double)(rows - 1)) * spacing[1];
         p[2] = grid->heights[k];
         for (int i = 0; i < 3; ++i) {
             mesh->low[i] = k == 0 ? p[i] : fmin(mesh->low[i], p[i]);

@@ -309,8 +309,9 @@ static const se3di_mesh *make_disc(se3di_lister *l, const wheel *w)
         const size_t place = k % n;
         const bool below = k >= 2 * n;
         const double size = below ? w->taper : 1.0;
-        const double angle = step * ((double)(place / CORNERS) + corner_at[place % CORNERS] +
-                                     (w->has_gap ? 0.5 : 0.0));
+        const size_t tooth = place / CORNERS;
+        const double angle =
+            step * ((double)tooth + corner_at[place % CORNERS] + (w->has_gap ? 0.5 : 0.0));
         const double teeth = w->radius + out * (is_tip(place) ? 1.0 : -1.2) * w->module;
         const double r = size * (k / n % 2 == 0 ? teeth : behind);
         put_point(mesh, r * io_cos(angle), r * io_sin(angle), (below ? -0.5 : 0.5) * w->width);
@@ -339,10 +340,9 @@ static const se3di_mesh *make_rack(se3di_lister *l, const wheel *w, const double
     se3di_mesh *mesh = make_mesh(l, 4 * n, 8 * n);
     for (size_t k = 0; mesh && k < 4 * n; ++k) {
         const size_t place = k % n;
+        const size_t tooth = place / CORNERS;
         const double teeth = (is_tip(place) ? -1.0 : 1.2) * w->module;
-        put_point(mesh,
-                  step * (first + (double)(place / CORNERS)) +
-                      pitch * (corner_at[place % CORNERS] + 0.5),
+        put_point(mesh, step * (first + (double)tooth) + pitch * (corner_at[place % CORNERS] + 0.5),
                   k / n % 2 == 0 ? teeth : 3.0 * w->module, (k >= 2 * n ? -0.5 : 0.5) * w->width);
     }
     if (mesh) {

@@ -166,8 +166,9 @@ static double *take_heights(const strip *s, int a, size_t fine, double *spread)
     double *z = se3di_iopool_array(s->l->pool, fine * COARSE, sizeof *z);
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (size_t k = 0; z && k < fine * COARSE; ++k) {
-        const double part[2] = {(double)(k / COARSE) / (double)(fine - 1),
-                                (double)(k % COARSE) / (double)(COARSE - 1)};
+        const size_t along = k / COARSE, across = k % COARSE;
+        const double part[2] = {(double)along / (double)(fine - 1),
+                                (double)across / (double)(COARSE - 1)};
         double at[2];
         for (int i = 0; i < 2; ++i) {
             at[i] = s->low[i] + part[i == a ? 0 : 1] * (s->high[i] - s->low[i]);
