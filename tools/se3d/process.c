@@ -53,11 +53,13 @@ int process_run(const char *folder, const char *const *words)
 {
     char *copy[64] = {NULL}; /* execvp takes them without const and leaves them alone */
     size_t count = 0;
+    int is_whole = words[0] != NULL;
     for (; words[count] && count < 63; ++count) {
         copy[count] = strdup(words[count]);
+        is_whole = is_whole && copy[count];
     }
     fflush(NULL);
-    const pid_t child = count > 0 ? fork() : -1;
+    const pid_t child = is_whole ? fork() : -1;
     if (child == 0) {
         signal(SIGXFSZ, SIG_DFL); /* this program ignores it */
         if (!folder || chdir(folder) == 0) {
