@@ -7,7 +7,7 @@
  * with v* the velocities without contacts and constraints. A contact's impulse on body j is minus
  * the gradient of its cost, a function of the velocity (v_n, v_t) of j relative to i at the point:
  *
- *     p_n = h max(0, F(delta - h v_n) - d v_n)            F the law's spring at the end of the step
+ *     p_n = h max(0, F(delta - l v_n) - d v_n)            F the law's spring, l <= h on
  *     p_t = y, or y bound/|y| if longer,   y = -h (k_t (xi + h v_t) + d_t v_t)
  *     bound = mu p_n, as it was in the iteration before: at the end of the iterations it is p_n's
  *
@@ -47,6 +47,7 @@ typedef struct se3di_convex_contact {
     double overlap, stiffness, power; /* F = stiffness overlap^power */
     double attraction;                /* impulse against the normal that caps do not see */
     double damping, rebound;
+    double lead;                    /* a spring is that at the overlap so much later */
     double tangential, drag, bound; /* k_t; -dy/dv_t; the cap in use */
     double impulse[3];              /* on j */
     double slope[9];                /* minus its derivative, that which the matrix has */
@@ -232,6 +233,10 @@ double se3di_convex_along(const se3di_convex_contact *contact, double h, const d
                           double *bend);
 /* Whether a contact of this stiffness is over in too few steps to be followed. */
 int se3di_convex_is_short(double k, double inverse_mass, double h);
+/* How much later the spring of one that is followed is taken: it is damped by `lead` times k, which
+ * of what lasts n steps costs the part (lead/h) pi^2/2n of the speed. What nothing moves is at the
+ * end of the step. */
+double se3di_convex_lead_of(double k, double inverse_mass, double h);
 /* What an impulse along j does to the velocity along i, which have the same bodies, if nothing else
  * holds these. */
 double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,
@@ -242,6 +247,14 @@ void se3di_convex_set_law(se3di_convex_contact *contact, const se3di_model *mode
  * middle if it is no short one. */
 void se3di_convex_set_attraction(se3di_convex_contact *contact, const se3di_model *model, double h,
                                  double u);
+/* How it acts by response[0] and what loads make of `start` without it; by its law, if it can be
+ * followed at an approach u, which it cannot if it is over soon. */
+void se3di_convex_choose_contact(const se3di_convex *c, se3di_convex_contact *contact,
+                                 const double *start, const double *aim);
+void se3di_convex_follow_law(se3di_convex_contact *contact, const se3di_model *model, double h,
+                             double u, double inverse_mass);
+int se3di_convex_is_over_soon(const se3di_convex_contact *contact, double inverse_mass, double h,
+                              double u);
 /* No impact of one step: it rests. */
 void se3di_convex_let_rest(const se3di_convex *c, se3di_convex_contact *contact);
 /* R* of a contact of shapes. */
@@ -266,6 +279,8 @@ static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3d
  */
 se3d_status se3di_convex_collect_rolling(se3di_convex *c, const se3di_assembly *assembly,
                                          se3di_error *error);
+/* as the contact acts; */
+void se3di_convex_choose_rolling(se3di_convex *c, const se3di_convex_contact *contact);
 /* room for `more` contacts; */
 se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,
                                  se3di_error *error);
@@ -389,6 +404,16 @@ static inline se3di_block_matrix se3di_convex_matrix_of(const se3di_convex *c,
                                 .coupling = has_pairs ? coupling + 36 * island->pair : NULL};
 }
 
+/* The blocks of its equations, with `body` on the diagonal. */
+static inline se3di_kkt_values
+se3di_convex_values_of(const se3di_convex *c, const se3di_convex_island *island, const double *body)
+{
+    const se3di_block_matrix A = se3di_convex_matrix_of(c, island, c->body, c->coupling);
+    return (se3di_kkt_values){.body = body + 36 * island->body,
+                              .coupling_upper = A.coupling,
+                              .joint = c->rows.C + island->value};
+}
+
 /* convex_rows.c: a body of a constraint that acts in steps; -1: it does not, or on none; */
 int32_t se3di_convex_joined(const se3di_assembly *assembly, uint32_t joint);
 /* the constraints of each island; @return OK, NO_MEMORY */
@@ -461,6 +486,10 @@ void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly);
 se3d_status se3di_convex_mark(se3di_convex *c, const se3di_assembly *assembly);
 /* those that are known at its end. */
 void se3di_convex_follow(se3di_convex *c, const se3di_model *model);
+
+/* convex_ways.c: how all contacts of an island act, before its velocities are found. */
+void se3di_convex_choose_ways(se3di_convex *c, se3di_equations *equations,
+                              se3di_convex_island *island);
 
 /* convex_solve.c: v, lambda and the impulses. */
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations);

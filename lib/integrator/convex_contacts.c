@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Contacts in a step of convex: from what is remembered of them to their impulses, and back.
  *
- * A contact that lasts many steps follows its law; what the implicit step damps by itself, as a
- * damper h k/2 would, is taken from the law's damper. One that lasts few steps is an impact of one
+ * A contact that lasts a dozen steps follows its law. Its spring is that at the start of the step
+ * or little later: one at its end is damped as if by h k. One that lasts fewer is an impact of one
  * step if it begins fast: its points leave with the restitution times their approach. If it is
  * slow, the contact rests: it is damped in a few steps, on the law's spring. docs/theory/convex.md
  */
@@ -11,14 +11,16 @@
 #include "contact/bodies/body_contacts.h"
 #include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
+#include "contact/bodies/restitution.h"
 #include "math/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
 #define PI          3.1415926535897932384626433832795
-#define FEW_STEPS   32.0 /* the time of a contact that is an impact of one step */
+#define FEW_STEPS   12.0 /* the time of a contact that is an impact of one step */
 #define SETTLING    4.0  /* steps in which a resting contact comes to rest */
+#define LOSS        3e-3 /* of a swing's phase: how much later the spring is of what is followed */
 #define RIGID       1e3  /* an impact of one step, over what moves its bodies as one */
 #define FAST_TIMES  2.0  /* an impact approaches so much faster than loads make it in a step */
 #define WANDER_MOST 0.3  /* of its arm: what a point may move in a step on its way */
@@ -42,7 +44,7 @@ double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, d
         *slope = c->damping + (slips ? 0.0 : c->steepness);
         return (slips ? copysign(cap, pull) : pull) + rest;
     }
-    const double depth = c->overlap - h * vn;
+    const double depth = c->overlap - c->lead * vn;
     double force = c->stiffness * depth, rate = c->stiffness;
     if (c->power > 1.0) {
         const double root = sqrt(fmax(0.0, depth));
@@ -53,7 +55,7 @@ double se3di_convex_normal(const se3di_convex_contact *c, double h, double vn, d
     if (!(force > 0.0)) {
         return 0.0;
     }
-    *slope = h * (h * rate + c->damping);
+    *slope = h * (c->lead * rate + c->damping);
     return h * force;
 }
 
@@ -140,9 +142,73 @@ void se3di_convex_set_attraction(se3di_convex_contact *c, const se3di_model *mod
     if (pair->cohesion > 0.0 || pair->pull_off > 0.0) {
         const se3di_body_contact *r = c->record;
         const double radius = se3di_convex_radius(model, r);
-        const double delta = c->overlap + (c->is_short ? 0.0 : 0.5 * h * u);
+        const double delta = c->overlap + (c->is_short ? 0.0 : c->lead * u);
         c->attraction = h * se3di_convex_attraction(pair, c->power > 1.0, radius, delta);
     }
+}
+
+/* The dampers of the law, with its spring as stiff as it will be in the middle of the step. */
+typedef struct damping {
+    double along, across;
+} damping;
+
+static damping damping_of(const se3di_convex_contact *c, const se3di_model *model, double h,
+                          double u)
+{
+    const se3di_body_contact *record = c->record;
+    const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
+    const double middle = c->overlap + 0.5 * h * fmax(u, 0.0);
+    const double now = c->power > 1.0
+                           ? hertz_stiffness(c->stiffness, middle, record->inverse_mass, 0.0)
+                           : c->stiffness;
+    const double root =
+        sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
+    return (damping){.along = pair->dn * root, .across = pair->dt * root};
+}
+
+static double stiffness_of(const se3di_convex_contact *c, double inverse_mass, double u)
+{
+    return c->power > 1.0 ? hertz_stiffness(c->stiffness, c->overlap, inverse_mass, u)
+                          : c->stiffness;
+}
+
+double se3di_convex_lead_of(double k, double inverse_mass, double h)
+{
+    const double rate = sqrt(k * inverse_mass);
+    return LOSS < h * rate ? LOSS / rate : h;
+}
+
+/* What joints make heavy along the normal alone is light across it, where a spring that is that of
+ * the end of the step is stable. */
+void se3di_convex_follow_law(se3di_convex_contact *c, const se3di_model *model, double h, double u,
+                             double inverse_mass)
+{
+    const damping law = damping_of(c, model, h, u);
+    const int may_follow = !se3di_convex_is_short(c->tangential, c->record->inverse_mass, h);
+    c->way = SE3DI_CONVEX_SPRING;
+    c->is_short = 0;
+    c->lead = se3di_convex_lead_of(inverse_mass > 0.0 ? stiffness_of(c, inverse_mass, u) : 0.0,
+                                   inverse_mass, h);
+    se3di_convex_set_attraction(c, model, h, u);
+    c->damping = law.along;
+    c->drag = h * ((may_follow ? c->lead : h) * c->tangential + law.across);
+}
+
+int se3di_convex_is_over_soon(const se3di_convex_contact *c, double inverse_mass, double h,
+                              double u)
+{
+    return inverse_mass > 0.0 && /* nothing moves what is driven */
+           se3di_convex_is_short(stiffness_of(c, inverse_mass, u), inverse_mass, h);
+}
+
+/* Of the law, whose damper is that of the two bodies alone, where joints make them heavier. */
+static double restitution_of(const se3di_convex_contact *c, const se3di_pair *pair)
+{
+    const double less = sqrt(c->response[0] / c->record->inverse_mass);
+    const double zeta = less * pair->dn / sqrt(pair->kn);
+    return !(less < 1.0)    ? pair->restitution
+           : c->power > 1.0 ? se3di_restitution_hertz(zeta)
+                            : se3di_restitution_hooke(0.5 * zeta);
 }
 
 /* How it acts, and its dampers, for an approach `u` at the start of the step and what loads alone
@@ -152,33 +218,27 @@ static void choose_way(se3di_convex_contact *c, const se3di_model *model, double
 {
     const se3di_body_contact *record = c->record;
     const se3di_pair *pair = se3di_pair_of(model, record->shape_i, record->shape_j);
-    const double k = c->power > 1.0
-                         ? hertz_stiffness(c->stiffness, c->overlap, record->inverse_mass, u)
-                         : c->stiffness;
-    const double middle = c->overlap + 0.5 * h * fmax(u, 0.0);
-    const double now =
-        c->power > 1.0 ? hertz_stiffness(c->stiffness, middle, record->inverse_mass, 0.0) : k;
-    const double root =
-        sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
-    const double damping = pair->dn * root, drag = pair->dt * root; /* of the law */
-    c->way = SE3DI_CONVEX_SPRING;
-    c->is_short = se3di_convex_is_short(k, record->inverse_mass, h);
-    se3di_convex_set_attraction(c, model, h, u);
-    if (!c->is_short) {
-        c->damping = fmax(0.0, damping - 0.5 * h * now);
-        c->drag = h * (h * c->tangential + fmax(0.0, drag - 0.5 * h * c->tangential));
+    const double inverse_mass = c->response[0];
+    if (!se3di_convex_is_over_soon(c, inverse_mass, h, u)) {
+        se3di_convex_follow_law(c, model, h, u, inverse_mass);
         return;
     }
-    c->damping = fmax(damping, SETTLING * h * k);
-    c->drag = h * (h * c->tangential + fmax(drag, SETTLING * h * c->tangential));
+    const damping law = damping_of(c, model, h, u);
+    c->way = SE3DI_CONVEX_SPRING;
+    c->is_short = 1;
+    c->lead = h;
+    se3di_convex_set_attraction(c, model, h, u);
+    c->damping = fmax(law.along, SETTLING * h * stiffness_of(c, inverse_mass, u));
+    c->drag = h * (h * c->tangential + fmax(law.across, SETTLING * h * c->tangential));
     const int parts = record->kind == SE3DI_CONTACT_PARTING && -u > FAST_TIMES * added;
-    const int meets = u > FAST_TIMES * (added + c->attraction * record->inverse_mass);
-    const double leaves = meets ? se3di_convex_leave(model, record, c->rebound, u) : 0.0;
+    const int meets = u > FAST_TIMES * (added + c->attraction * inverse_mass);
+    const double leaves =
+        meets ? se3di_convex_leave(model, record, restitution_of(c, pair), u) : 0.0;
     const int sticks = c->attraction > 0.0 && !(leaves > 0.0);
     if (parts || (meets && !sticks)) {
         c->way = SE3DI_CONVEX_IMPACT;
-        c->damping = RIGID / record->inverse_mass;
-        c->drag = pair->friction > 0.0 ? RIGID / record->inverse_mass : 0.0;
+        c->damping = RIGID / inverse_mass;
+        c->drag = pair->friction > 0.0 ? RIGID / inverse_mass : 0.0;
         c->tangential = 0.0;
         c->rebound = leaves;
         c->attraction = 0.0;
@@ -256,25 +316,46 @@ static void set_drift(se3di_convex_contact *c, const se3di_model *model, double 
     se3di_add_scaled(-se3di_dot(c->ahead, c->normal), c->normal, c->ahead);
 }
 
-/* What loads alone make of the velocities of the two points in the step, along the normal: of each
- * body by itself, since what carries one of them lets the other go on; and what comes through other
- * contacts of loads across it. */
-static double loads_change(const se3di_convex *convex, const se3di_convex_contact *c)
+/* What loads alone make of the velocities of the two points in the step, from `start` to `aim`,
+ * along the normal: of each body by itself, since what carries one of them lets the other go on;
+ * and what comes through other contacts of loads across it. */
+static double loads_change(const se3di_convex_contact *c, const double *start, const double *aim)
 {
     double sum = 0.0, all = 0.0;
     for (int k = 0; k < 2; ++k) {
         if (c->free[k] >= 0) {
             const size_t at = 6 * (size_t)c->free[k];
             double turn[3], change[3];
-            se3di_sub(convex->aim + at + 3, convex->start + at + 3, turn);
+            se3di_sub(aim + at + 3, start + at + 3, turn);
             se3di_mul(c->lever[k], turn, change);
-            se3di_add(change, convex->aim + at, change);
-            se3di_sub(change, convex->start + at, change);
+            se3di_add(change, aim + at, change);
+            se3di_sub(change, start + at, change);
             sum += fabs(se3di_dot(change, c->normal));
             all += se3di_norm(change);
         }
     }
     return fmax(sum, PASSED_ON * all);
+}
+
+/* The approach at the start of the step, and how far the point wanders if it is no impact. */
+static double see_approach(se3di_convex_contact *c, double h)
+{
+    memset(c->shift, 0, sizeof c->shift);
+    if (c->record->kind == SE3DI_CONTACT_STEPPED) {
+        se3di_scale(0.5 * h, c->record->wander, c->shift);
+    }
+    return se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal);
+}
+
+void se3di_convex_choose_contact(const se3di_convex *convex, se3di_convex_contact *c,
+                                 const double *start, const double *aim)
+{
+    se3di_convex_set_law(c, convex->model);
+    const double u = see_approach(c, convex->h);
+    choose_way(c, convex->model, convex->h, u, loads_change(c, start, aim));
+    if (c->way == SE3DI_CONVEX_IMPACT) {
+        memset(c->shift, 0, sizeof c->shift);
+    }
 }
 
 static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
@@ -287,21 +368,13 @@ static void collect_one(se3di_convex *convex, const se3di_assembly *assembly,
     if (c->free[0] < 0 && c->free[1] < 0) {
         return;
     }
-    se3di_convex_set_law(c, model);
     set_drift(c, model, convex->h);
     se3di_convex_slip(c, convex->start, c->before);
     if (assembly->row_count > 0) {
         se3di_convex_velocity(c, convex->chord, c->chord);
     }
-    if (record->kind == SE3DI_CONTACT_STEPPED) {
-        se3di_scale(0.5 * convex->h, record->wander, c->shift);
-    }
-    choose_way(c, model, convex->h,
-               se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal),
-               loads_change(convex, c));
-    if (c->way == SE3DI_CONVEX_IMPACT) {
-        memset(c->shift, 0, sizeof c->shift);
-    }
+    c->response[0] = record->inverse_mass;
+    se3di_convex_choose_contact(convex, c, convex->start, convex->aim);
     c->bound = convex->h * c->friction * fmax(0.0, se3di_dot(record->force, c->normal));
     for (int k = 0; k < 2; ++k) {
         if (c->free[k] >= 0) {
@@ -438,7 +511,7 @@ static void set_wander(const se3di_convex_contact *c, const se3di_model *model, 
     }
 }
 
-/* A contact that acted in the step, and lasts. */
+/* A contact that acted in the step, and lasts. Its `energy` is for se3di_convex_store. */
 static void record_one(const se3di_convex *convex, const se3di_convex_contact *c,
                        const se3di_model *model, se3di_body_contact *r)
 {
@@ -447,6 +520,7 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
     se3di_add_scaled(1.0 / convex->h, c->impulse, r->force);
     se3di_convex_add_moment(convex, c, model, r->torque);
     if (c->way == SE3DI_CONVEX_SPRING) {
+        r->energy = c->is_short ? 0.0 : 0.5 * convex->h * se3di_dot(c->v, c->normal);
         stretch_after(c, convex->h, xi);
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
     }

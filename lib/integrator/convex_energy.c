@@ -235,6 +235,18 @@ static double law_energy(const se3di_model *model, const se3di_body_contact *r)
            se3di_convex_roll_energy(model, r) - se3di_convex_stuck(model, r);
 }
 
+/* At the end of a step, when the velocities were those of the state: of what is followed half a
+ * step ago, when it was as much deeper as its record says until now. */
+static double energy_then(const se3di_model *model, const se3di_body_contact *r)
+{
+    if (!(fabs(r->energy) > 0.0)) {
+        return law_energy(model, r);
+    }
+    se3di_body_contact then = *r;
+    then.overlap = fmax(0.0, r->overlap + r->energy);
+    return law_energy(model, &then);
+}
+
 void se3di_convex_hold(const se3di_convex *convex, const se3di_model *model)
 {
     for (size_t k = 0; k < convex->shape_count; ++k) {
@@ -273,7 +285,7 @@ static double store_pairs(const se3di_convex *convex, se3di_model *model)
         const int frozen = se3di_contact_is_frozen(model, next[k].shape_i, next[k].shape_j);
         double most = 0.0;
         for (end = k; end < count && !se3di_convex_is_before(&next[k], &next[end]); ++end) {
-            next[end].energy = frozen ? next[end].energy : law_energy(model, &next[end]);
+            next[end].energy = frozen ? next[end].energy : energy_then(model, &next[end]);
             most += next[end].energy;
         }
         if (frozen) {
@@ -306,7 +318,7 @@ static double keep_leaps(const se3di_convex *convex, const se3di_assembly *assem
         for (size_t k = 0; k < model->contacts.next_count && (!pass || room > 0.0); ++k) {
             se3di_body_contact *r = &model->contacts.next[k];
             if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
-                const double gap = law_energy(model, r) - r->energy;
+                const double gap = fmax(0.0, law_energy(model, r) - r->energy);
                 room += pass ? 0.0 : gap;
                 r->energy += pass ? share * gap : 0.0;
             }

@@ -6,7 +6,6 @@
  * materials.                                                            docs/theory/convex.md */
 #include "integrator/convex.h"
 
-#include "contact/bodies/law.h"
 #include "math/vec3.h"
 
 #include <math.h>
@@ -30,24 +29,11 @@ static double find_change(const se3di_convex *c, const se3di_convex_island *isla
     return most;
 }
 
-/* By its law: what the implicit step damps by itself is taken from the law's damper. */
 static void follow_law(const se3di_convex *c, se3di_convex_contact *contact)
 {
-    const se3di_body_contact *record = contact->record;
-    const se3di_pair *pair = se3di_pair_of(c->model, record->shape_i, record->shape_j);
-    const double h = c->h;
-    const double speed = fmax(0.0, -se3di_dot(contact->before, contact->normal));
+    const double speed = -se3di_dot(contact->before, contact->normal);
     se3di_convex_set_law(contact, c->model);
-    const double middle = contact->overlap + 0.5 * h * speed;
-    const double share = contact->power > 1.0 ? sqrt(middle) : 1.0;
-    const double stiffness = contact->stiffness * share * (contact->power > 1.0 ? 1.5 : 1.0);
-    const double root = sqrt(contact->stiffness * share / pair->kn / record->inverse_mass);
-    const double yields = h * contact->tangential;
-    contact->way = SE3DI_CONVEX_SPRING;
-    contact->is_short = 0;
-    se3di_convex_set_attraction(contact, c->model, h, speed);
-    contact->damping = fmax(0.0, pair->dn * root - 0.5 * h * stiffness);
-    contact->drag = h * (yields + fmax(0.0, pair->dt * root - 0.5 * yields));
+    se3di_convex_follow_law(contact, c->model, c->h, fmax(0.0, speed), 0.0);
 }
 
 int se3di_convex_free_jams(const se3di_convex *c, const se3di_convex_island *island)

@@ -15,6 +15,7 @@
 #include "math/vec3.h"
 
 #include <math.h>
+#include <string.h>
 
 #define SETTLING 4.0 /* steps in which what is hard comes to rest */
 #define RIGID    1e3 /* an impact of one step, over what turns its bodies */
@@ -48,15 +49,20 @@ static double response_of(const se3di_convex_contact *row, const se3di_assembly 
     return sum;
 }
 
-static void set_way(const se3di_convex *c, const se3di_convex_contact *contact,
-                    const se3di_assembly *assembly, se3di_convex_contact *row)
+void se3di_convex_choose_rolling(se3di_convex *c, const se3di_convex_contact *contact)
 {
     const se3di_body_contact *r = contact->record;
-    const se3di_model *model = assembly->model;
-    const double radius = se3di_convex_radius(model, r), h = c->h;
-    double damping, twist = r->twist;
+    const se3di_model *model = c->model;
+    const double h = c->h, twist = r->twist;
+    double damping;
+    if (contact->partner < 0) {
+        return;
+    }
+    se3di_convex_contact *row = &c->contacts[contact->partner];
+    row->tangential = row->rise = 0.0;
+    memset(row->xi, 0, sizeof row->xi);
     if (contact->way == SE3DI_CONVEX_IMPACT) {
-        row->drag = row->steepness = RIGID / response_of(row, assembly, radius);
+        row->drag = row->steepness = RIGID / row->response[0];
         return;
     }
     const double k = stiffness_of(model, r, &damping), less = 0.5 * h * k;
@@ -108,13 +114,14 @@ static void add(se3di_convex *c, const se3di_assembly *assembly, size_t partner)
         }
     }
     set_drift(model, radius, r, row);
-    set_way(c, contact, assembly, row);
     se3di_convex_slip(row, c->start, row->before);
     if (assembly->row_count > 0) {
         se3di_convex_velocity(row, c->chord, row->chord);
     }
     row->bound = c->h * most * fmax(0.0, se3di_dot(r->force, r->normal));
+    row->response[0] = response_of(row, assembly, radius);
     contact->partner = (int32_t)c->contact_count++;
+    se3di_convex_choose_rolling(c, contact);
 }
 
 se3d_status se3di_convex_reserve(se3di_convex *c, const se3di_assembly *assembly, size_t more,

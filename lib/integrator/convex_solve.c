@@ -327,15 +327,6 @@ static void solve_free(se3di_convex *c, se3di_equations *equations,
                                c->change + begin);
 }
 
-/* The blocks of an island's equations, with `body` on the diagonal. */
-static se3di_kkt_values values_of(const se3di_convex *c, const se3di_convex_island *island,
-                                  const double *body)
-{
-    return (se3di_kkt_values){.body = body + 36 * island->body,
-                              .coupling_upper = matrix_of(c, island).coupling,
-                              .joint = c->rows.C + island->value};
-}
-
 /* `change`, and lambda. With constraints the velocities themselves are solved for: what is left of
  * them near the end of the iteration is rounding, by which the solver would measure its residual.
  */
@@ -343,7 +334,7 @@ static se3d_status solve_bound(se3di_convex *c, se3di_equations *equations,
                                const se3di_convex_island *island)
 {
     const se3di_block_matrix A = matrix_of(c, island);
-    const se3di_kkt_values values = values_of(c, island, c->body);
+    const se3di_kkt_values values = se3di_convex_values_of(c, island, c->body);
     const size_t first = 6 * island->body;
     se3d_status status = SE3D_OK;
     if (c->changed > 0) {
@@ -713,121 +704,6 @@ static void take_back(se3di_convex *c, const se3di_assembly *assembly)
     }
 }
 
-/* The matrix of masses and constraints of an island, without contacts, once a step. Returns 0 if it
- * has none. */
-static int factor_alone(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
-{
-    if (!island->is_factored) {
-        const se3di_kkt_values values = values_of(c, island, c->mass);
-        se3di_convex_clear_couplings(c, island);
-        ++equations->counters.factorizations;
-        island->is_factored = se3di_kkt_factor(island->kkt, &values, NULL) >= 0;
-    }
-    return island->is_factored;
-}
-
-/* `change` and lambda by that matrix, for what is in `equations->b`. */
-static se3d_status solve_alone(se3di_convex *c, se3di_equations *equations,
-                               const se3di_convex_island *island)
-{
-    const se3di_kkt_values values = values_of(c, island, c->mass);
-    const size_t begin = 6 * island->body;
-    memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
-    ++equations->counters.solves;
-    return se3di_kkt_solve(island->kkt, &values, equations->b + begin, equations->c,
-                           c->change + begin, c->rows.lambda + island->row, NULL);
-}
-
-/* What an impulse at a point makes of the velocities of an island, in `change`. */
-static se3d_status answer(se3di_convex *c, se3di_equations *equations,
-                          const se3di_convex_island *island, const se3di_convex_contact *contact,
-                          const double impulse[3])
-{
-    const size_t begin = 6 * island->body, end = 6 * island->body_end;
-    double *p = equations->b;
-    memset(p + begin, 0, (end - begin) * sizeof *p);
-    se3di_convex_press(contact, 1.0, impulse, p);
-    if (!se3di_convex_is_bound(island)) {
-        for (size_t k = island->body; k < island->body_end; ++k) {
-            const double *mobility = c->mobility + 10 * k;
-            se3di_scale(mobility[0], p + 6 * k, c->change + 6 * k);
-            se3di_mul(mobility + 1, p + 6 * k + 3, c->change + 6 * k + 3);
-        }
-        return SE3D_OK;
-    }
-    const se3d_status status = solve_alone(c, equations, island);
-    return status == SE3D_ERR_NO_CONVERGENCE ? SE3D_OK : status; /* of what is driven, nothing */
-}
-
-/* Velocities that a step begins with are on the constraints, and its chord is half a step before
- * and half a step after them: what constraints take of the chord before belongs to the load of
- * friction, too. */
-static void find_recoil(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
-{
-    if (!factor_alone(c, equations, island)) {
-        return;
-    }
-    for (size_t k = island->body; k < island->body_end; ++k) {
-        memcpy(c->change + 6 * k, c->chord + 6 * (size_t)c->body_at[k], 6 * sizeof *c->change);
-    }
-    se3di_convex_mul_mass(c, island, c->change, equations->b);
-    if (solve_alone(c, equations, island) >= 0) {
-        se3di_convex_take_back_rows(c, &equations->assembly, island, c->recoil);
-    }
-}
-
-/* How stops and friction act: what has no solution here has none in the step, which tells it. */
-static void choose_elements(se3di_convex *c, se3di_equations *equations,
-                            se3di_convex_island *island)
-{
-    for (size_t k = island->contact; k < island->contact_end; ++k) {
-        se3di_convex_contact *stop = se3di_convex_at(c, k);
-        if (!stop->element) {
-            continue;
-        }
-        double moved = se3di_convex_move_alone(c, stop, stop);
-        if (stop->way == SE3DI_CONVEX_FRICTION) {
-            se3di_convex_choose_friction(c, stop, moved);
-            continue;
-        }
-        if (se3di_convex_is_bound(island) && se3di_convex_stop_is_near(stop, c->h)) {
-            if (factor_alone(c, equations, island) &&
-                answer(c, equations, island, stop, stop->normal) >= 0) {
-                moved =
-                    fmax(0.0, dot(equations->b, c->change, 6 * island->body, 6 * island->body_end));
-            }
-        }
-        se3di_convex_choose_stop(c, stop, moved);
-    }
-    if (c->recoils && se3di_convex_is_bound(island) && !c->drifts[c->body_at[island->body]]) {
-        find_recoil(c, equations, island);
-    }
-}
-
-/* Impacts beside which nothing acts: their impulses are known before. */
-static void trace_impacts(se3di_convex *c, se3di_equations *equations, se3di_convex_island *island)
-{
-    se3di_convex_traced t;
-    if (!se3di_convex_may_trace(c, island, &t) ||
-        (se3di_convex_is_bound(island) && !factor_alone(c, equations, island))) {
-        return;
-    }
-    for (int j = 0; j < 3 * t.count; ++j) {
-        const double one[3] = {j % 3 == 0, j % 3 == 1, j % 3 == 2};
-        if (answer(c, equations, island, t.contacts[j / 3], one) < 0) {
-            return;
-        }
-        for (int i = 0; i < t.count; ++i) {
-            double v[3];
-            se3di_convex_velocity(t.contacts[i], c->change, v);
-            for (int r = 0; r < 3; ++r) {
-                t.W[i][j / 3][3 * r + j % 3] = v[r];
-            }
-        }
-    }
-    island->is_traced = se3di_convex_trace(c, &t, equations->assembly.model);
-}
-
 se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
 {
     const se3di_assembly *assembly = &equations->assembly;
@@ -841,8 +717,7 @@ se3d_status se3di_convex_solve(se3di_convex *c, se3di_equations *equations)
     place(c, assembly, c->aim, c->carried);
     se3di_convex_gyrate_begin(c, assembly);
     for (size_t k = 0; k < c->island_count; ++k) {
-        choose_elements(c, equations, &c->islands[k]);
-        trace_impacts(c, equations, &c->islands[k]);
+        se3di_convex_choose_ways(c, equations, &c->islands[k]);
         SE3DI_TRY(solve_island(c, equations, &c->islands[k]));
     }
     take_back(c, assembly);

@@ -22,7 +22,6 @@
 #define FAST_TIMES 2.0 /* an impact arrives so much faster than a step makes it */
 #define SETTLING   4.0 /* steps in which a coordinate on its stop comes to rest */
 #define RIGID      1e4 /* an impact of one step, over what moves its bodies as one */
-#define LEAN       0.9 /* of the damping by the implicit step: taken off the damper of the law */
 
 /* The coordinate of a stop at the start of a step, and its acceleration in the one before. */
 typedef struct coordinate {
@@ -120,8 +119,8 @@ void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
     const double change = h * fabs(stop->towards);
     const int meets = gap > -h * speed && gap < h * (speed + change);
     if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
-        stop->damping =
-            se3di_stop_get_damper(force, fmax(0.0, h * speed - gap)) - LEAN * h * force->k;
+        stop->lead = se3di_convex_lead_of(force->k, inverse_mass, h);
+        stop->damping = se3di_stop_get_damper(force, fmax(0.0, h * speed - gap));
         return;
     }
     stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;
@@ -179,6 +178,7 @@ static void add_end(se3di_convex *c, const se3di_assembly *assembly, const coord
                                    .way = SE3DI_CONVEX_SPRING,
                                    .stiffness = x->force->k,
                                    .power = 1.0,
+                                   .lead = c->h,
                                    .overlap = -gap,
                                    .towards = (upper ? 1.0 : -1.0) * x->acceleration};
     if (!(gap < HUGE_VAL) ||

@@ -62,7 +62,7 @@ static void respond_alone(const se3di_convex *c, se3di_convex_contact *contact, 
                             : c->h * contact->stiffness * contact->overlap;
         contact->steepness = contact->way == SE3DI_CONVEX_IMPACT
                                  ? contact->damping
-                                 : c->h * (c->h * contact->stiffness + contact->damping);
+                                 : c->h * (contact->lead * contact->stiffness + contact->damping);
         invert_law(contact, W);
     }
 }

@@ -186,6 +186,30 @@ static void impacts_have_the_restitution_typed(void)
     }
 }
 
+/* Contacts of 13 to 60 steps are followed: the ball is away for half a swing, and keeps its speed.
+ */
+static void what_lasts_a_dozen_steps_is_followed(void)
+{
+    static const double steps[] = {13.0, 20.0, 31.0, 60.0};
+    const double mass = 0.5, u = 0.2, gap = 0.0102;
+    for (int k = 0; k < 4; ++k) {
+        const double time = steps[k] * STEP, rate = 3.14159265358979324 / time;
+        const double start[3] = {0.0, 0.0, 0.05 + gap}, v0[3] = {0.0, 0.0, -u};
+        double r[3], v[3];
+        se3d_material_def stuff = scene_stuff(0.3, 1.0, mass * rate * rate);
+        scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
+        CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
+        const se3d_body ball = scene_ball(&s, 0.05, mass, start, v0);
+        scene_floor(&s, 0.0);
+        scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
+        scene_run(&s, 0.3);
+        get(&s, ball, r, v);
+        CHECK_NEAR(v[2] / u, 1.0, 0.015);
+        CHECK_NEAR(r[2], 0.05 + u * (0.3 - gap / u - time), 0.015 * 0.05);
+        scene_end(&s);
+    }
+}
+
 /* The friction impulse of a gross slide is mu times that of the normal force. */
 static void sliding_impacts_take_mu_times_the_normal_impulse(void)
 {
@@ -922,6 +946,7 @@ int main(void)
     RUN(a_box_on_a_slope_slips_at_the_angle_of_friction);
     RUN(short_impacts_have_the_restitution_typed);
     RUN(impacts_have_the_restitution_typed);
+    RUN(what_lasts_a_dozen_steps_is_followed);
     RUN(sliding_impacts_take_mu_times_the_normal_impulse);
     RUN(a_stack_of_ten_stands_without_creep);
     RUN(a_pyramid_stands_without_creep);
