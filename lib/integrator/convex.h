@@ -165,9 +165,13 @@ typedef struct se3di_convex {
     double *marks; /* [6 * contacts of the list] */
     se3di_body_contact *followed;
     size_t followed_count, mark_capacity, followed_capacity;
-    size_t changed;    /* slopes of contacts since the preconditioner was made */
-    size_t drifting;   /* free bodies */
-    int32_t sleeps;    /* it is wanted */
+    size_t changed;     /* slopes of contacts since the preconditioner was made */
+    size_t drifting;    /* free bodies */
+    int32_t sleeps;     /* it is wanted */
+    int32_t controls;   /* errors are controlled, see convex_control.c: */
+    se3di_frame *ended; /* [free bodies]: where the whole step has led to, */
+    uint8_t *struck;    /* [free bodies], behind it: in an island with an impact */
+    size_t ended_capacity;
     int32_t is_beside; /* shapes touch in this island */
     double gravity[3]; /* at the start of the step */
     double h;
@@ -269,6 +273,22 @@ static inline double se3di_convex_hertz_depth(double k, double inverse_mass, dou
 }
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
+/* A stretch turns about the normal by the mean of what the two surfaces do in a step. */
+static inline void se3di_convex_turn_stretch(const se3di_model *model, const se3di_body_contact *r,
+                                             double h, double xi[3])
+{
+    double spin = 0.0, across[3];
+    for (int k = 0; k < 2; ++k) {
+        const se3di_shape *s = &model->shapes[k ? r->shape_j : r->shape_i];
+        const se3di_frame *frame = &model->frames[s->body];
+        double w[3];
+        se3di_add(frame->w, s->surface_spin, w);
+        se3di_mul(frame->A, w, w);
+        spin += 0.5 * se3di_dot(w, r->normal);
+    }
+    se3di_cross(r->normal, xi, across);
+    se3di_add_scaled(h * spin, across, xi);
+}
 /* Lists of contacts are in the order of their pairs of shapes. */
 static inline int se3di_convex_is_before(const se3di_body_contact *a, const se3di_body_contact *b)
 {
@@ -481,6 +501,16 @@ int se3di_convex_element_sleeps(const se3di_convex *c, const se3di_assembly *ass
 int se3di_convex_rests(const se3di_convex *c, const se3di_assembly *assembly);
 /* Islands that have been at rest for long enough fall asleep at the end of a step. */
 void se3di_convex_doze(se3di_convex *c, const se3di_assembly *assembly);
+
+/* convex_control.c: doubles of the history: length of the last step; how long each body rests; what
+ * constraints took from v, w at its end; if errors are controlled, the length of the next step; */
+size_t se3di_convex_history_count(const se3di_assembly *assembly);
+/* the smallest tolerance, if one is asked for; */
+double se3di_convex_get_reach(const se3di_integration *integration, const se3di_model *model);
+/* steps of at most `most` to t_end or to an event, each by `step`, to its end. */
+typedef se3d_status (*se3di_convex_stepper)(se3di_integration *integration, double t1);
+se3d_status se3di_convex_control(se3di_integration *integration, se3di_convex_stepper step,
+                                 double t_end, double most);
 
 /* convex_follow.c: what is to be known of contacts at the start of a step; @return OK, NO_MEMORY */
 se3d_status se3di_convex_mark(se3di_convex *c, const se3di_assembly *assembly);

@@ -150,6 +150,7 @@ void se3di_convex_set_attraction(se3di_convex_contact *c, const se3di_model *mod
 /* The dampers of the law, with its spring as stiff as it will be in the middle of the step. */
 typedef struct damping {
     double along, across;
+    double stiffness; /* of that spring */
 } damping;
 
 static damping damping_of(const se3di_convex_contact *c, const se3di_model *model, double h,
@@ -163,7 +164,7 @@ static damping damping_of(const se3di_convex_contact *c, const se3di_model *mode
                            : c->stiffness;
     const double root =
         sqrt(now / (pair->kn * (c->power > 1.0 ? 1.5 : 1.0)) / record->inverse_mass);
-    return (damping){.along = pair->dn * root, .across = pair->dt * root};
+    return (damping){.along = pair->dn * root, .across = pair->dt * root, .stiffness = now};
 }
 
 static double stiffness_of(const se3di_convex_contact *c, double inverse_mass, double u)
@@ -190,8 +191,9 @@ void se3di_convex_follow_law(se3di_convex_contact *c, const se3di_model *model, 
     c->lead = se3di_convex_lead_of(inverse_mass > 0.0 ? stiffness_of(c, inverse_mass, u) : 0.0,
                                    inverse_mass, h);
     se3di_convex_set_attraction(c, model, h, u);
-    c->damping = law.along;
-    c->drag = h * ((may_follow ? c->lead : h) * c->tangential + law.across);
+    c->damping = fmax(0.0, law.along - c->lead * law.stiffness);
+    const double yields = (may_follow ? c->lead : h) * c->tangential;
+    c->drag = h * (yields + fmax(0.0, law.across - yields));
 }
 
 int se3di_convex_is_over_soon(const se3di_convex_contact *c, double inverse_mass, double h,
@@ -523,6 +525,7 @@ static void record_one(const se3di_convex *convex, const se3di_convex_contact *c
         r->energy = c->is_short ? 0.0 : 0.5 * convex->h * se3di_dot(c->v, c->normal);
         stretch_after(c, convex->h, xi);
         se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
+        se3di_convex_turn_stretch(model, r, convex->h, xi);
     }
     set_anchors(model, r, xi);
     if (c->way == SE3DI_CONVEX_SPRING) {

@@ -10,6 +10,7 @@
  * step has no spring: it stops what rolls, as far as the caps let it.  docs/theory/convex.md */
 #include "integrator/convex.h"
 
+#include "contact/bodies/encounter.h"
 #include "contact/bodies/law.h"
 #include "math/inertia.h"
 #include "math/vec3.h"
@@ -65,7 +66,7 @@ void se3di_convex_choose_rolling(se3di_convex *c, const se3di_convex_contact *co
         row->drag = row->steepness = RIGID / row->response[0];
         return;
     }
-    const double k = stiffness_of(model, r, &damping), less = 0.5 * h * k;
+    const double k = stiffness_of(model, r, &damping), less = h * k;
     row->tangential = k;
     row->drag = h * (h * k + (contact->is_short ? fmax(damping, SETTLING * h * k)
                                                 : fmax(0.0, damping - less)));
@@ -164,7 +165,8 @@ static double left_of(double held, double cap, double length, double k)
 }
 
 /* The stretches at the end of the step. */
-static void stretch_after(const se3di_convex_contact *row, double h, se3di_body_contact *r)
+static void stretch_after(const se3di_convex_contact *row, const se3di_model *model, double h,
+                          int is_short, se3di_body_contact *r)
 {
     const double *n = row->normal, k = h * row->tangential;
     const double vn = se3di_dot(row->v, n), along = se3di_dot(row->impulse, n);
@@ -176,10 +178,18 @@ static void stretch_after(const se3di_convex_contact *row, double h, se3di_body_
     }
     const double size = se3di_norm(held), cap = row->share[0] * row->bound;
     const double length = se3di_norm(xi), left = left_of(size, cap, length, k);
-    if (left < length) {
+    if (!is_short && size >= (1.0 - 1e-9) * cap) { /* as the law says */
+        double pull[3];
+        for (int e = 0; e < 3; ++e) {
+            pull[e] = -k * row->xi[e] - row->drag * (row->v[e] - vn * n[e]);
+        }
+        se3di_encounter_settle(k, cap, size / fmax(size, se3di_norm(pull)), pull, xi, held);
+        se3di_copy(held, xi);
+    } else if (left < length) {
         se3di_scale(size > 0.0 ? -left / size : 0.0, held, xi);
     }
     se3di_add_scaled(-se3di_dot(xi, r->normal), r->normal, xi);
+    se3di_convex_turn_stretch(model, r, h, xi);
     se3di_copy(xi, r->roll);
     const double twist = h * vn - row->rise / k, most = row->share[1] * row->bound;
     const double wrung = left_of(fabs(along), most, fabs(twist), k);
@@ -199,7 +209,7 @@ void se3di_convex_record_rolling(const se3di_convex *c, const se3di_convex_conta
                                  se3di_body_contact *r)
 {
     if (contact->partner >= 0 && c->contacts[contact->partner].tangential > 0.0) {
-        stretch_after(&c->contacts[contact->partner], c->h, r);
+        stretch_after(&c->contacts[contact->partner], c->model, c->h, contact->is_short, r);
     }
 }
 
