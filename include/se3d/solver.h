@@ -80,7 +80,7 @@ typedef struct se3d_solver_def {
      * and verlet choose equal steps once, to the tolerance, by trial steps ahead
      * (se3d_solver_get_step); contacts and stops shorten them, and where they turn out to be too
      * long they are halved and the log is warned. Beside particles verlet takes at most 1 ms.
-     * convex: 1 ms, less if force elements are stiff. */
+     * convex: 1 ms, less if force elements are stiff, or, if a tolerance is given, by the error. */
     double step;
     double tolerance;       /* relative error if steps are chosen, 1e-14..0.1; 0: 1e-6. Below what a
                                method reaches it works at that (se3d_solver_get_tolerance) */

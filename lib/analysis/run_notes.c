@@ -48,7 +48,8 @@ void se3di_run_tell_step(se3di_run *run)
 {
     const se3di_integration *integration = &run->integration;
     const se3di_integrator *method = integration->method;
-    if (method->takes_crowd && !(integration->settings.step > 0.0) && run->told_step != method) {
+    if (method->takes_crowd && !(integration->settings.step > 0.0) && run->told_step != method &&
+        !(se3di_integration_get_tolerance(integration, run->model) > 0.0)) {
         run->told_step = method;
         se3di_log_write(run->error, SE3D_LOG_WARNING, SE3D_LOG_STEP,
                         "t = %g s: no step is given: %s takes %g s and estimates no error",

@@ -31,18 +31,11 @@
 #include <string.h>
 
 #define VECTORS       8 /* of unknowns */
-#define KEPT          7 /* numbers of each body in the history */
 #define ROW_VECTORS   3
 #define TURN_MAX      3.0   /* rad, of a body in a step */
 #define PROJECTED     1e-15 /* of lengths: what is left across the constraints */
 #define HALVINGS      8     /* of a step in which shapes meet too fast, */
 #define GAIN_HALVINGS 3     /* or which gives energy */
-
-static size_t history_count(const se3di_assembly *assembly)
-{
-    return 1 + KEPT * (size_t)assembly->body_count; /* length of the last step; how long each rests;
-                                                       what constraints took from v, w at its end */
-}
 
 static size_t work_count(const se3di_assembly *assembly)
 {
@@ -93,6 +86,7 @@ static se3d_status open_room(se3di_integration *integration)
         share_work(c, assembly);
     }
     c->sleeps = integration->settings.sleeps;
+    c->controls = integration->settings.controls_error && !(integration->settings.step > 0.0);
     return se3di_convex_bed(c, assembly);
 }
 
@@ -591,6 +585,11 @@ static se3d_status run_steps(se3di_integration *integration, double t_end, doubl
     return status;
 }
 
+static se3d_status take_whole(se3di_integration *integration, double t1)
+{
+    return take_in_parts(integration, t1, HALVINGS);
+}
+
 /* All are awake. */
 static void rouse(se3di_integration *integration)
 {
@@ -615,7 +614,7 @@ static se3d_status start(se3di_integration *integration, double h)
     const se3di_assembly *assembly = &integration->equations->assembly;
     double *kept = assembly->model->history;
     kept[0] = h;
-    memset(kept + 1, 0, (history_count(assembly) - 1) * sizeof *kept);
+    memset(kept + 1, 0, (se3di_convex_history_count(assembly) - 1) * sizeof *kept);
     SE3DI_TRY(open_convex(integration));
     return renew(integration);
 }
@@ -638,19 +637,24 @@ static se3d_status run(se3di_integration *integration, double t_end)
                                "most %g; try another step",
                                h, count, model->time, t_end, SE3DI_STEPS_MOST);
     }
+    SE3DI_TRY(open_convex(integration));
+    if (integration->convex->controls) {
+        return se3di_convex_control(integration, take_whole, t_end, h);
+    }
     return run_steps(integration, t_end, h);
 }
 
 const se3di_integrator se3di_integrator_convex = {
     .name = "convex",
     .tag = SE3D_METHOD_CONVEX,
-    .history_count = history_count,
+    .history_count = se3di_convex_history_count,
     .work_count = work_count,
     .start = start,
     .renew = renew,
     .step = step,
     .run = run,
     .is_reduced = 1,
+    .get_reach = se3di_convex_get_reach,
     .fixes_step = 1,
     .orders = 1u << 1,
     .moves_first = 1,

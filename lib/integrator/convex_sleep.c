@@ -138,7 +138,7 @@ se3d_status se3di_convex_bed(se3di_convex *c, const se3di_assembly *assembly)
     memset(c->asleep, 0, bodies);
     c->asleep_count = 0;
     link_all(c, assembly);
-    if (c->sleeps) {
+    if (c->sleeps || c->controls) {
         measure_reaches(c, assembly);
     }
     return SE3D_OK;

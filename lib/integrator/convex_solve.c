@@ -65,6 +65,7 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->followed, c->followed_capacity, sizeof *c->followed);
     se3di_free(allocator, c->nest, c->nest_capacity, sizeof *c->nest);
     se3di_free(allocator, c->reach, c->reach_capacity, sizeof *c->reach);
+    se3di_free(allocator, c->ended, c->ended_capacity, sizeof *c->ended);
     se3di_convex_rows_destroy(&c->rows, allocator);
     se3di_block_cg_destroy(&c->cg, allocator);
     se3di_free(allocator, c, 1, sizeof *c);

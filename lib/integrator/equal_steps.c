@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "contact/bodies/pace.h"
 #include "force/friction.h"
+#include "integrator/aside.h"
 #include "integrator/integrator.h"
 #include "integrator/kink_step.h"
 #include "integrator/pulse_step.h"
@@ -295,27 +296,9 @@ static se3d_status try_steps(trial *t)
 /* With the model's state kept. */
 static se3d_status choose(trial *t)
 {
-    se3di_equations *equations = t->integration->equations;
-    const se3di_watch *const watch = equations->watch;
-    se3di_guard *const guard = equations->guard;
-    se3di_error *const error = equations->error;
-    const se3di_counters counters = equations->counters;
-    const se3di_guard before = guard ? *guard : (se3di_guard){0};
-    se3di_error ignored = {0};
-    equations->watch = NULL;
-    equations->error = &ignored;
-    const se3d_status status = try_steps(t);
-    equations->watch = watch;
-    equations->error = error;
-    equations->counters.steps = counters.steps;
-    if (guard) {
-        const int32_t came = guard->came;
-        *guard = before;
-        guard->came = came;
-    }
-    return status == SE3D_ERR_NO_MEMORY || status == SE3D_ERR_INTERRUPTED
-               ? se3di_error_set(error, status, "%s", ignored.message)
-               : SE3D_OK;
+    se3di_aside quiet;
+    se3di_aside_begin(&quiet, t->integration->equations);
+    return se3di_aside_end(&quiet, try_steps(t));
 }
 
 /* The longest step that has no larger error than it may have, relative to the largest speeds. */

@@ -22,9 +22,10 @@ typedef struct se3di_integrator_settings {
     double alpha;           /* hht */
     int32_t iterations_max;
     int32_t order;
-    int32_t leaves_stiff; /* a run ends if stability holds the method, or needs radau no more, */
-    int32_t leaves_crowd; /* or where bodies are at each other: SE3DI_CROWD_ */
-    int32_t sleeps;       /* convex: islands at rest sleep */
+    int32_t leaves_stiff;   /* a run ends if stability holds the method, or needs radau no more, */
+    int32_t leaves_crowd;   /* or where bodies are at each other: SE3DI_CROWD_ */
+    int32_t sleeps;         /* convex: islands at rest sleep; */
+    int32_t controls_error; /* and a tolerance is asked for */
 } se3di_integrator_settings;
 
 typedef struct se3di_integration se3di_integration;

@@ -136,6 +136,7 @@ static void configure(se3di_run *run, const se3d_solver_def *def)
         .iterations_max = def->iterations_max > 0 ? (int32_t)def->iterations_max : 25,
         .order = def->order,
         .sleeps = def->sleep != 0,
+        .controls_error = def->tolerance > 0.0,
     };
 }
 

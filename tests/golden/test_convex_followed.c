@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Contacts that steps of convex follow keep to their law (docs/theory/contact-laws.md): with shorter
- * steps, impacts with friction come to what dop853 has. */
+/* Contacts that steps of convex follow keep to their law (docs/theory/contact-laws.md): with
+ * shorter steps, impacts with friction come to what dop853 has. */
 #include "support/text_model.h"
 
 #include <stdio.h>

@@ -52,14 +52,15 @@ static const se3di_key analysis_keys[] = {
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
-     .standard = "chosen by the error; rattle and verlet choose equal steps; convex: 0.001",
+     .standard = "chosen by the error; rattle and verlet choose equal steps; convex: 0.001, or by "
+         "the error if there is a tolerance",
      .text = "the fixed step of generalized_alpha, hht, rattle, verlet, convex, or the largest one "
          "[s]"},
     {"tolerance", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
      .text = "relative error, 1e-14 to 0.1, replaced by --tolerance; a method works at the least "
          "tolerance that it can reach: dop853, gauss, rk45, rk4 7e-12, bdf 1e-11, radau 1e-13 "
          "(1e-10 with redundant equations), generalized_alpha, hht 1e-11, rattle, verlet 1e-10 "
-         "(rattle of order 4: 1e-11), and the report says so"},
+         "(rattle of order 4: 1e-11), convex 1e-6, and the report says so"},
     {"duration", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      .text = "[s], at most 1e9; required in kinematics, inverse_dynamics and dynamics"},
     {"start", SE3DI_KIND_NUMBER, .standard = "the end of the analysis before, 0 for the first",
