@@ -94,8 +94,42 @@ static int is_told_by_tyre(const se3di_model *model, const se3di_force *force)
            !model->forces[force->tyre_index].released;
 }
 
+static void add_wrench(const se3di_force *force, const double wrench[12], const double power[2],
+                       se3di_force_sums *sums)
+{
+    for (int c = 0; c < 6; ++c) {
+        sums->wrench[6 * force->body_i + (uint32_t)c] += wrench[c];
+        sums->wrench[6 * force->body_j + (uint32_t)c] += wrench[6 + c];
+    }
+    sums->power[0] += power[0];
+    sums->power[1] += power[1];
+}
+
+/* `loads`: of the tyres that were computed last. */
+static se3d_status sum_tyre(const se3di_model *model, uint32_t k, double t, se3di_tyre_loads *loads,
+                            se3di_force_sums *sums)
+{
+    const se3di_force *force = &model->forces[k];
+    int at = 0;
+    while (at < loads->count && loads->index[at] != k) {
+        ++at;
+    }
+    if (at == loads->count) {
+        se3di_tyre_eval_alike(model, k, t, loads);
+        at = 0;
+    }
+    const se3di_tyre_load *load = &loads->of[at];
+    SE3DI_TRY(load->status);
+    for (int d = 0; d < 2; ++d) {
+        const size_t carrier = force->tyre->lags[d] ? force->tyre->carrier[d] : 0;
+        sums->wrench[6 * carrier] += SE3DI_CARRIER_MASS * load->rate[d];
+    }
+    add_wrench(force, load->wrench, load->power, sums);
+    return SE3D_OK;
+}
+
 static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
-                               se3di_force_sums *sums)
+                               se3di_tyre_loads *loads, se3di_force_sums *sums)
 {
     const se3di_force *force = &model->forces[k];
     const int32_t along = sums->along ? sums->along[k] : -1;
@@ -106,35 +140,26 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
     if (is_told_by_tyre(model, force) || se3di_force_is_apart(model, force)) {
         return SE3D_OK;
     }
+    if (force->type == SE3DI_FORCE_TYRE && !force->released) {
+        return sum_tyre(model, k, t, loads, sums);
+    }
     se3di_effect effect;
     effect.wants_derivative = 0;
-    if (force->type == SE3DI_FORCE_TYRE && !force->released) {
-        double rate[2];
-        SE3DI_TRY(se3di_tyre_eval_all(model, force, t, &effect, rate));
-        for (int d = 0; d < 2; ++d) {
-            const size_t carrier = force->tyre->lags[d] ? force->tyre->carrier[d] : 0;
-            sums->wrench[6 * carrier] += SE3DI_CARRIER_MASS * rate[d];
-        }
-    } else {
-        SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
-    }
-    for (int c = 0; c < 6; ++c) {
-        sums->wrench[6 * force->body_i + (uint32_t)c] += effect.wrench[c];
-        sums->wrench[6 * force->body_j + (uint32_t)c] += effect.wrench[6 + c];
-    }
-    sums->power[0] += effect.power[0];
-    sums->power[1] += effect.power[1];
+    SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    add_wrench(force, effect.wrench, effect.power, sums);
     return SE3D_OK;
 }
 
 se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums)
 {
+    se3di_tyre_loads loads;
+    loads.count = 0;
     sums->power[0] = sums->power[1] = 0.0;
     sums->failed = (uint32_t)model->force_slots.count;
     SE3DI_TRY(sum_gravity(model, t, sums));
     for (uint32_t k = 0; k < model->force_slots.count; ++k) {
         sums->failed = k;
-        SE3DI_TRY(sum_element(model, k, t, sums));
+        SE3DI_TRY(sum_element(model, k, t, &loads, sums));
     }
     return SE3D_OK;
 }

@@ -19,6 +19,7 @@
 
 #include "force/measure.h"
 #include "force/road.h"
+#include "force/tyre_lanes.h"
 #include "math/vec3.h"
 #include "model/state.h"
 
@@ -26,8 +27,9 @@
 #include <stddef.h>
 #include <string.h>
 
-#define ENVELOPE 0.4  /* of tyres on meshes, over the radius */
-#define UPRIGHT  1e-3 /* cos g: a wheel that lies touches nothing */
+#define ENVELOPE   0.4  /* of tyres on meshes, over the radius */
+#define UPRIGHT    1e-3 /* cos g: a wheel that lies touches nothing */
+#define LOOK_AHEAD 64   /* elements among which tyres that are alike are looked for */
 
 typedef struct patch {
     double n[3], a[3], x[3], y[3], d[3];
@@ -492,35 +494,47 @@ static double find_energy(const se3di_force *force, const patch *c)
     return 0.5 * force->k * deflection * deflection;
 }
 
-/* `slip`: as of find_forces. */
-static void eval_patch(const se3di_model *model, const se3di_force *force, const patch *c,
-                       se3di_tyre_slip *slip, se3di_effect *effect)
+/* Wrench and powers by forces and moments. */
+static void apply(const se3di_model *model, const se3di_force *force, const patch *c,
+                  const double of[6], se3di_tyre_load *load)
 {
     const se3di_frame *const frames[2] = {&model->frames[force->body_i],
                                           &model->frames[force->body_j]};
+    const double *in = c->input;
+    double u[12];
+    to_wrench(frames, c, of, load->wrench);
+    load->power[1] = c->rise * se3di_dot(load->wrench + 6, c->up); /* of a road that rises */
+    load->power[0] =
+        load->power[1] - force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, c);
+    se3di_velocity_pair(model, force, u);
+    for (int k = 0; k < 12; ++k) {
+        load->power[0] -= load->wrench[k] * u[k];
+    }
+}
+
+static void eval_patch(const se3di_model *model, const se3di_force *force, const patch *c,
+                       se3di_effect *effect)
+{
+    const se3di_frame *const frames[2] = {&model->frames[force->body_i],
+                                          &model->frames[force->body_j]};
+    se3di_tyre_load load;
+    se3di_tyre_slip slip;
     se3di_tyre_forces forces;
-    double of[6], u[12];
+    double of[6];
+    take_slip(force, c, effect->wants_derivative, &slip);
     if (effect->wants_derivative) {
-        find_forces(force, c, slip, &forces);
+        find_forces(force, c, &slip, &forces);
         for (int k = 0; k < 6; ++k) {
             of[k] = forces.of[k].v;
         }
-    } else {
-        find_values(force, c, slip, 1, of);
-    }
-    to_wrench(frames, c, of, effect->wrench);
-    const double *in = c->input;
-    effect->potential = find_energy(force, c);
-    effect->power[1] = c->rise * se3di_dot(effect->wrench + 6, c->up); /* of a road that rises */
-    effect->power[0] = effect->power[1] -
-                       force->k * in[SE3DI_PATCH_DEFLECTION] * find_rate_of_deflection(frames, c);
-    se3di_velocity_pair(model, force, u);
-    for (int k = 0; k < 12; ++k) {
-        effect->power[0] -= effect->wrench[k] * u[k];
-    }
-    if (effect->wants_derivative) {
         add_derivatives(frames, c, &forces, effect);
+    } else {
+        find_values(force, c, &slip, 1, of);
     }
+    apply(model, force, c, of, &load);
+    memcpy(effect->wrench, load.wrench, sizeof effect->wrench);
+    memcpy(effect->power, load.power, sizeof load.power);
+    effect->potential = find_energy(force, c);
 }
 
 static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force, double t,
@@ -529,9 +543,7 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
     patch c;
     SE3DI_TRY(take_patch(model, force, t, &c));
     if (c.touches) {
-        se3di_tyre_slip slip;
-        take_slip(force, &c, effect->wants_derivative, &slip);
-        eval_patch(model, force, &c, &slip, effect);
+        eval_patch(model, force, &c, effect);
     }
     return SE3D_OK;
 }
@@ -586,28 +598,138 @@ static void find_gain(const se3di_force *force, const se3di_frame *const frames[
     }
 }
 
-se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyre, double t,
-                                se3di_effect *effect, double rate[2])
+/* ---- Several at once -----------------------------------------------------------------------*/
+
+/* Its load and the rates of its slips. */
+static void eval_alone(const se3di_model *model, const se3di_force *force, const patch *c,
+                       se3di_tyre_load *load)
 {
-    patch c;
+    const int lags = force->tyre->lags[0] || force->tyre->lags[1];
     se3di_tyre_slip slip;
     se3di_dual rates[2];
-    memset(effect, 0, offsetof(se3di_effect, K));
-    SE3DI_TRY(take_patch(model, tyre, t, &c));
-    const int lags = tyre->tyre->lags[0] || tyre->tyre->lags[1];
-    if (c.touches || lags) {
-        take_slip(tyre, &c, 0, &slip);
+    double of[6];
+    if (c->touches || lags) {
+        take_slip(force, c, 0, &slip);
     }
     if (lags) {
-        find_rates(tyre, &c, 0, &slip, rates);
+        find_rates(force, c, 0, &slip, rates);
     }
     for (int k = 0; k < 2; ++k) {
-        rate[k] = tyre->tyre->lags[k] ? rates[k].v : 0.0;
+        load->rate[k] = force->tyre->lags[k] ? rates[k].v : 0.0;
     }
-    if (c.touches) {
-        eval_patch(model, tyre, &c, &slip, effect);
+    if (c->touches) {
+        find_values(force, c, &slip, 1, of);
+        apply(model, force, c, of, load);
     }
-    return SE3D_OK;
+}
+
+/* All presses, and lanes are worth it. */
+static int fit_lanes(const se3di_force *const tyres[], const patch *c, int count)
+{
+    int fit = count > 1 && se3di_tyre_core_avx2() != NULL;
+    for (int k = 0; fit && k < count; ++k) {
+        const double *in = c[k].input;
+        fit = c[k].touches &&
+              tyres[k]->k * in[SE3DI_PATCH_DEFLECTION] + tyres[k]->c * in[SE3DI_PATCH_RATE] > 0.0;
+    }
+    return fit;
+}
+
+/* Lanes without a tyre have the first one's numbers. */
+static void fill_lanes(const se3di_force *const tyres[], const patch *c, int count,
+                       se3di_tyre_lanes *lanes)
+{
+    for (int k = 0; k < SE3DI_TYRE_LANES; ++k) {
+        const int from = k < count ? k : 0;
+        lanes->side[k] = tyres[from]->tyre->mirrored ? -1.0 : 1.0;
+        lanes->cosine[k] = c[from].cosine;
+        lanes->length[k] = c[from].length;
+        for (int m = 0; m < SE3DI_PATCH_INPUTS; ++m) {
+            lanes->in[m][k] = c[from].input[m];
+        }
+    }
+}
+
+static void eval_lanes(const se3di_model *model, const se3di_force *const tyres[], const patch *c,
+                       int count, se3di_tyre_loads *loads)
+{
+    se3di_tyre_lanes lanes;
+    fill_lanes(tyres, c, count, &lanes);
+    se3di_tyre_core_avx2()->eval(tyres[0], &lanes);
+    for (int k = 0; k < count; ++k) {
+        double of[6];
+        for (int m = 0; m < 6; ++m) {
+            of[m] = lanes.of[m][k];
+        }
+        apply(model, tyres[k], &c[k], of, &loads->of[k]);
+        loads->of[k].rate[0] = lanes.rate[0][k];
+        loads->of[k].rate[1] = lanes.rate[1][k];
+    }
+}
+
+static int same(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
+}
+
+/* Two tyres by the same numbers, but for their sides. */
+static int are_alike(const se3di_force *a, const se3di_force *b)
+{
+    const se3di_tyre *p = a->tyre, *q = b->tyre;
+    return p->law == q->law && p->has_turn_slip == q->has_turn_slip &&
+           same(p->lags, q->lags, sizeof p->lags) && same(&a->rest, &b->rest, sizeof a->rest) &&
+           same(&a->k, &b->k, sizeof a->k) && same(&a->c, &b->c, sizeof a->c) &&
+           same(&a->mu, &b->mu, sizeof a->mu) &&
+           same(&p->rolling_radius, &q->rolling_radius, sizeof p->rolling_radius) &&
+           same(&p->low_speed, &q->low_speed, sizeof p->low_speed) &&
+           same(p->relaxation, q->relaxation, sizeof p->relaxation) &&
+           same(p->coefficients, q->coefficients, sizeof p->coefficients);
+}
+
+/* Tyre `first`, and those alike that follow before another one. */
+static int list_alike(const se3di_model *model, uint32_t first, se3di_tyre_loads *loads,
+                      const se3di_force *tyres[SE3DI_TYRE_LANES])
+{
+    const se3di_force *force = &model->forces[first];
+    const size_t rest = model->force_slots.count - first;
+    const uint32_t end = first + (uint32_t)(rest < LOOK_AHEAD ? rest : LOOK_AHEAD);
+    int count = 1;
+    tyres[0] = force;
+    loads->index[0] = first;
+    int more = se3di_tyre_is_magic(force);
+    for (uint32_t k = first + 1; more && k < end && count < SE3DI_TYRE_LANES; ++k) {
+        const se3di_force *other = &model->forces[k];
+        if (other->type == SE3DI_FORCE_TYRE && !other->released) {
+            more = are_alike(force, other);
+            tyres[count] = other;
+            loads->index[count] = k;
+            count += more;
+        }
+    }
+    return count;
+}
+
+void se3di_tyre_eval_alike(const se3di_model *model, uint32_t first, double t,
+                           se3di_tyre_loads *loads)
+{
+    const se3di_force *tyres[SE3DI_TYRE_LANES];
+    patch c[SE3DI_TYRE_LANES];
+    int fine = 1;
+    memset(loads, 0, sizeof *loads);
+    loads->count = list_alike(model, first, loads, tyres);
+    for (int k = 0; k < loads->count; ++k) {
+        loads->of[k].status = take_patch(model, tyres[k], t, &c[k]);
+        fine = fine && loads->of[k].status >= 0;
+    }
+    if (fine && fit_lanes(tyres, c, loads->count)) {
+        eval_lanes(model, tyres, c, loads->count, loads);
+        return;
+    }
+    for (int k = 0; k < loads->count; ++k) {
+        if (loads->of[k].status >= 0) {
+            eval_alone(model, tyres[k], &c[k], &loads->of[k]);
+        }
+    }
 }
 
 se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,

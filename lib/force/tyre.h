@@ -31,7 +31,7 @@ typedef struct se3di_tyre_slip {
     se3di_dual speed;          /* V_x */
     se3di_dual reference;      /* V: |V_x|, regularised */
     se3di_dual way;            /* V_x / V: 1 ahead, -1 back */
-    se3di_dual sine;           /* of the inclination */
+    se3di_dual camber;         /* of the Magic Formula: the inclination */
     se3di_dual turn;           /* turning rate over V [1/m] */
     se3di_dual lean;           /* spin times sine over V [1/m] */
 } se3di_tyre_slip;
@@ -94,10 +94,26 @@ typedef struct se3di_tyre_lag {
 se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyre, double t,
                                 int direction, se3di_tyre_lag *lag);
 
-/* The element without derivatives, and the rates of both slips that lag (0 of one that does not):
- * the road below the wheel is looked at once. @return as se3di_force_eval */
-se3d_status se3di_tyre_eval_all(const se3di_model *model, const se3di_force *tyre, double t,
-                                se3di_effect *effect, double rate[2]);
+/* An element without derivatives. */
+typedef struct se3di_tyre_load {
+    double wrench[12];
+    double power[2];
+    double rate[2];     /* of both slips that lag, 0 of one that does not */
+    se3d_status status; /* as of se3di_force_eval; below 0 the others say nothing */
+    int32_t reserved;
+} se3di_tyre_load;
+
+/* Of the first `count` tyres of a group, their dense indices. */
+typedef struct se3di_tyre_loads {
+    se3di_tyre_load of[4];
+    uint32_t index[4];
+    int32_t count, reserved;
+} se3di_tyre_loads;
+
+/* The loads of tyre `first`, which is not released, and of such ones that follow and are computed
+ * with it (force/tyre_lanes.h). */
+void se3di_tyre_eval_alike(const se3di_model *model, uint32_t first, double t,
+                           se3di_tyre_loads *loads);
 
 /* Its deflection [m] (< 0: it is above the road) and the rate [m/s] at the present state. @return
  * as se3di_force_eval */

@@ -2,13 +2,15 @@
 /* Slips and the Magic Formula, values alone.                           docs/theory/tyre.md */
 #include "force/tyre.h"
 
+#include "force/tyre_alone.h"
+
 typedef se3di_value dual;
 
 #define OF(name)   se3di_value_##name
 #define TAKE(x)    se3di_value_of((x).v)
 #define GIVE(x, o) ((o).v = (x).v)
 
-#define SLOPE(x, number, slope) ((void)(slope))
+#define SLOPE(x, at, slope) ((void)(slope))
 
 #include "force/tyre_magic.inc"
 #include "force/tyre_slip.inc"
@@ -22,7 +24,7 @@ void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *sl
 void se3di_tyre_take_slip_values(const se3di_force *force, double cosine, const double *in,
                                  se3di_tyre_slip *slip)
 {
-    take_slip(force, cosine, in, slip);
+    take_slip(force, force->tyre->mirrored ? -1.0 : 1.0, cosine, in, slip);
 }
 
 void se3di_tyre_find_rates_values(const se3di_force *force, const double *in, int touches,

@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "check.h"
+#include "force/tyre_lanes.h"
 #include "integrator/sums.h"
 #include "linsol/block_cg_core.h"
 #include "linsol/kkt_internal.h"
@@ -49,6 +50,7 @@ AT_LEVEL(se3di_kernels, particle_kernels_fma, 0)
 AT_LEVEL(se3di_kernels, particle_kernels_avx2, 1)
 AT_LEVEL(se3di_kernels, particle_kernels_avx512, 2)
 AT_LEVEL(se3di_sums, sums_avx2, 1)
+AT_LEVEL(se3di_tyre_core, tyre_core_avx2, 1)
 AT_LEVEL(se3di_tree_core, tree_core_avx2, 1)
 AT_LEVEL(se3di_tree_core, tree_core_avx512, 2)
 AT_LEVEL(se3di_loop_core, loop_core_avx2, 1)
