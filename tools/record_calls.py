@@ -40,6 +40,8 @@ LENGTHS = {
         "layout_times(layout_equations({0}, layout_parameter(base, 1)), "
         "*(const se3d_formulation *)layout_parameter(base, 2) == SE3D_FORMULATION_RP ? 4 : 3)",
     ("se3d_tyre_get_some", "values"): "SE3D_TYRE_VALUES",
+    ("se3d_tyre_get_several", "values"):
+        "layout_times(*(const size_t *)layout_parameter(base, 1), SE3D_TYRE_VALUES)",
 }
 # Arrays of callbacks: the definition that holds the callback, and lengths as its members.
 CALLBACKS = {

@@ -392,6 +392,18 @@ SE3D_API se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force 
 SE3D_API se3d_status se3d_tyre_get_some(const se3d_system *system, se3d_force force, uint32_t which,
                                         double *values);
 
+/* The same of several tyres. Those that have the same data, but for their sides, are computed side
+ * by side where they follow each other, in less time than one by one.
+ * @param[in] count
+ * @param[in] tyres    [count]
+ * @param[in] which    as above, of each of them
+ * @param[out] values  [count][SE3D_TYRE_VALUES]; undefined on failure
+ * @return OK, NULL, STALE_HANDLE, INVALID_ARGUMENT (nothing asked for, unknown bits, or one is no
+ * tyre), NOT_FINITE, CALLBACK (of the road).
+ * @since 0.1 */
+SE3D_API se3d_status se3d_tyre_get_several(const se3d_system *system, size_t count,
+                                           const se3d_force *tyres, uint32_t which, double *values);
+
 #ifdef __cplusplus
 }
 #endif

@@ -235,9 +235,9 @@ static void find_forces(const se3di_force *force, const patch *c, se3di_tyre_sli
         forces->of[4], se3di_dual_mul(forces->of[0], se3di_dual_sub(length, slip->rolling_radius)));
 }
 
-/* The same values, to the bit; moments: 0: without them. */
-static void find_values(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
-                        int moments, double of[6])
+/* The same values, to the bit, as far as they are wanted. */
+static void find_values(const se3di_force *force, const patch *c, se3di_tyre_slip *slip, int which,
+                        double of[6])
 {
     se3di_tyre_forces forces;
     memset(of, 0, 6 * sizeof *of);
@@ -248,7 +248,7 @@ static void find_values(const se3di_force *force, const patch *c, se3di_tyre_sli
         if (!(slip->load.v > 0.0)) {
             return;
         }
-        se3di_tyre_magic_values(force, slip, moments, &forces);
+        se3di_tyre_magic_values(force, slip, which, &forces);
         forces.of[2].v = slip->load.v;
         for (int k = 1; k < 6 && force->tyre->mirrored; k += 2) { /* Fy, Mx, Mz */
             forces.of[k].v = -forces.of[k].v;
@@ -529,7 +529,7 @@ static void eval_patch(const se3di_model *model, const se3di_force *force, const
         }
         add_derivatives(frames, c, &forces, effect);
     } else {
-        find_values(force, c, &slip, 1, of);
+        find_values(force, c, &slip, SE3DI_TYRE_WANTS_ALL, of);
     }
     apply(model, force, c, of, &load);
     memcpy(effect->wrench, load.wrench, sizeof effect->wrench);
@@ -618,7 +618,7 @@ static void eval_alone(const se3di_model *model, const se3di_force *force, const
         load->rate[k] = force->tyre->lags[k] ? rates[k].v : 0.0;
     }
     if (c->touches) {
-        find_values(force, c, &slip, 1, of);
+        find_values(force, c, &slip, SE3DI_TYRE_WANTS_ALL, of);
         apply(model, force, c, of, load);
     }
 }
@@ -655,7 +655,7 @@ static void eval_lanes(const se3di_model *model, const se3di_force *const tyres[
 {
     se3di_tyre_lanes lanes;
     fill_lanes(tyres, c, count, &lanes);
-    se3di_tyre_core_avx2()->eval(tyres[0], &lanes);
+    se3di_tyre_core_avx2()->eval(tyres[0], SE3DI_TYRE_WANTS_ALL, &lanes);
     for (int k = 0; k < count; ++k) {
         double of[6];
         for (int m = 0; m < 6; ++m) {
@@ -763,64 +763,144 @@ se3d_status se3di_tyre_lag_eval(const se3di_model *model, const se3di_force *tyr
     return SE3D_OK;
 }
 
+/* ---- What it tells -------------------------------------------------------------------------*/
+
+typedef struct told {
+    double ratio, tangent;    /* slips of the instant, */
+    double followed[2];       /* and those that the forces follow */
+    double radius, reference; /* of rolling, V */
+    double of[6];
+} told;
+
+static void find_alone(const se3di_force *force, const patch *c, int which, told *o)
+{
+    se3di_tyre_slip slip;
+    memset(&slip, 0, sizeof slip);
+    memset(o->of, 0, sizeof o->of);
+    if (c->touches) {
+        take_slip(force, c, 0, &slip);
+    }
+    o->ratio = slip.ratio.v;
+    o->tangent = slip.tangent.v;
+    if (c->touches && which >= 0) {
+        find_values(force, c, &slip, which, o->of);
+    } else {
+        take_lag(force, c, 0, &slip);
+    }
+    for (int k = 0; k < 2; ++k) {
+        o->followed[k] = se3di_tyre_followed(force, &slip, k)->v;
+    }
+    o->radius = slip.rolling_radius.v;
+    o->reference = slip.reference.v;
+}
+
+static void find_in_lanes(const se3di_force *const *tyres, const patch *c, int count, int which,
+                          told *o)
+{
+    se3di_tyre_lanes lanes;
+    fill_lanes(tyres, c, count, &lanes);
+    se3di_tyre_core_avx2()->eval(tyres[0], which, &lanes);
+    for (int k = 0; k < count; ++k) {
+        const se3di_tyre *tyre = tyres[k]->tyre;
+        const double *in = c[k].input;
+        o[k].ratio = lanes.ratio[k];
+        o[k].tangent = lanes.tangent[k];
+        o[k].followed[0] = tyre->lags[0] ? in[SE3DI_PATCH_LAGGED] : o[k].ratio;
+        o[k].followed[1] = tyre->lags[1] ? in[SE3DI_PATCH_LAGGED + 1] : o[k].tangent;
+        o[k].radius = lanes.rolling_radius[k];
+        o[k].reference = lanes.reference[k];
+        for (int m = 0; m < 6; ++m) {
+            o[k].of[m] = lanes.of[m][k];
+        }
+    }
+}
+
 /* The slips that the forces follow; those of a brush are relative to the speed of rolling. */
-static void tell_lag(const se3di_force *force, se3di_tyre_slip *slip,
-                     double values[SE3D_TYRE_VALUES])
+static void tell_lag(const se3di_force *force, const told *o, double values[SE3D_TYRE_VALUES])
 {
     const double side = force->tyre->mirrored ? -1.0 : 1.0;
-    const double forward = se3di_tyre_followed(force, slip, 0)->v;
-    const double aside = se3di_tyre_followed(force, slip, 1)->v;
+    const double forward = o->followed[0];
     values[SE3D_TYRE_LAGGED_RATIO] = force->tyre->law == SE3D_TYRE_BRUSH ? 0.0 - forward : forward;
-    values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(aside);
+    values[SE3D_TYRE_LAGGED_ANGLE] = side * se3di_atan(o->followed[1]);
 }
 
 /* All values before number `end` */
 #define BEFORE(end) ((UINT32_C(1) << (end)) - 1)
 
-/* Forces, and slips of the instant; `slip` is left with those that the forces follow. */
-static void tell_slip(const se3di_force *force, const patch *c, uint32_t which,
-                      se3di_tyre_slip *slip, double values[SE3D_TYRE_VALUES])
-{
-    const uint32_t forces = BEFORE(SE3D_TYRE_MX), all = BEFORE(SE3D_TYRE_SLIP_RATIO);
-    const double side = force->tyre->mirrored ? -1.0 : 1.0;
-    if (c->touches) {
-        take_slip(force, c, 0, slip);
-    } else {
-        memset(slip, 0, sizeof *slip);
-    }
-    values[SE3D_TYRE_SLIP_RATIO] = slip->ratio.v;
-    values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(slip->tangent.v);
-    if (c->touches && (which & all)) {
-        find_values(force, c, slip, (which & all & ~forces) != 0, values + SE3D_TYRE_FX);
-    } else {
-        memset(values + SE3D_TYRE_FX, 0, 6 * sizeof *values);
-        take_lag(force, c, 0, slip);
-    }
-}
-
 /* What comes behind the slips. */
-static void tell_place(const se3di_force *force, const patch *c, se3di_tyre_slip *slip,
-                       double values[SE3D_TYRE_VALUES])
+static void tell_place(const se3di_model *model, const se3di_force *force, const patch *c,
+                       const told *o, double values[SE3D_TYRE_VALUES])
 {
-    values[SE3D_TYRE_ROLLING_RADIUS] = slip->rolling_radius.v;
-    values[SE3D_TYRE_TURN_SLIP] = c->touches ? c->input[SE3DI_PATCH_TURN] / slip->reference.v : 0.0;
-    tell_lag(force, slip, values);
+    values[SE3D_TYRE_ROLLING_RADIUS] = o->radius;
+    values[SE3D_TYRE_TURN_SLIP] = c->touches ? c->input[SE3DI_PATCH_TURN] / o->reference : 0.0;
+    tell_lag(force, o, values);
     values[SE3D_TYRE_INCLINATION] = se3di_asin(fmax(-1.0, fmin(1.0, c->input[SE3DI_PATCH_SINE])));
     values[SE3D_TYRE_DEFLECTION] = c->input[SE3DI_PATCH_DEFLECTION];
     values[SE3D_TYRE_LOADED_RADIUS] = c->length;
     values[SE3D_TYRE_SPEED] = c->input[SE3DI_PATCH_SPEED];
+    se3di_add(model->frames[force->body_j].r, c->q, values + SE3D_TYRE_CONTACT_X);
 }
 
-se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, uint32_t which,
-                            double values[SE3D_TYRE_VALUES])
+static void tell(const se3di_model *model, const se3di_force *force, const patch *c, uint32_t which,
+                 const told *o, double values[SE3D_TYRE_VALUES])
 {
-    patch c;
-    se3di_tyre_slip slip;
-    SE3DI_TRY(take_patch(model, force, model->time, &c));
-    tell_slip(force, &c, which, &slip, values);
+    const double side = force->tyre->mirrored ? -1.0 : 1.0;
+    memcpy(values + SE3D_TYRE_FX, o->of, sizeof o->of);
+    values[SE3D_TYRE_SLIP_RATIO] = o->ratio;
+    if (which >> SE3D_TYRE_SLIP_ANGLE & 1) {
+        values[SE3D_TYRE_SLIP_ANGLE] = side * se3di_atan(o->tangent);
+    }
     if (which & ~BEFORE(SE3D_TYRE_INCLINATION)) {
-        tell_place(force, &c, &slip, values);
-        se3di_add(model->frames[force->body_j].r, c.q, values + SE3D_TYRE_CONTACT_X);
+        tell_place(model, force, c, o, values);
+    }
+}
+
+/* What of forces is wanted; -1: nothing. */
+static int find_wants(uint32_t which)
+{
+    const uint32_t moments = BEFORE(SE3D_TYRE_SLIP_RATIO) & ~BEFORE(SE3D_TYRE_MX);
+    if (which & moments) {
+        return SE3DI_TYRE_WANTS_X | SE3DI_TYRE_WANTS_MOMENTS;
+    }
+    if (which >> SE3D_TYRE_FX & 1) {
+        return SE3DI_TYRE_WANTS_X;
+    }
+    return which & BEFORE(SE3D_TYRE_MX) ? 0 : -1;
+}
+
+/* Of tyres that are alike. */
+static se3d_status tell_alike(const se3di_model *model, const se3di_force *const *tyres, int count,
+                              uint32_t which, double (*values)[SE3D_TYRE_VALUES])
+{
+    const int wants = find_wants(which);
+    patch c[SE3DI_TYRE_LANES];
+    told o[SE3DI_TYRE_LANES];
+    for (int k = 0; k < count; ++k) {
+        SE3DI_TRY(take_patch(model, tyres[k], model->time, &c[k]));
+    }
+    const int in_lanes = wants >= 0 && fit_lanes(tyres, c, count);
+    if (in_lanes) {
+        find_in_lanes(tyres, c, count, wants, o);
+    }
+    for (int k = 0; k < count; ++k) {
+        if (!in_lanes) {
+            find_alone(tyres[k], &c[k], wants, &o[k]);
+        }
+        tell(model, tyres[k], &c[k], which, &o[k], values[k]);
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *const *tyres, size_t count,
+                            uint32_t which, double (*values)[SE3D_TYRE_VALUES])
+{
+    for (size_t begin = 0, end; begin < count; begin = end) {
+        end = begin + 1;
+        while (end < count && end - begin < SE3DI_TYRE_LANES && se3di_tyre_is_magic(tyres[begin]) &&
+               are_alike(tyres[begin], tyres[end])) {
+            ++end;
+        }
+        SE3DI_TRY(tell_alike(model, tyres + begin, (int)(end - begin), which, values + begin));
     }
     return SE3D_OK;
 }

@@ -77,8 +77,17 @@ void se3di_tyre_fiala(const se3di_force *force, const se3di_tyre_slip *slip,
 
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces);
-/* The same values; derivatives stay as they are. moments: 0: without them. */
-void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int moments,
+
+/* What is computed: Fy always, Fx, moments (which need Fx), rates of slips that lag. */
+enum {
+    SE3DI_TYRE_WANTS_X = 1,
+    SE3DI_TYRE_WANTS_MOMENTS = 2,
+    SE3DI_TYRE_WANTS_RATES = 4,
+    SE3DI_TYRE_WANTS_ALL = 7
+};
+
+/* The same values; derivatives stay as they are, what is not wanted is 0. */
+void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int which,
                              se3di_tyre_forces *forces);
 /* A slip that lags, z' = V (slip - z) / sigma, in one of the two directions. */
 typedef struct se3di_tyre_lag {
@@ -120,9 +129,10 @@ void se3di_tyre_eval_alike(const se3di_model *model, uint32_t first, double t,
 se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
                                        double deflection[2]);
 
-/* What it tells at the present state, bit k of `which`: value k (se3d_tyre_value); the others may
- * be left out. @return as se3di_force_eval */
-se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *force, uint32_t which,
-                            double values[SE3D_TYRE_VALUES]);
+/* What tyres tell at the present state, bit k of `which`: value k (se3d_tyre_value) of all of them;
+ * the others may be left out. Tyres that are alike are computed side by side where they follow each
+ * other. @return as se3di_force_eval */
+se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *const *tyres, size_t count,
+                            uint32_t which, double (*values)[SE3D_TYRE_VALUES]);
 
 #endif

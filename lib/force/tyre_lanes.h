@@ -12,11 +12,14 @@ typedef struct se3di_tyre_lanes {
     double side[SE3DI_TYRE_LANES], cosine[SE3DI_TYRE_LANES], length[SE3DI_TYRE_LANES];
     double in[SE3DI_PATCH_INPUTS][SE3DI_TYRE_LANES];
     double of[6][SE3DI_TYRE_LANES];   /* forces and moments */
-    double rate[2][SE3DI_TYRE_LANES]; /* of slips, those that lag */
+    double rate[2][SE3DI_TYRE_LANES]; /* of slips, those that lag, if wanted */
+    double ratio[SE3DI_TYRE_LANES], tangent[SE3DI_TYRE_LANES]; /* slips of the instant */
+    double rolling_radius[SE3DI_TYRE_LANES], reference[SE3DI_TYRE_LANES];
 } se3di_tyre_lanes;
 
 typedef struct se3di_tyre_core {
-    void (*eval)(const se3di_force *force, se3di_tyre_lanes *lanes);
+    /* which: SE3DI_TYRE_WANTS_... */
+    void (*eval)(const se3di_force *force, int which, se3di_tyre_lanes *lanes);
 } se3di_tyre_core;
 
 /* NULL: without lanes. */

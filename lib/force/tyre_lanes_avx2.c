@@ -257,7 +257,7 @@ static void load(int count, const double (*from)[LANES], number *to)
     }
 }
 
-static void eval(const se3di_force *force, se3di_tyre_lanes *lanes)
+static void eval(const se3di_force *force, int which, se3di_tyre_lanes *lanes)
 {
     number in[SE3DI_PATCH_INPUTS], side, cosine, length;
     dual rate[2] = {{NUMBER(0.0)}, {NUMBER(0.0)}};
@@ -268,7 +268,11 @@ static void eval(const se3di_force *force, se3di_tyre_lanes *lanes)
     load(1, (const double(*)[LANES])lanes->cosine, &cosine);
     load(1, (const double(*)[LANES])lanes->length, &length);
     take_slip(force, side, cosine, in, &slip);
-    if (force->tyre->lags[0] || force->tyre->lags[1]) {
+    _mm256_storeu_pd(lanes->ratio, (__m256d)slip.ratio.v);
+    _mm256_storeu_pd(lanes->tangent, (__m256d)slip.tangent.v);
+    _mm256_storeu_pd(lanes->rolling_radius, (__m256d)slip.rolling_radius.v);
+    _mm256_storeu_pd(lanes->reference, (__m256d)slip.reference.v);
+    if ((which & SE3DI_TYRE_WANTS_RATES) && (force->tyre->lags[0] || force->tyre->lags[1])) {
         find_rates(force, in, 1, &slip, rate);
     }
     for (int k = 0; k < 2; ++k) {
@@ -277,7 +281,7 @@ static void eval(const se3di_force *force, se3di_tyre_lanes *lanes)
         }
         _mm256_storeu_pd(lanes->rate[k], (__m256d)rate[k].v);
     }
-    find_all(force, &slip, 1, &forces);
+    find_all(force, &slip, which, &forces);
     forces.of[2] = slip.load;
     for (int k = 0; k < 6; ++k) {
         number of = k % 2 ? forces.of[k].v * side : forces.of[k].v; /* Fy, Mx, Mz */

@@ -18,7 +18,7 @@ typedef se3di_dual dual;
 void se3di_tyre_magic(const se3di_force *force, const se3di_tyre_slip *slip,
                       se3di_tyre_forces *forces)
 {
-    find_all(force, slip, 1, forces);
+    find_all(force, slip, SE3DI_TYRE_WANTS_ALL, forces);
 }
 
 void se3di_tyre_take_slip(const se3di_force *force, double cosine, const double *in,

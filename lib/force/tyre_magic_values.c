@@ -15,10 +15,10 @@ typedef se3di_value dual;
 #include "force/tyre_magic.inc"
 #include "force/tyre_slip.inc"
 
-void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int moments,
+void se3di_tyre_magic_values(const se3di_force *force, const se3di_tyre_slip *slip, int which,
                              se3di_tyre_forces *forces)
 {
-    find_all(force, slip, moments, forces);
+    find_all(force, slip, which, forces);
 }
 
 void se3di_tyre_take_slip_values(const se3di_force *force, double cosine, const double *in,

@@ -278,22 +278,51 @@ se3d_status se3d_force_create_tyre(se3d_system *system, const se3d_tyre_def *def
     return se3di_give_created(system, added, "a tyre", handle, force);
 }
 
+/* What is told together. */
+enum { GROUP = 4 };
+
+static se3d_status tell(const se3d_system *system, const se3di_force *const *tyres, size_t count,
+                        uint32_t which, double *values)
+{
+    double all[GROUP][SE3D_TYRE_VALUES];
+    se3di_reading reading;
+    SE3DI_TRY(se3di_read_begin(system, &reading));
+    SE3DI_TRY(se3di_read_end(&reading, se3di_tyre_tell(&system->model, tyres, count, which, all)));
+    for (size_t m = 0; m < count; ++m) {
+        for (uint32_t k = 0; k < SE3D_TYRE_VALUES; ++k) {
+            values[m * SE3D_TYRE_VALUES + k] = which >> k & 1 ? all[m][k] : 0.0;
+        }
+    }
+    return SE3D_OK;
+}
+
+se3d_status se3d_tyre_get_several(const se3d_system *system, size_t count, const se3d_force *tyres,
+                                  uint32_t which, double *values)
+{
+    if (!system || (count > 0 && (!tyres || !values))) {
+        return SE3D_ERR_NULL;
+    }
+    if (which == 0 || which >> SE3D_TYRE_VALUES != 0) {
+        return SE3D_ERR_INVALID_ARGUMENT;
+    }
+    for (size_t begin = 0; begin < count; begin += GROUP) {
+        const size_t size = count - begin < GROUP ? count - begin : GROUP;
+        const se3di_force *data[GROUP];
+        for (size_t k = 0; k < size; ++k) {
+            SE3DI_TRY(se3di_force_find_reader(system, tyres[begin + k], tyres, &data[k]));
+            if (data[k]->type != SE3DI_FORCE_TYRE) {
+                return SE3D_ERR_INVALID_ARGUMENT;
+            }
+        }
+        SE3DI_TRY(tell(system, data, size, which, values + begin * SE3D_TYRE_VALUES));
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_tyre_get_some(const se3d_system *system, se3d_force force, uint32_t which,
                                double *values)
 {
-    const se3di_force *data;
-    double all[SE3D_TYRE_VALUES];
-    SE3DI_TRY(se3di_force_find_reader(system, force, values, &data));
-    if (data->type != SE3DI_FORCE_TYRE || which == 0 || which >> SE3D_TYRE_VALUES != 0) {
-        return SE3D_ERR_INVALID_ARGUMENT;
-    }
-    se3di_reading reading;
-    SE3DI_TRY(se3di_read_begin(system, &reading));
-    SE3DI_TRY(se3di_read_end(&reading, se3di_tyre_tell(&system->model, data, which, all)));
-    for (uint32_t k = 0; k < SE3D_TYRE_VALUES; ++k) {
-        values[k] = which >> k & 1 ? all[k] : 0.0;
-    }
-    return SE3D_OK;
+    return se3d_tyre_get_several(system, 1, &force, which, values);
 }
 
 se3d_status se3d_tyre_get_values(const se3d_system *system, se3d_force force, size_t first,

@@ -766,6 +766,7 @@ static const row rows[] = {
     {"se3d_effort_set", setters_reject_misuse, "", NULL, NULL},
     {"se3d_tyre_coefficients_init", setters_reject_misuse, "", NULL, NULL},
     {"se3d_tyre_coefficient_find", setters_reject_misuse, "", NULL, NULL},
+    {"se3d_tyre_get_several", setters_reject_misuse, "", NULL, NULL},
     {"se3d_tyre_get_some", setters_reject_misuse, "", NULL, NULL},
     {"se3d_tyre_get_values", setters_reject_misuse, "", NULL, NULL},
     {"se3d_effort_get", setters_reject_misuse, "", NULL, NULL},

@@ -190,6 +190,15 @@ static void check_tyre(arguments *a, const settable *m)
     INVALID(se3d_tyre_get_some(a->system, m->spring, 1, values));
     CHECK(se3d_tyre_get_some(NULL, tyre, 1, values) == SE3D_ERR_NULL);
     CHECK(se3d_tyre_get_some(a->system, tyre, 1, NULL) == SE3D_ERR_NULL);
+    const se3d_force pair[2] = {tyre, m->spring};
+    CHECK(!se3d_tyre_get_several(a->system, 1, pair, 1, values));
+    CHECK(!se3d_tyre_get_several(a->system, 0, NULL, 1, NULL));
+    INVALID(se3d_tyre_get_several(a->system, 1, pair, 0, values));
+    INVALID(se3d_tyre_get_several(a->system, 1, pair, 1u << SE3D_TYRE_VALUES, values));
+    INVALID(se3d_tyre_get_several(a->system, 2, pair, 1, values));
+    CHECK(se3d_tyre_get_several(NULL, 1, pair, 1, values) == SE3D_ERR_NULL);
+    CHECK(se3d_tyre_get_several(a->system, 1, NULL, 1, values) == SE3D_ERR_NULL);
+    CHECK(se3d_tyre_get_several(a->system, 1, pair, 1, NULL) == SE3D_ERR_NULL);
     CHECK(!se3d_force_set_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, 7.0));
     CHECK(!se3d_force_get_parameter(a->system, tyre, SE3D_FORCE_PARAMETER_K, &k));
     CHECK_NEAR(k, 7.0, 0.0);
@@ -216,6 +225,7 @@ static void check_tyre(arguments *a, const settable *m)
     INVALID(se3d_force_create_tyre(a->system, &def, &tyre));
     CHECK(se3d_tyre_get_values(a->system, tyre, 0, 1, values) == SE3D_ERR_STALE_HANDLE);
     CHECK(se3d_tyre_get_some(a->system, tyre, 1, values) == SE3D_ERR_STALE_HANDLE);
+    CHECK(se3d_tyre_get_several(a->system, 1, pair, 1, values) == SE3D_ERR_STALE_HANDLE);
 }
 
 static void check_prescribed(arguments *a)

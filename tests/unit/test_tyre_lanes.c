@@ -140,6 +140,23 @@ static int compare_all(const se3di_model *model)
     return groups;
 }
 
+/* What all tyres tell is what each of them tells. */
+static void compare_told(const se3d_system *system, uint32_t which)
+{
+    se3d_force tyres[WHEELS];
+    double values[WHEELS][SE3D_TYRE_VALUES], alone[SE3D_TYRE_VALUES];
+    size_t count = 0;
+    for (size_t k = 0; count < WHEELS; ++k) {
+        CHECK(!se3d_system_get_force(system, k, &tyres[count]));
+        count += system->model.forces[tyres[count].index1 - 1].type == SE3DI_FORCE_TYRE;
+    }
+    CHECK(!se3d_tyre_get_several(system, WHEELS, tyres, which, values[0]));
+    for (size_t k = 0; k < WHEELS; ++k) {
+        CHECK(!se3d_tyre_get_some(system, tyres[k], which, alone));
+        CHECK(memcmp(values[k], alone, sizeof alone) == 0);
+    }
+}
+
 static void tyres_side_by_side_have_the_bits_of_one_alone(void)
 {
     uint64_t seed = 20261130;
@@ -148,6 +165,8 @@ static void tyres_side_by_side_have_the_bits_of_one_alone(void)
         se3d_system *system = make(&seed, number);
         set_slips(&seed, &system->model);
         groups += compare_all(&system->model);
+        compare_told(system, (UINT32_C(1) << SE3D_TYRE_VALUES) - 1);
+        compare_told(system, 1 + (uint32_t)number % ((UINT32_C(1) << 8) - 1));
         se3d_system_destroy(system);
     }
     CHECK(groups >= 3 * STATES);

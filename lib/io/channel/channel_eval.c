@@ -10,6 +10,8 @@
 #include "io/channel/sample.h"
 #include "math/vec3.h"
 
+enum { TYRES_AT_ONCE = 4 };
+
 /* Of a marker, in its own frame. */
 static se3d_status eval_turning(const se3di_channel *c, const se3d_system *system, double value[4])
 {
@@ -325,7 +327,54 @@ static size_t element_of(se3di_question question, const se3di_channel *c)
     }
 }
 
-/* Of a tyre the forces, moments and slips that some channel has asked for until now. */
+/* Up to four tyres from this one on in the list that were last asked about as it was, in the same
+ * state and for the same numbers, and will be so again. @return how many */
+static size_t list_tyres(se3di_sample *sample, se3d_force tyre, se3di_answer *kept,
+                         se3d_force tyres[TYRES_AT_ONCE], se3di_answer *answers[TYRES_AT_ONCE])
+{
+    size_t count = 1, at = 0;
+    tyres[0] = tyre;
+    answers[0] = kept;
+    if (!kept->is_listed && sample->tyre_count < SE3DI_SAMPLE_TYRES) {
+        kept->is_listed = 1;
+        sample->tyres[sample->tyre_count++] = tyre;
+    }
+    while (at < sample->tyre_count && sample->tyres[at].index1 != tyre.index1) {
+        ++at;
+    }
+    for (++at; kept->state != 0 && at < sample->tyre_count && count < TYRES_AT_ONCE; ++at) {
+        se3di_answer *other = se3di_sample_find(sample, SE3DI_ASK_TYRE, sample->tyres[at].index1);
+        if (!other || other->state != kept->state || other->which != kept->which) {
+            break;
+        }
+        tyres[count] = sample->tyres[at];
+        answers[count++] = other;
+    }
+    return count;
+}
+
+/* Of tyres the forces, moments and slips that some channel has asked for until now. */
+static se3d_status ask_tyres(se3di_sample *sample, se3d_force tyre, se3di_answer *kept)
+{
+    double values[TYRES_AT_ONCE][SE3D_TYRE_VALUES];
+    se3d_force tyres[TYRES_AT_ONCE];
+    se3di_answer *answers[TYRES_AT_ONCE];
+    const size_t count = list_tyres(sample, tyre, kept, tyres, answers);
+    const se3d_status status =
+        se3d_tyre_get_several(sample->system, count, tyres, kept->which, values[0]);
+    if (status < 0 && count > 1) { /* of one that is not asked about yet, perhaps */
+        kept->state = 0;
+        return ask_tyres(sample, tyre, kept);
+    }
+    for (size_t k = 0; k < count; ++k) {
+        answers[k]->state = status < 0 ? 0 : sample->state;
+        if (status >= 0) {
+            memcpy(answers[k]->numbers, values[k], sizeof values[k]);
+        }
+    }
+    return status;
+}
+
 static se3d_status answer_tyre(const se3di_channel *c, size_t first, se3di_sample *sample,
                                double room[SE3DI_ANSWER_NUMBERS], const double **numbers)
 {
@@ -343,10 +392,7 @@ static se3d_status answer_tyre(const se3di_channel *c, size_t first, se3di_sampl
         return SE3D_OK;
     }
     kept->which |= own;
-    const se3d_status status =
-        se3d_tyre_get_some(sample->system, c->force, kept->which, kept->numbers);
-    kept->state = status < 0 ? 0 : sample->state;
-    return status;
+    return ask_tyres(sample, c->force, kept);
 }
 
 /* As `ask`, once in a state; failures are not kept. *numbers: where they are, in `room` if nothing

@@ -9,9 +9,9 @@
 enum { SE3DI_ANSWER_NUMBERS = 22 };
 
 typedef struct se3di_answer {
-    uint64_t state; /* that it is of; 0: none */
-    uint32_t which; /* of its numbers some has been asked for, if it is made of these alone */
-    uint32_t reserved;
+    uint64_t state;     /* that it is of; 0: none */
+    uint32_t which;     /* of its numbers some has been asked for, if it is made of these alone, */
+    uint32_t is_listed; /* of a tyre: it is among these */
     double numbers[SE3DI_ANSWER_NUMBERS];
 } se3di_answer;
 
@@ -20,6 +20,9 @@ typedef struct se3di_particle_contacts {
     const se3d_particles_contact *list;
     size_t count;
 } se3di_particle_contacts;
+
+/* Tyres that channels have asked about, in this order. */
+enum { SE3DI_SAMPLE_TYRES = 16 };
 
 typedef struct se3di_sample {
     const se3d_system *system;
@@ -31,6 +34,8 @@ typedef struct se3di_sample {
     se3di_iopool listing; /* of the contacts of this state */
     se3di_particle_contacts contacts;
     uint64_t contacts_state;
+    se3d_force tyres[SE3DI_SAMPLE_TYRES];
+    size_t tyre_count;
 } se3di_sample;
 
 /* Answers are kept from the first se3di_sample_renew on; before it each question is asked anew. */
