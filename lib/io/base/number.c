@@ -11,14 +11,13 @@
 
 size_t se3di_number_format(double value, char *text)
 {
-    const char *const special = isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf";
-    if (!isfinite(value)) {
-        strcpy(text, special);
-        return strlen(text);
-    }
     const size_t done = se3di_digits_format(value, text);
     if (done > 0) {
         return done;
+    }
+    if (!isfinite(value)) {
+        strcpy(text, isnan(value) ? "nan" : value < 0.0 ? "-inf" : "inf");
+        return strlen(text);
     }
     const int length = snprintf(text, SE3DI_NUMBER_SIZE, "%.17g", value);
     const size_t head = strspn(text, "-0123456789");
