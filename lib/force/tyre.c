@@ -676,14 +676,13 @@ static int same(const void *a, const void *b, size_t size)
 static int are_alike(const se3di_force *a, const se3di_force *b)
 {
     const se3di_tyre *p = a->tyre, *q = b->tyre;
-    return p->law == q->law && p->has_turn_slip == q->has_turn_slip &&
+    return p->kind == q->kind && p->law == q->law && p->has_turn_slip == q->has_turn_slip &&
            same(p->lags, q->lags, sizeof p->lags) && same(&a->rest, &b->rest, sizeof a->rest) &&
            same(&a->k, &b->k, sizeof a->k) && same(&a->c, &b->c, sizeof a->c) &&
            same(&a->mu, &b->mu, sizeof a->mu) &&
            same(&p->rolling_radius, &q->rolling_radius, sizeof p->rolling_radius) &&
            same(&p->low_speed, &q->low_speed, sizeof p->low_speed) &&
-           same(p->relaxation, q->relaxation, sizeof p->relaxation) &&
-           same(p->coefficients, q->coefficients, sizeof p->coefficients);
+           same(p->relaxation, q->relaxation, sizeof p->relaxation);
 }
 
 /* Tyre `first`, and those alike that follow before another one. */

@@ -45,6 +45,23 @@ void se3di_force_release(const se3d_allocator *allocator, se3di_force *force)
     force->tyre = NULL;
 }
 
+/* Tyres with the same coefficients are of one kind. */
+static void take_kind(const se3di_model *model, se3di_tyre *tyre)
+{
+    tyre->kind = 0;
+    for (size_t k = 0; k < model->force_slots.count; ++k) {
+        const se3di_tyre *other = model->forces[k].tyre;
+        if (other &&
+            memcmp(other->coefficients, tyre->coefficients, sizeof other->coefficients) == 0) {
+            tyre->kind = other->kind;
+            return;
+        }
+        if (other && other->kind >= tyre->kind) {
+            tyre->kind = other->kind + 1;
+        }
+    }
+}
+
 /* Of a tyre the states of its slips stay. */
 static int has_same_lags(const se3di_tyre *a, const se3di_tyre *b)
 {
@@ -68,6 +85,7 @@ static se3d_status replace_force(se3di_model *model, uint32_t index, const se3di
     SE3DI_TRY(se3di_force_own(&model->allocator, &own));
     if (own.tyre) {
         memcpy(own.tyre->carrier, old->tyre->carrier, sizeof own.tyre->carrier);
+        take_kind(model, own.tyre);
     }
     own.name = old->name;
     own.users = old->users;
@@ -96,6 +114,9 @@ se3d_status se3di_model_add_force(se3di_model *model, const se3di_force *force,
     if (se3di_model_copy_name(model, &model->force_slots, force->name, &name) < 0) {
         se3di_force_release(&model->allocator, &own);
         return SE3D_ERR_NO_MEMORY;
+    }
+    if (own.tyre) {
+        take_kind(model, own.tyre);
     }
     model->forces[count] = own;
     model->forces[count].name = name;

@@ -27,7 +27,7 @@ typedef struct se3di_tyre {
         [2]; /* length and width over which obstacles are rolled, as given; 0: the default */
     double coefficients[SE3D_TYRE_COEFFICIENTS]; /* of the Magic Formula */
     int32_t has_turn_slip;                       /* 1: it knows of turning */
-    int32_t reserved;
+    int32_t kind; /* of those with the same coefficients, set by the model */
 } se3di_tyre;
 
 #endif

@@ -83,7 +83,8 @@ static se3d_system *make(uint64_t *seed, int number)
     CHECK(!se3d_system_get_ground(system, &def.road));
     for (int k = 0; k < WHEELS; ++k) {
         if (number % 7 == 6 && k == 3) { /* another kind of tyre among them */
-            def.k = 1.7e5;
+            def.k = number % 2 ? def.k : 1.7e5;
+            c[SE3D_TYRE_PKY1] *= number % 2 ? 1.1 : 1.0;
         }
         add_wheel(seed, system, &def);
     }
@@ -172,10 +173,11 @@ static void tyres_side_by_side_have_the_bits_of_one_alone(void)
     CHECK(groups >= 3 * STATES);
 }
 
-static void a_tyre_that_is_another_stands_alone(void)
+/* Three of one kind, two of another. */
+static void check_kinds(int number)
 {
     uint64_t seed = 7;
-    se3d_system *system = make(&seed, 6); /* three of one kind, two of another */
+    se3d_system *system = make(&seed, number);
     se3di_model *model = &system->model;
     se3di_tyre_loads loads;
     uint32_t tyres[WHEELS], count = 0;
@@ -193,9 +195,55 @@ static void a_tyre_that_is_another_stands_alone(void)
     se3d_system_destroy(system);
 }
 
+static void a_tyre_that_is_another_stands_alone(void)
+{
+    check_kinds(6);  /* by its stiffness */
+    check_kinds(13); /* by a coefficient */
+}
+
+static void a_tyre_that_is_given_again_may_become_another(void)
+{
+    double c[SE3D_TYRE_COEFFICIENTS];
+    se3d_system *system;
+    se3d_tyre_def def = se3d_tyre_def_default();
+    se3d_body_def body = se3d_body_def_default();
+    se3d_force tyre;
+    se3di_tyre_loads loads;
+    uint64_t seed = 11;
+    vary(&seed, 0, c);
+    const double own = c[SE3D_TYRE_PKY1];
+    def.law = SE3D_TYRE_MF52;
+    def.radius = 0.31;
+    def.k = 1.8e5;
+    def.mu = 1.0;
+    def.coefficients = c;
+    def.coefficient_count = SE3D_TYRE_COEFFICIENTS;
+    body.mass = body.inertia[0] = body.inertia[1] = body.inertia[2] = 1.0;
+    body.position[2] = 0.3;
+    CHECK(!se3d_system_create(NULL, &system));
+    CHECK(!se3d_system_get_ground(system, &def.road));
+    CHECK(!se3d_body_create(system, &body, &def.wheel));
+    def.name = "first";
+    CHECK(!se3d_force_create_tyre(system, &def, &tyre));
+    def.name = "second";
+    CHECK(!se3d_force_create_tyre(system, &def, &tyre));
+    se3di_tyre_eval_alike(&system->model, 0, 0.0, &loads);
+    CHECK(loads.count == 2);
+    for (int again = 0; again < 2; ++again) { /* another, and the same again */
+        c[SE3D_TYRE_PKY1] = again ? own : own + 1.0;
+        CHECK(!se3d_system_set_replacing(system, 1));
+        CHECK(!se3d_force_create_tyre(system, &def, &tyre));
+        CHECK(!se3d_system_set_replacing(system, 0));
+        se3di_tyre_eval_alike(&system->model, 0, 0.0, &loads);
+        CHECK(loads.count == 1 + again);
+    }
+    se3d_system_destroy(system);
+}
+
 int main(void)
 {
     RUN(tyres_side_by_side_have_the_bits_of_one_alone);
     RUN(a_tyre_that_is_another_stands_alone);
+    RUN(a_tyre_that_is_given_again_may_become_another);
     return check_finish();
 }
