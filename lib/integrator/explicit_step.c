@@ -319,10 +319,10 @@ static double seek_tyres(se3di_explicit *m, double h)
     if (m->step.tries > TYRE_TRIES || !se3di_tyres_are_there(model)) {
         return 0.0;
     }
-    m->motion->set_frames(m->equations, m->y1);
+    (void)m->motion->set_frames(m->equations, m->y1);
     const se3d_status status = se3di_tyres_note(model, t, begin);
     m->methods->arrive(m, h);
-    m->motion->set_frames(m->equations, m->y);
+    (void)m->motion->set_frames(m->equations, m->y);
     const int is_known = status >= 0 && se3di_tyres_note(model, t + h, end) >= 0;
     const double part = is_known ? se3di_tyres_find_part(model, h, begin, end) : 0.0;
     const double shortest = CROSSING * se3di_adaptive_least(&m->step, t) / h;
@@ -503,8 +503,9 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
     const double *work = y + m->count - SE3DI_STATE_WORK;
     const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
                                            integration->settings.tolerance);
+    int is_finite = 0;
     if (rough > 0.0 && !project) {
-        m->motion->set_frames(m->equations, y);
+        is_finite = m->motion->set_frames(m->equations, y);
     } else {
         m->motion->set(m->equations, y);
     }
@@ -513,7 +514,8 @@ static se3d_status show(se3di_explicit *m, const double *y, double t, int projec
     }
     if (rough > 0.0) {
         m->motion->accept_angles(m->equations);
-        return se3di_state_conclude_motion(m->equations, work, t);
+        se3di_state_take_motion(m->assembly->model, work, t);
+        return is_finite ? SE3D_OK : se3di_state_check(m->equations, t);
     }
     SE3DI_TRY(find_all(m, t));
     se3di_contacts_renew_forces(m->assembly->model);

@@ -85,6 +85,12 @@ static int finds_all(const se3di_equations *equations)
     return 0;
 }
 
+static int set_frames(se3di_equations *equations, const double *y)
+{
+    set(equations, y);
+    return 0;
+}
+
 static double count_dependent(const se3di_equations *equations)
 {
     return se3di_kkt_get_dependent_rows(equations->kkt);
@@ -95,7 +101,7 @@ const se3di_motion se3di_motion_bodies = {
     .get = get,
     .set = set,
     .set_again = set,
-    .set_frames = set,
+    .set_frames = set_frames,
     .get_rates = pass,
     .evaluate = evaluate,
     .evaluate_at = evaluate_at,

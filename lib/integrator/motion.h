@@ -20,8 +20,9 @@ typedef struct se3di_motion {
     void (*set)(se3di_equations *equations, const double *y);
     /* The same after a step that has ended there: nothing is placed where it is already. */
     void (*set_again)(se3di_equations *equations, const double *y);
-    /* y becomes the state of the model's frames, and another one is set before any evaluation. */
-    void (*set_frames)(se3di_equations *equations, const double *y);
+    /* y becomes the state of the model's frames, and another one is set before any evaluation.
+     * @return whether the frames are finite, as far as that is known without looking at each */
+    int (*set_frames)(se3di_equations *equations, const double *y);
     /* y' of the state that was set last in the places of state.h, (a, wdot) at least; `out`
      * [se3di_state_count] may not be needed. */
     const double *(*get_rates)(se3di_equations *equations, const double *derivative, double *out);

@@ -25,6 +25,7 @@
 
 #define FREEDOMS_MAX 6
 #define TURN         6.283185307179586
+#define MODERATE     1e200 /* squares of coordinates and rates */
 
 static size_t count(const se3di_equations *equations)
 {
@@ -77,12 +78,29 @@ static void set(se3di_equations *equations, const double *y)
     place(equations);
 }
 
-static void set_frames(se3di_equations *equations, const double *y)
+/* Of coordinates and rates that are, unit quaternions among them, the frames are finite. */
+static int are_moderate(size_t count, const double *x)
+{
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+    size_t k = 0;
+    for (; k + 4 <= count; k += 4) {
+        for (size_t m = 0; m < 4; ++m) {
+            sum[m] += x[k + m] * x[k + m];
+        }
+    }
+    for (; k < count; ++k) {
+        sum[0] += x[k] * x[k];
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]) < MODERATE;
+}
+
+static int set_frames(se3di_equations *equations, const double *y)
 {
     se3di_tree *tree = equations->tree;
     take_state(tree, y);
     se3di_tree_show(tree, tree->q, tree->qdot, equations->assembly.model->frames);
     equations->is_placed = 0;
+    return are_moderate(tree->q_count, tree->q) && are_moderate(tree->v_count, tree->qdot);
 }
 
 /* Unit length may round to another neighbour twice, so that the whole state is compared. */

@@ -582,10 +582,15 @@ se3d_status se3di_state_conclude(se3di_equations *equations, const double *work,
     return se3di_loads_power(model, t, model->power);
 }
 
+void se3di_state_take_motion(se3di_model *model, const double *work, double t)
+{
+    take_works(model, work, t);
+    model->settled = SE3DI_SETTLED | SE3DI_LACKING;
+}
+
 se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t)
 {
-    take_works(equations->assembly.model, work, t);
-    equations->assembly.model->settled = SE3DI_SETTLED | SE3DI_LACKING;
+    se3di_state_take_motion(equations->assembly.model, work, t);
     return se3di_state_check(equations, t);
 }
 

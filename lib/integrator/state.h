@@ -142,5 +142,7 @@ void se3di_state_conclude_step(se3di_equations *equations, const double *work, c
                                double t);
 /* The same where there are frames only. */
 se3d_status se3di_state_conclude_motion(se3di_equations *equations, const double *work, double t);
+/* The same of frames that are known to be finite. */
+void se3di_state_take_motion(se3di_model *model, const double *work, double t);
 
 #endif
