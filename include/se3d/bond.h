@@ -46,6 +46,9 @@ typedef struct se3d_bond_def {
     double springs[4]; /* > 0 [N/m], [N/m], [N m], [N m] */
     double dampers[4]; /* >= 0, beside `damping` [N s/m], [N s/m], [N m s], [N m s] */
     double limits[4];  /* [N], [N], [N m], [N m]; 0: it holds any */
+    int32_t smooth;    /* not 0: with the share s of the limits that is reached, all that the bond
+                        * does is times 1 - s^4, so that it has let go when it breaks. @since 0.1 */
+    int32_t reserved;
 } se3d_bond_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_bond_def_default. @since 0.1 */

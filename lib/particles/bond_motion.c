@@ -166,6 +166,28 @@ static se3di_bond_fate find_fate(const se3di_bond_group *group, const double str
     return group->shear > 0.0 && stress[1] > group->shear ? SE3DI_BOND_SHEARED : SE3DI_BOND_HOLDS;
 }
 
+/* What a bond with a smooth end has less, as a part of all that it does: s^4 of the share s. */
+static double find_less(const se3di_bond_group *group, const se3di_bond *bond)
+{
+    const double share = fmin(fmax(bond->stress[0] + bond->stress[1], 0.0), 1.0);
+    return group->smooth ? share * share * share * share : 0.0;
+}
+
+/* The same of the energy U of the springs, if the load has grown in proportion: U s^4/3, as the
+ * share is linear in it. What the way there makes of it is the work of the dampers. `held` of that
+ * was so already. */
+static void smooth(const se3di_bond_group *group, se3di_bond *bond, double held)
+{
+    const double less = find_less(group, bond), energy = bond->energy * less / 3.0;
+    for (int a = 0; a < 3; ++a) {
+        bond->drag[a] -= less * (bond->force[a] + bond->drag[a]);
+        bond->brake[0][a] -= less * (bond->torque[0][a] + bond->brake[0][a]);
+        bond->brake[1][a] -= less * (bond->torque[1][a] + bond->brake[1][a]);
+    }
+    bond->energy -= energy;
+    bond->dissipated += energy - held;
+}
+
 static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
 {
     const se3di_bond_group *group = &set->bond_groups[bond->group];
@@ -177,6 +199,7 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     se3di_sub(two.v, one.v, v);
     se3di_particles_nearest(set, d, v);
     const double length = fmax(se3di_norm(d), 1e-300);
+    const double less = find_less(group, bond), held = bond->energy * less / (3.0 - less);
     bond->span = length;
     se3di_scale(1.0 / length, d, e);
     se3di_add(one.x, d, bond->place);
@@ -190,6 +213,9 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     }
     se3di_add_scaled(-tension, e, bond->force);
     brake(bond, &one, &two, v, e, length);
+    if (group->smooth) {
+        smooth(group, bond, held);
+    }
     bond->dissipated += half_work(bond, &one, &two, v, h);
     const double part = bond->fate == SE3DI_BOND_HOLDS ? 1.0 : 0.5;
     for (int a = 0; a < 3; ++a) {

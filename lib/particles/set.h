@@ -360,11 +360,11 @@ typedef struct se3di_bond_end {
 
 /* Bonds that were made together, and what became of them. */
 typedef struct se3di_bond_group {
-    int32_t touches;       /* what is bonded touches, too */
-    int32_t middle;        /* stresses are those of the middle, not of the worse end */
-    double tension, shear; /* strengths [Pa]; 0: it does not break */
-    int32_t springs;       /* stresses are shares of the limits, which may be infinite */
-    int32_t reserved;
+    int32_t touches;        /* what is bonded touches, too */
+    int32_t middle;         /* stresses are those of the middle, not of the worse end */
+    double tension, shear;  /* strengths [Pa]; 0: it does not break */
+    int32_t springs;        /* stresses are shares of the limits, which may be infinite */
+    int32_t smooth;         /* what it does is less by the fourth power of the share */
     double limits[4];       /* [N], [N], [N m], [N m] */
     double damping;         /* part of the critical one of each spring, */
     double dampers[4];      /* and what is beside it [N s/m], [N m s] */

@@ -187,6 +187,7 @@ static se3d_status begin_group(se3d_particles *particles, const se3d_bond_def *d
         .touches = def->contact != 0,
         .middle = def->law >= SE3D_BOND_LAW_PARALLEL,
         .springs = def->law == SE3D_BOND_LAW_SPRINGS,
+        .smooth = def->law == SE3D_BOND_LAW_SPRINGS && def->smooth != 0,
         .tension = def->tensile_strength,
         .shear = def->shear_strength,
         .damping = def->damping,

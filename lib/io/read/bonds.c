@@ -65,6 +65,9 @@ static const se3di_key bond_keys[] = {
     {"limits", SE3DI_KIND_NUMBERS, .standard = "does not break",
      .text = "of the law springs: 4 forces [N] and moments [N m]; it breaks when the sum of what "
          "it holds over them is above 1, 0: does not count"},
+    {"smooth", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_bond_def, smooth), .standard = "false",
+     .text = "of the law springs: at the share s of its limits a bond does 1 - s^4 of what it "
+         "would"},
     {"contact", SE3DI_KIND_BOOL, SE3DI_INTO(se3d_bond_def, contact), .standard = "false",
      .text = "what is bonded touches, too"},
     {.key = NULL}};
@@ -172,7 +175,8 @@ static bool check_law(se3di_reader *reader, const se3di_node *node, int32_t law)
                 {"shear_strength", BEAMS | PARALLEL},
                 {"springs", SPRINGS},
                 {"dampers", SPRINGS},
-                {"limits", SPRINGS}};
+                {"limits", SPRINGS},
+                {"smooth", SPRINGS}};
     for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k) {
         if (!(keys[k].laws >> law & 1) && se3di_node_get(node, keys[k].key)) {
             return se3di_reader_fail_key(reader, node, keys[k].key,
