@@ -110,19 +110,6 @@ void se3di_quat_from_axis_angle(const double axis[3], double angle, double p[4])
     p[3] = s * axis[2];
 }
 
-void se3di_quat_mul(const double p[4], const double q[4], double out[4])
-{
-    const double product[4] = {
-        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-        p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
-        p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1],
-    };
-    for (int k = 0; k < 4; ++k) {
-        out[k] = product[k];
-    }
-}
-
 void se3di_quat_rotate(const double p[4], const double theta[3], double out[4])
 {
     const double x = se3di_dot(theta, theta);

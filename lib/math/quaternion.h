@@ -40,7 +40,36 @@ void se3di_quat_from_matrix(const double A[9], double p[4]);
 void se3di_quat_from_axis_angle(const double axis[3], double angle, double p[4]);
 
 /* out = p q (apply q first); aliasing allowed. */
-void se3di_quat_mul(const double p[4], const double q[4], double out[4]);
+static inline void se3di_quat_mul(const double p[4], const double q[4], double out[4])
+{
+    const double product[4] = {
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+        p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1],
+    };
+    for (int k = 0; k < 4; ++k) {
+        out[k] = product[k];
+    }
+}
+
+/* The turn back, for |p| = 1. */
+static inline void se3di_quat_inverse(const double p[4], double out[4])
+{
+    out[0] = p[0];
+    se3di_scale(-1.0, p + 1, out + 1);
+}
+
+/* out = A(p) a, for |p| = 1. */
+static inline void se3di_quat_turn(const double p[4], const double a[3], double out[3])
+{
+    double once[3], twice[3];
+    se3di_cross(p + 1, a, once);
+    se3di_cross(p + 1, once, twice);
+    for (int k = 0; k < 3; ++k) {
+        out[k] = a[k] + 2.0 * (p[0] * once[k] + twice[k]);
+    }
+}
 
 /* p / |p|; aliasing allowed. Returns |p|. */
 static inline double se3di_quat_normalize(const double p[4], double out[4])

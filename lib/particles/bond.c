@@ -72,38 +72,31 @@ static uint32_t end_of_wall(se3di_particles *set, const se3di_bond_place *place)
 void se3di_bonds_append(se3di_particles *set, const se3di_bond_place *place, const se3di_bond *like)
 {
     se3di_bond *bond = &set->bonds[set->bond_count++];
-    double axes[9];
+    double q[2][4], back[2][4], axis[3];
     *bond = *like;
     bond->end[0] = end_of_sphere(set, place->first);
     bond->end[1] = place->second == SE3DI_NO_INDEX ? end_of_wall(set, place)
                                                    : end_of_sphere(set, place->second);
     bond->length = se3di_norm(place->way);
-    se3di_scale(1.0 / bond->length, place->way, axes);
-    se3di_perpendicular(axes, axes + 3);
-    se3di_cross(axes, axes + 3, axes + 6);
+    se3di_scale(1.0 / bond->length, place->way, axis);
     for (int n = 0; n < 2; ++n) {
-        double A[9];
-        se3di_bond_end_turn(set, &set->bond_ends[bond->end[n]], A);
-        for (int k = 0; k < 3; ++k) {
-            se3di_mul_transposed(A, axes + 3 * k, bond->axes[n] + 3 * k);
-        }
+        se3di_bond_end_turn(set, &set->bond_ends[bond->end[n]], q[n]);
+        se3di_quat_inverse(q[n], back[n]);
+        se3di_quat_turn(back[n], axis, bond->axis[n]);
     }
+    se3di_quat_mul(back[1], q[0], bond->turn);
     se3di_add(set->particles[set->index_of[place->first]].x, place->way, bond->place);
     ++set->bond_groups[bond->group].made;
 }
 
-void se3di_bond_end_turn(const se3di_particles *set, const se3di_bond_end *end, double A[9])
+void se3di_bond_end_turn(const se3di_particles *set, const se3di_bond_end *end, double q[4])
 {
     if (end->id == SE3DI_NO_INDEX) {
-        memcpy(A, set->walls[end->wall].pose.R, 9 * sizeof *A);
+        se3di_quat_from_matrix(set->walls[end->wall].pose.R, q);
         return;
     }
     const se3di_clump *clump = se3di_clump_find(set, set->index_of[end->id]);
-    if (clump) {
-        memcpy(A, clump->A, 9 * sizeof *A);
-    } else {
-        se3di_quat_to_matrix(end->q, A);
-    }
+    memcpy(q, clump ? clump->q : end->q, 4 * sizeof *q);
 }
 
 /* The counts of the ends become places. */

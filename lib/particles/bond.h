@@ -31,7 +31,7 @@ void se3di_bonds_count(se3di_particles *set, const se3di_bond *bond);
 /* Take out those that do not hold any more; the ends stay. */
 void se3di_bonds_keep(se3di_particles *set);
 /* End -> ground: how the sphere has turned, its clump or the wall. */
-void se3di_bond_end_turn(const se3di_particles *set, const se3di_bond_end *end, double A[9]);
+void se3di_bond_end_turn(const se3di_particles *set, const se3di_bond_end *end, double q[4]);
 /* Whether particles i and j are bonded so that they do not touch. */
 int se3di_bonds_part(const se3di_particles *set, uint32_t i, uint32_t j);
 /* The same of particle i and a wall. */

@@ -5,13 +5,15 @@
  *     U = kn/2 (l - L)^2 + C1 (2 - e.a1 - e.a2) + C2 (1 - a1.a2)
  *         + kt/2 (1 + a1.a2 - b1.b2 - c1.c2),       C1 = ks L^2/2,  C2 = kb - ks L^2/4
  *     F2 = - kn (l - L) e + C1/l (1 - e e^T) (a1 + a2)
- *     T1 = C1 a1 x e + (C2 - kt/2) a1 x a2 + kt/2 (b1 x b2 + c1 x c2)
- *     T2 = C1 a2 x e - (C2 - kt/2) a1 x a2 - kt/2 (b1 x b2 + c1 x c2)
+ *     T1 = C1 a1 x e + (C2 - kt) a1 x a2 + 2 kt p0 p
+ *     T2 = C1 a2 x e - (C2 - kt) a1 x a2 - 2 kt p0 p
  *
- * so that T1 + T2 + l e x F2 = 0. For small motions that is a beam: ks acts on what moves across at
- * the middle, kb on the bending, kt on the twist. Dampers act beside the four springs, on the
- * motion of half a step ago; what they turn to heat is their work over both half kicks. A bond that
- * breaks acts for the half kick that ends the step, so that the energy that it had is what it took.
+ * so that T1 + T2 + l e x F2 = 0; (p0, p) are the Euler parameters of the turn that makes the axes
+ * of the first end those of the second, so that a1 x a2 + b1 x b2 + c1 x c2 = 4 p0 p and a1.a2 +
+ * b1.b2 + c1.c2 = 3 - 4 p.p. For small motions that is a beam: ks acts on what moves across at the
+ * middle, kb on the bending, kt on the twist. Dampers act beside the four springs, on the motion of
+ * half a step ago; what they turn to heat is their work over both half kicks. A bond that breaks
+ * acts for the half kick that ends the step, so that the energy that it had is what it took.
  *                                                                        docs/theory/bonds.md */
 #include "particles/bond.h"
 
@@ -30,17 +32,14 @@
 /* An end as it is now. */
 typedef struct end_state {
     double x[3], v[3], w[3];
-    double axes[3][3];
+    double q[4], a[3]; /* its turn, and the axis of the bond as it has it */
 } end_state;
 
 static void get_end(const se3di_particles *set, const se3di_bond *bond, int n, end_state *out)
 {
     const se3di_bond_end *end = &set->bond_ends[bond->end[n]];
-    double A[9];
-    se3di_bond_end_turn(set, end, A);
-    for (int k = 0; k < 3; ++k) {
-        se3di_mul(A, bond->axes[n] + 3 * k, out->axes[k]);
-    }
+    se3di_bond_end_turn(set, end, out->q);
+    se3di_quat_turn(out->q, bond->axis[n], out->a);
     if (end->id == SE3DI_NO_INDEX) {
         const se3di_shape_pose *pose = &set->walls[end->wall].pose;
         double lever[3], turned[3];
@@ -70,27 +69,25 @@ static double apart(const double a[3], const double b[3])
 static double bend(const se3di_bond *bond, const end_state *one, const end_state *two,
                    const double e[3], double length, double force[3], double torque[2][3])
 {
-    const double *k = bond->stiffness;
-    const double L2 = bond->length * bond->length;
-    const double C1 = 0.5 * k[1] * L2, C2 = k[2] - 0.25 * k[1] * L2, half = 0.5 * k[3];
-    const double aa = apart(one->axes[0], two->axes[0]); /* 1 - a1.a2 */
-    const double bb = apart(one->axes[1], two->axes[1]);
-    const double cc = apart(one->axes[2], two->axes[2]);
-    double sum[3], a_a[3], b_b[3], c_c[3];
-    se3di_add(one->axes[0], two->axes[0], sum);
-    se3di_cross(one->axes[0], two->axes[0], a_a);
-    se3di_cross(one->axes[1], two->axes[1], b_b);
-    se3di_cross(one->axes[2], two->axes[2], c_c);
-    se3di_cross(one->axes[0], e, torque[0]);
-    se3di_cross(two->axes[0], e, torque[1]);
-    const double along = se3di_dot(e, sum);
-    for (int a = 0; a < 3; ++a) {
-        const double twist = (C2 - half) * a_a[a] + half * (b_b[a] + c_c[a]);
-        force[a] = C1 / length * (sum[a] - along * e[a]);
-        torque[0][a] = C1 * torque[0][a] + twist;
-        torque[1][a] = C1 * torque[1][a] - twist;
+    const double *k = bond->stiffness, *a1 = one->a, *a2 = two->a;
+    const double C1 = 0.5 * k[1] * bond->length * bond->length, C2 = k[2] - 0.5 * C1 - k[3];
+    double sum[3], cross[3], back[4], p[4];
+    se3di_quat_inverse(one->q, back);
+    se3di_quat_mul(bond->turn, back, p);
+    se3di_quat_mul(two->q, p, p);
+    const double *u = p + 1, turn = 2.0 * k[3] * p[0];
+    se3di_add(a1, a2, sum);
+    se3di_cross(a1, a2, cross);
+    se3di_cross(a1, e, torque[0]);
+    se3di_cross(a2, e, torque[1]);
+    const double along = se3di_dot(e, sum), shear = C1 / length;
+    for (int n = 0; n < 3; ++n) {
+        const double twist = C2 * cross[n] + turn * u[n];
+        force[n] = shear * (sum[n] - along * e[n]);
+        torque[0][n] = C1 * torque[0][n] + twist;
+        torque[1][n] = C1 * torque[1][n] - twist;
     }
-    return C1 * (apart(e, one->axes[0]) + apart(e, two->axes[0])) + C2 * aa + half * (bb + cc - aa);
+    return C1 * (apart(e, a1) + apart(e, a2)) + C2 * apart(a1, a2) + 2.0 * k[3] * se3di_dot(u, u);
 }
 
 /* The dampers, on the second end and both torques. */
@@ -126,30 +123,41 @@ static double half_work(const se3di_bond *bond, const end_state *one, const end_
             se3di_dot(bond->brake[1], two->w));
 }
 
-/* Tension and shear of the outermost fibre: of the worse end, or of the middle. */
-static void find_stress(const se3di_particles *set, se3di_bond *bond, const double e[3],
+/* What of it is across e. */
+static double size_across(const double moment[3], const double e[3])
+{
+    double part[3];
+    se3di_copy(moment, part);
+    se3di_add_scaled(-se3di_dot(moment, e), e, part);
+    return se3di_norm(part);
+}
+
+/* The bending moment of the worse end, or of the middle. */
+static double find_moment(const se3di_bond_group *group, const se3di_bond *bond, const double e[3])
+{
+    double middle[3];
+    if (group->middle) {
+        se3di_sub(bond->torque[1], bond->torque[0], middle);
+        return 0.5 * size_across(middle, e);
+    }
+    const double first = size_across(bond->torque[0], e), second = size_across(bond->torque[1], e);
+    return first > second ? first : second;
+}
+
+/* Tension and shear of the outermost fibre. */
+static void find_stress(const se3di_bond_group *group, se3di_bond *bond, const double e[3],
                         double tension, const double shear[3])
 {
-    const double r = bond->radius, area = PI * r * r;
-    const double twist = se3di_dot(bond->torque[1], e);
-    double moment[2][3], middle[3];
-    for (int n = 0; n < 2; ++n) {
-        const double along = se3di_dot(bond->torque[n], e);
-        se3di_copy(bond->torque[n], moment[n]);
-        se3di_add_scaled(-along, e, moment[n]);
-    }
-    se3di_sub(moment[1], moment[0], middle);
-    const double most = set->bond_groups[bond->group].middle
-                            ? 0.5 * se3di_norm(middle)
-                            : fmax(se3di_norm(moment[0]), se3di_norm(moment[1]));
-    const se3di_bond_group *group = &set->bond_groups[bond->group];
+    const double most = find_moment(group, bond, e);
+    const double twist = fabs(se3di_dot(bond->torque[1], e)), size = se3di_norm(shear);
     if (group->springs) {
         bond->stress[0] = tension / group->limits[0] + most / group->limits[2];
-        bond->stress[1] = se3di_norm(shear) / group->limits[1] + fabs(twist) / group->limits[3];
+        bond->stress[1] = size / group->limits[1] + twist / group->limits[3];
         return;
     }
+    const double r = bond->radius, area = PI * r * r;
     bond->stress[0] = tension / area + 4.0 * most / (area * r);
-    bond->stress[1] = se3di_norm(shear) / area + 2.0 * fabs(twist) / (area * r);
+    bond->stress[1] = size / area + 2.0 * twist / (area * r);
 }
 
 /* What the stress makes of the bond. */
@@ -169,8 +177,8 @@ static se3di_bond_fate find_fate(const se3di_bond_group *group, const double str
 /* What a bond with a smooth end has less, as a part of all that it does: s^4 of the share s. */
 static double find_less(const se3di_bond_group *group, const se3di_bond *bond)
 {
-    const double share = fmin(fmax(bond->stress[0] + bond->stress[1], 0.0), 1.0);
-    return group->smooth ? share * share * share * share : 0.0;
+    const double share = bond->stress[0] + bond->stress[1];
+    return !group->smooth || share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share * share * share * share;
 }
 
 /* The same of the energy U of the springs, if the load has grown in proportion: U s^4/3, as the
@@ -198,7 +206,7 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     se3di_sub(two.x, one.x, d);
     se3di_sub(two.v, one.v, v);
     se3di_particles_nearest(set, d, v);
-    const double length = fmax(se3di_norm(d), 1e-300);
+    const double distance = se3di_norm(d), length = distance > 0.0 ? distance : 1e-300;
     const double less = find_less(group, bond), held = bond->energy * less / (3.0 - less);
     bond->span = length;
     se3di_scale(1.0 / length, d, e);
@@ -207,7 +215,7 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     bond->energy = bend(bond, &one, &two, e, length, bond->force, bond->torque);
     const double stretch = length - bond->length, tension = bond->stiffness[0] * stretch;
     bond->energy += 0.5 * tension * stretch;
-    find_stress(set, bond, e, tension, bond->force);
+    find_stress(group, bond, e, tension, bond->force);
     if (h > 0.0) {
         bond->fate = (int32_t)find_fate(group, bond->stress);
     }
@@ -225,18 +233,20 @@ static void evaluate(const se3di_particles *set, se3di_bond *bond, double h)
     }
 }
 
-/* What its bonds do to a sphere, in the order in which they were made. */
+/* What a bond does to the sphere at its end n. */
+static void load_by(se3di_particles *set, const se3di_bond_end *end, const se3di_bond *bond, int n)
+{
+    se3di_load *load = &set->loads[set->index_of[end->id]];
+    se3di_add_scaled(n > 0 ? 1.0 : -1.0, bond->force, load->force);
+    se3di_add(load->torque, bond->torque[n], load->torque);
+}
+
+/* All that its bonds do to a sphere, in the order in which they were made. */
 static void load_end(se3di_particles *set, const se3di_bond_end *end)
 {
-    if (end->id == SE3DI_NO_INDEX) {
-        return;
-    }
-    se3di_load *load = &set->loads[set->index_of[end->id]];
-    for (uint32_t k = end->begin; k < end->begin + end->count; ++k) {
-        const uint32_t n = set->bond_places[k] % 2;
-        const se3di_bond *bond = &set->bonds[set->bond_places[k] / 2];
-        se3di_add_scaled(n > 0 ? 1.0 : -1.0, bond->force, load->force);
-        se3di_add(load->torque, bond->torque[n], load->torque);
+    for (uint32_t k = end->begin; end->id != SE3DI_NO_INDEX && k < end->begin + end->count; ++k) {
+        const uint32_t place = set->bond_places[k];
+        load_by(set, end, &set->bonds[place / 2], (int)(place % 2));
     }
 }
 
@@ -261,6 +271,21 @@ static void evaluate_range(se3di_particles *set, size_t begin, size_t end, doubl
 {
     for (size_t k = begin; k < end; ++k) {
         evaluate(set, &set->bonds[k], h);
+    }
+}
+
+/* The same sums, of one thread: no sphere waits for all of its bonds. */
+static void evaluate_loading(se3di_particles *set, size_t begin, size_t end, double h)
+{
+    for (size_t k = begin; k < end; ++k) {
+        se3di_bond *bond = &set->bonds[k];
+        evaluate(set, bond, h);
+        for (int n = 0; n < 2; ++n) {
+            const se3di_bond_end *at = &set->bond_ends[bond->end[n]];
+            if (at->id != SE3DI_NO_INDEX) {
+                load_by(set, at, bond, n);
+            }
+        }
     }
 }
 
@@ -300,42 +325,47 @@ void se3di_bonds_forces(se3di_particles *set, double h)
     if (set->bond_count == 0) {
         return;
     }
-    se3di_particles_each_range(set, set->bond_count, evaluate_range, h);
-    se3di_particles_each_range(set, set->bond_end_count, load_range, h);
+    if (se3di_particles_team(set) == 1) {
+        se3di_particles_each_range(set, set->bond_count, evaluate_loading, h);
+    } else {
+        se3di_particles_each_range(set, set->bond_count, evaluate_range, h);
+        se3di_particles_each_range(set, set->bond_end_count, load_range, h);
+    }
     if (se3di_domain_strains(set)) {
         add_virial(set);
     }
 }
 
-static int is_on_wall(const se3di_particles *set, const se3di_bond *bond)
+static void push_wall(se3di_particles *set, const se3di_bond_end *end, const se3di_bond *bond)
 {
-    return set->bond_ends[bond->end[1]].id == SE3DI_NO_INDEX;
+    se3di_wall *wall = &set->walls[end->wall];
+    double lever[3], moment[3];
+    se3di_mul(wall->pose.R, end->point, lever);
+    se3di_add(lever, wall->pose.x, lever);
+    se3di_sub(lever, wall->pose.c, lever);
+    se3di_cross(lever, bond->force, moment);
+    if (se3di_share_is_spread(set)) {
+        se3di_add(moment, bond->torque[1], moment);
+        se3di_share_add_to_wall(set, end->wall, bond->force, moment);
+        return;
+    }
+    se3di_add(wall->force, bond->force, wall->force);
+    se3di_add(wall->torque, moment, wall->torque);
+    se3di_add(wall->torque, bond->torque[1], wall->torque);
 }
 
-/* Each by one process: that of the sphere, which is always the first end. */
+/* Each by one process: that of the sphere, which is always the first end. Ends on walls, of one
+ * bond each, are in the order of their bonds. */
 void se3di_bonds_push_walls(se3di_particles *set)
 {
-    for (size_t k = 0; k < set->bond_count; ++k) {
-        const se3di_bond *bond = &set->bonds[k];
-        if (!is_on_wall(set, bond) ||
-            se3di_share_is_ghost(set, set->index_of[set->bond_ends[bond->end[0]].id])) {
-            continue;
+    for (size_t k = 0; k < set->bond_end_count; ++k) {
+        const se3di_bond_end *end = &set->bond_ends[k];
+        for (uint32_t n = 0; end->id == SE3DI_NO_INDEX && n < end->count; ++n) {
+            const se3di_bond *bond = &set->bonds[set->bond_places[end->begin + n] / 2];
+            if (!se3di_share_is_ghost(set, set->index_of[set->bond_ends[bond->end[0]].id])) {
+                push_wall(set, end, bond);
+            }
         }
-        const se3di_bond_end *end = &set->bond_ends[bond->end[1]];
-        se3di_wall *wall = &set->walls[end->wall];
-        double lever[3], moment[3];
-        se3di_mul(wall->pose.R, end->point, lever);
-        se3di_add(lever, wall->pose.x, lever);
-        se3di_sub(lever, wall->pose.c, lever);
-        se3di_cross(lever, bond->force, moment);
-        if (se3di_share_is_spread(set)) {
-            se3di_add(moment, bond->torque[1], moment);
-            se3di_share_add_to_wall(set, end->wall, bond->force, moment);
-            continue;
-        }
-        se3di_add(wall->force, bond->force, wall->force);
-        se3di_add(wall->torque, moment, wall->torque);
-        se3di_add(wall->torque, bond->torque[1], wall->torque);
     }
 }
 

@@ -305,8 +305,9 @@ static void code_bonds(se3di_coder *c, se3di_particles *set)
         se3di_code_numbers(c, &bond->radius, 1);
         se3di_code_numbers(c, bond->stiffness, 4);
         se3di_code_numbers(c, bond->damping, 4);
-        se3di_code_numbers(c, bond->axes[0], 9);
-        se3di_code_numbers(c, bond->axes[1], 9);
+        se3di_code_numbers(c, bond->axis[0], 3);
+        se3di_code_numbers(c, bond->axis[1], 3);
+        se3di_code_numbers(c, bond->turn, 4);
         se3di_code_numbers(c, bond->place, 3);
         se3di_code_numbers(c, bond->force, 3);
         se3di_code_numbers(c, bond->drag, 3);

@@ -395,7 +395,8 @@ typedef struct se3di_bond {
     double radius;       /* of its section */
     double stiffness[4]; /* normal, shear [N/m], bending, twisting [N m] */
     double damping[4];   /* the same [N s/m], [N m s] */
-    double axes[2][9];   /* along the bond and two across it, as rows, fixed in the ends */
+    double axis[2][3];   /* along the bond without load, fixed in the ends */
+    double turn[4];      /* without load, of the first end as the second sees it */
     double place[3];     /* of the second end, beside the first */
     /* of the last forces */
     double force[3], torque[2][3]; /* all of them, */

@@ -17,7 +17,7 @@
 
 #define MASS_MOST 1e100 /* of the two of a contact: the inverse is divided by */
 #define MARK      UINT64_C(0x50414E5344334553) /* "SE3DSNAP" */
-#define VERSION   UINT64_C(11)
+#define VERSION   UINT64_C(12)
 /* Rotation matrices are those of the Euler parameters to this. */
 #define SAME_ROTATION 1e-9
 

@@ -95,7 +95,7 @@ static void cut_and_changed_bytes_are_refused(void)
     snprintf(version, sizeof version, "version %d", ++bytes[8]);
     CHECK(is_refused(&w, bytes, w.size, version));
     bytes[8] = 4; /* before cells that strain, broken joints and what convex remembers */
-    CHECK(is_refused(&w, bytes, w.size, "a snapshot of version 4, must be of version 11"));
+    CHECK(is_refused(&w, bytes, w.size, "a snapshot of version 4, must be of version 12"));
     bytes[0] = 'X';
     CHECK(is_refused(&w, bytes, w.size, "must begin with SE3DSNAP"));
     close_world(&w);
