@@ -102,6 +102,14 @@ typedef struct se3d_material_pair_def {
     double friction, restitution, rolling_friction, torsional_friction; /* [1] */
     double stiffness;                                                   /* hooke [N/m] */
     double cohesion, adhesion;                                          /* [J/m^3], [J/m^2] */
+    /* In place of what the materials say of themselves; 0 is none. @since 0.1 */
+    double damping_ratio;      /* [1] of critical damping, in place of a restitution >= 0.01 */
+    double damping_rate;       /* of particles [1/s], hertz_mindlin [1/(m s)]: as of a material */
+    double tangential_ratio;   /* [1] <= 10, kt/kn of either law */
+    double tangential_damping; /* [1] <= 10, over that along the normal */
+    double rolling_ratio;      /* [1] <= 100, stiffness of rolling and torsion over kt */
+    double rolling_damping;    /* [1] <= 10, over sqrt(m* stiffness of rolling) */
+    double young, poisson;     /* hertz_mindlin, as if both were of it: [Pa] > 0, [1] <= 0.5 */
 } se3d_material_pair_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_pair_def_default. @since 0.1 */

@@ -27,15 +27,37 @@ typedef struct se3di_material {
     uint32_t reserved;
 } se3di_material;
 
-/* What a user may say of a pair of materials; negative: by the mixing rules. */
+#define SE3DI_RESTITUTION_MIN 0.01 /* below, the damping grows without bound */
+
+/* What a user may say of a pair of materials, from the least to the most; negative: by the mixing
+ * rules. In the order of se3d_material_pair_def. */
+#define SE3DI_OVERRIDE_LIST(X)                                                                     \
+    X(friction, 0.0, 1e30)                                                                         \
+    X(restitution, SE3DI_RESTITUTION_MIN, 1.0)                                                     \
+    X(rolling_friction, 0.0, 1e30)                                                                 \
+    X(torsional_friction, 0.0, 1e30)                                                               \
+    X(stiffness, 1e-30, 1e30)                                                                      \
+    X(cohesion, 0.0, 1e30)                                                                         \
+    X(adhesion, 0.0, 1e30)                                                                         \
+    X(damping_ratio, 0.0, 100.0)                                                                   \
+    X(damping_rate, 0.0, 1e30)                                                                     \
+    X(tangential_ratio, 0.0, 10.0)                                                                 \
+    X(tangential_damping, 0.0, 10.0)                                                               \
+    X(rolling_ratio, 0.0, 100.0)                                                                   \
+    X(rolling_damping, 0.0, 10.0)                                                                  \
+    X(young, 1e-30, 1e30)                                                                          \
+    X(poisson, 0.0, 0.5)
+
 typedef struct se3di_override {
-    double friction, restitution, rolling_friction, torsional_friction, stiffness;
-    double cohesion, adhesion;
+#define SE3DI_MEMBER(name, least, most) double name;
+    SE3DI_OVERRIDE_LIST(SE3DI_MEMBER)
+#undef SE3DI_MEMBER
 } se3di_override;
 
+#define SE3DI_NONE_OF(name, least, most) .name = -1.0,
 #define SE3DI_OVERRIDE_NONE                                                                        \
     {                                                                                              \
-        -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0                                                   \
+        SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF)                                                         \
     }
 
 /* Coefficients of one pair of materials; with s = 1 (hooke) or sqrt(R* delta) (hertz_mindlin):

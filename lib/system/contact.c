@@ -25,7 +25,7 @@ void se3d_material_def_init(se3d_material_def *def, size_t size)
 
 void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
 {
-    se3d_material_pair_def defaults = {size, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0};
+    se3d_material_pair_def defaults = {.struct_size = size, SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF)};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
@@ -53,9 +53,16 @@ static se3d_status check_damping(se3d_system *system, int32_t law, const se3di_m
     return e >= SE3DI_RESTITUTION_MIN
                ? SE3D_OK
                : SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
-                               " = %g of a material is a restitution of %g with this law, must be "
-                               "so small that it is %g or more",
+                               " = %g is a restitution of %g with this law, must be so small that "
+                               "it is %g or more",
                                material->damping_ratio, e, SE3DI_RESTITUTION_MIN);
+}
+
+/* The same of a pair of materials; < 0: it says nothing. */
+static se3d_status check_ratio(se3d_system *system, int32_t law, double damping_ratio)
+{
+    const se3di_material of_it = {.damping_ratio = damping_ratio};
+    return damping_ratio > 0.0 ? check_damping(system, law, &of_it) : SE3D_OK;
 }
 
 se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_settings *settings)
@@ -87,6 +94,10 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
         SE3DI_TRY(
             check_law(system, full.law, model->materials[k].stiffness, model->materials[k].young));
         SE3DI_TRY(check_damping(system, full.law, &model->materials[k]));
+        for (size_t j = 0; j <= k; ++j) {
+            const se3di_override *over = &model->overrides[k * model->material_slots.count + j];
+            SE3DI_TRY(check_ratio(system, full.law, over->damping_ratio));
+        }
     }
     const double before = se3di_audit_contacts(model);
     se3di_model_set_contact(model, &(se3di_contact_settings){.law = full.law,
@@ -292,6 +303,22 @@ se3d_status se3d_material_destroy(se3d_system *system, se3d_material material)
     return SE3D_OK;
 }
 
+static se3d_status check_pair(se3d_system *system, const se3d_material_pair_def *def)
+{
+#define CHECK_ONE(name, least, most)                                                               \
+    if (!(def->name < 0.0)) {                                                                      \
+        SE3DI_TRY(se3di_check_range(system, #name, def->name, least, most));                       \
+    }
+    SE3DI_OVERRIDE_LIST(CHECK_ONE)
+#undef CHECK_ONE
+    if (def->damping_ratio >= 0.0 && def->restitution >= 0.0) {
+        return SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g stands in place of `restitution`, must not be beside it",
+                             def->damping_ratio);
+    }
+    return check_ratio(system, system->model.contact.law, def->damping_ratio);
+}
+
 se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
                                    const se3d_material_pair_def *def)
 {
@@ -301,21 +328,10 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
     SE3DI_TRY(se3di_find_material(system, "material b", b, &index_b));
     se3d_material_pair_def full = se3d_material_pair_def_default();
     SE3DI_TRY(se3di_check_def(system, "pair def", def, &full, sizeof full));
-    const double values[7] = {
-        full.friction,  full.restitution, full.rolling_friction, full.torsional_friction,
-        full.stiffness, full.cohesion,    full.adhesion};
-    static const char *const names[7] = {
-        "friction",  "restitution", "rolling_friction", "torsional_friction",
-        "stiffness", "cohesion",    "adhesion"};
-    for (int k = 0; k < 7; ++k) {
-        const double least = k == 1 ? SE3DI_RESTITUTION_MIN : k == 4 ? 1e-30 : 0.0;
-        if (!(values[k] < 0.0)) {
-            SE3DI_TRY(se3di_check_range(system, names[k], values[k], least, k == 1 ? 1.0 : 1e30));
-        }
-    }
-    const se3di_override over = {
-        full.friction,  full.restitution, full.rolling_friction, full.torsional_friction,
-        full.stiffness, full.cohesion,    full.adhesion};
+    SE3DI_TRY(check_pair(system, &full));
+#define TAKE(name, least, most) .name = full.name,
+    const se3di_override over = {SE3DI_OVERRIDE_LIST(TAKE)};
+#undef TAKE
     const double before = se3di_audit_contacts(&system->model);
     se3di_model_set_override(&system->model, index_a, index_b, &over);
     se3di_pair_mix_all(&system->model);
@@ -342,13 +358,9 @@ se3d_status se3d_material_get_pair(const se3d_system *system, se3d_material a, s
     SE3DI_TRY(se3di_read_index(SE3DI_SLOTS(system, material), SE3DI_HANDLE(b), def, &index_b));
     const se3di_override *over =
         &system->model.overrides[index_a * system->model.material_slots.count + index_b];
+#define TELL(name, least, most) .name = over->name,
     const se3d_material_pair_def full = {.struct_size = def->struct_size,
-                                         .friction = over->friction,
-                                         .restitution = over->restitution,
-                                         .rolling_friction = over->rolling_friction,
-                                         .torsional_friction = over->torsional_friction,
-                                         .stiffness = over->stiffness,
-                                         .cohesion = over->cohesion,
-                                         .adhesion = over->adhesion};
+                                         SE3DI_OVERRIDE_LIST(TELL)};
+#undef TELL
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

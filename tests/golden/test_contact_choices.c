@@ -2,6 +2,8 @@
 /* What a material may say in place of what its law has: damping along the normal, stiffness and
  * damping along the tangent, of rolling and of torsion, in closed form. A ball meets a plane, or
  * rests on it, as a particle and as a body (docs/theory/contact-laws.md). */
+#include <stddef.h>
+
 #include "se3d/io.h"
 #include "support/scene.h"
 
@@ -219,8 +221,7 @@ static void what_no_contact_could_be_is_refused(void)
     se3d_material made;
     def.damping_ratio = 60.0;
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
-    CHECK_CONTAINS(se3d_system_get_error(s.system),
-                   "damping_ratio = 60 of a material is a restitution of ");
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "damping_ratio = 60 is a restitution of ");
     def.damping_ratio = 0.0;
     def.rolling_ratio = 101.0;
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
@@ -308,6 +309,114 @@ static void model_files_say_one_damping(void)
     CHECK_CONTAINS(error.message, "damping_ratio: stands beside `restitution`");
 }
 
+/* A ball that spins hits the plane; what both say, or the pair of them, or nobody. */
+static void hit(int32_t law, const se3d_material_def *of, const se3d_material_pair_def *pair,
+                double out[6])
+{
+    const double v[3] = {2e-4, 1e-4, -1e-3}, w[3] = {0.03, -0.02, 0.05};
+    ball b = begin(PARTICLE, law, of, of, RADIUS + 1e-6, v, w);
+    se3d_material plane;
+    CHECK(se3d_system_get_material(b.s.system, 0, &plane) == SE3D_OK);
+    CHECK(se3d_material_set_pair(b.s.system, plane, b.s.material, pair) == SE3D_OK);
+    CHECK(se3d_particles_set_step(b.set, 2e-5) == SE3D_OK);
+    run(&b, 0.05, out, out + 3);
+    end(&b);
+}
+
+static double apart(const double a[6], const double b[6])
+{
+    double most = 0.0;
+    for (int k = 0; k < 6; ++k) {
+        most = fmax(most, fabs(a[k] - b[k]));
+    }
+    return most;
+}
+
+static void a_pair_may_say_what_both_could(void)
+{
+#define AT(of, in) offsetof(se3d_material_def, of), offsetof(se3d_material_pair_def, in)
+    static const struct {
+        size_t of, in;
+        double hooke, hertz;
+    } keys[] = {{AT(damping_ratio, damping_ratio), 0.1, 0.1},
+                {AT(damping_rate, damping_rate), 300.0, 1e6},
+                {AT(tangential_ratio, tangential_ratio), 0.5, 0.0},
+                {AT(tangential_ratio_hertz, tangential_ratio), 0.0, 0.5},
+                {AT(tangential_damping, tangential_damping), 0.3, 0.3},
+                {AT(rolling_ratio, rolling_ratio), 0.2, 0.2},
+                {AT(rolling_damping, rolling_damping), 0.1, 0.1},
+                {AT(young, young), 0.0, 3e5},
+                {AT(poisson, poisson), 0.0, 0.1}};
+#undef AT
+    for (size_t k = 0; k < 2 * sizeof keys / sizeof *keys; ++k) {
+        const int32_t law = k % 2 ? SE3D_CONTACT_LAW_HERTZ_MINDLIN : SE3D_CONTACT_LAW_HOOKE;
+        const double value = k % 2 ? keys[k / 2].hertz : keys[k / 2].hooke;
+        se3d_material_def one = stuff();
+        se3d_material_pair_def none = se3d_material_pair_def_default(), pair = none;
+        double nobody[6], both[6], of_pair[6];
+        if (!(value > 0.0)) {
+            continue;
+        }
+        one.rolling_friction = one.torsional_friction = 10.0;
+        one.restitution = 0.8;
+        one.young = 1e6;
+        se3d_material_def other = one;
+        memcpy((char *)&other + keys[k / 2].of, &value, sizeof value);
+        memcpy((char *)&pair + keys[k / 2].in, &value, sizeof value);
+        hit(law, &one, &none, nobody);
+        hit(law, &other, &none, both);
+        hit(law, &one, &pair, of_pair);
+        CHECK_NEAR(apart(both, of_pair), 0.0, 1e-15);
+        CHECK(apart(both, nobody) > 1e-6);
+    }
+}
+
+/* Those of pairs are written and read again; 0 is none, and comes before what materials say. */
+static void pairs_of_model_files_say_so_too(void)
+{
+    const char *const text =
+        "se3d: 1\ncontact: {pairs: [{material_1: m, material_2: m, damping_rate: 0, "
+        "tangential_ratio: 0.3, tangential_damping: 0, rolling_ratio: 2, rolling_damping: 0.4, "
+        "young: 7, poisson: 0.2}]}\nmaterials: [{name: m, density: 1, stiffness: 1, damping_rate: "
+        "5}]\nparticles: [{material: m, radius: 1, lower: [0, 0, 0], upper: [9, 9, 9]}]\n";
+    char written[4000];
+    size_t length;
+    se3d_model_error error;
+    for (int again = 0; again < 2; ++again) {
+        se3d_material material;
+        se3d_material_pair_def pair = se3d_material_pair_def_default();
+        se3d_model *model = read_model(again ? written : text, &error);
+        CHECK(model != NULL);
+        if (!model) {
+            break;
+        }
+        se3d_system *system = se3d_model_get_system(model);
+        CHECK(se3d_system_get_material(system, 0, &material) == SE3D_OK);
+        CHECK(se3d_material_get_pair(system, material, material, &pair) == SE3D_OK);
+        CHECK_NEAR(pair.damping_ratio, -1.0, 0.0);
+        CHECK_NEAR(pair.damping_rate, 0.0, 0.0);
+        CHECK_NEAR(pair.tangential_ratio, 0.3, 0.0);
+        CHECK_NEAR(pair.tangential_damping, 0.0, 0.0);
+        CHECK_NEAR(pair.rolling_ratio, 2.0, 0.0);
+        CHECK_NEAR(pair.rolling_damping, 0.4, 0.0);
+        CHECK_NEAR(pair.young, 7.0, 0.0);
+        CHECK_NEAR(pair.poisson, 0.2, 0.0);
+        CHECK(se3d_model_write_text(model, NULL, written, sizeof written, &length, &error) ==
+              SE3D_OK);
+        pair.damping_ratio = 0.1;
+        pair.restitution = 0.5;
+        CHECK(se3d_material_set_pair(system, material, material, &pair) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(system), "damping_ratio = 0.1 stands in place of");
+        pair.restitution = -1.0;
+        pair.damping_ratio = 50.0;
+        CHECK(se3d_material_set_pair(system, material, material, &pair) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(system), "damping_ratio = 50 is a restitution of ");
+        se3d_model_destroy(model);
+    }
+}
+
 int main(void)
 {
     RUN(the_tangential_stiffness_of_hertz_is_that_given);
@@ -317,6 +426,8 @@ int main(void)
     RUN(torsion_swings_as_given);
     RUN(model_files_say_so_too);
     RUN(model_files_say_one_damping);
+    RUN(a_pair_may_say_what_both_could);
+    RUN(pairs_of_model_files_say_so_too);
     RUN(what_no_contact_could_be_is_refused);
     return check_finish();
 }

@@ -203,6 +203,14 @@ static const field pair_fields[] = {NUMBERS(se3d_material_pair_def, friction),
                                     NUMBERS(se3d_material_pair_def, stiffness),
                                     NUMBERS(se3d_material_pair_def, cohesion),
                                     NUMBERS(se3d_material_pair_def, adhesion),
+                                    NUMBERS(se3d_material_pair_def, damping_ratio),
+                                    NUMBERS(se3d_material_pair_def, damping_rate),
+                                    NUMBERS(se3d_material_pair_def, tangential_ratio),
+                                    NUMBERS(se3d_material_pair_def, tangential_damping),
+                                    NUMBERS(se3d_material_pair_def, rolling_ratio),
+                                    NUMBERS(se3d_material_pair_def, rolling_damping),
+                                    NUMBERS(se3d_material_pair_def, young),
+                                    NUMBERS(se3d_material_pair_def, poisson),
                                     FIELDS_END};
 
 FILL_IN(se3d_contact_settings, settings)

@@ -36,33 +36,37 @@ double se3di_material_restitution(se3di_contact_law law, const se3di_material *m
                                           : se3di_restitution_hooke(ratio);
 }
 
-static void hooke(const se3di_material *a, const se3di_material *b, double stiffness, double e,
-                  se3di_pair *pair)
+static void hooke(const se3di_material *a, const se3di_material *b, const se3di_override *o,
+                  double e, se3di_pair *pair)
 {
     double zeta = se3di_restitution_hooke_damping(e);
-    double ratio = sqrt(a->tangential_ratio * b->tangential_ratio);
-    pair->kn = choose(stiffness, 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness));
+    double ratio = choose(o->tangential_ratio, sqrt(a->tangential_ratio * b->tangential_ratio));
+    pair->kn =
+        choose(o->stiffness, 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness));
     pair->kt = ratio * pair->kn;
     pair->dn = 2.0 * zeta * sqrt(pair->kn);
     pair->dt = ratio; /* over dn; with 2/7: the same damping ratio as the normal direction */
 }
 
-/* kt/kn between two of a material. */
-static double hertz_ratio(const se3di_material *a)
+/* kt/kn between two of a material, of this Poisson's ratio. */
+static double hertz_ratio(const se3di_material *a, double poisson)
 {
-    return own(a->tangential_ratio_hertz, 3.0 * (1.0 - a->poisson) / (2.0 - a->poisson));
+    return own(a->tangential_ratio_hertz, 3.0 * (1.0 - poisson) / (2.0 - poisson));
 }
 
-static void hertz(const se3di_material *a, const se3di_material *b, double e, se3di_pair *pair)
+static void hertz(const se3di_material *a, const se3di_material *b, const se3di_override *o,
+                  double e, se3di_pair *pair)
 {
-    double compliance =
-        (1.0 - a->poisson * a->poisson) / a->young + (1.0 - b->poisson * b->poisson) / b->young;
-    double shear = 2.0 * (2.0 - a->poisson) * (1.0 + a->poisson) / a->young +
-                   2.0 * (2.0 - b->poisson) * (1.0 + b->poisson) / b->young;
+    const double E[2] = {choose(o->young, a->young), choose(o->young, b->young)};
+    const double nu[2] = {choose(o->poisson, a->poisson), choose(o->poisson, b->poisson)};
+    double compliance = (1.0 - nu[0] * nu[0]) / E[0] + (1.0 - nu[1] * nu[1]) / E[1];
+    double shear =
+        2.0 * (2.0 - nu[0]) * (1.0 + nu[0]) / E[0] + 2.0 * (2.0 - nu[1]) * (1.0 + nu[1]) / E[1];
     pair->kn = 4.0 / (3.0 * compliance);
     pair->kt = is_given(a->tangential_ratio_hertz, b->tangential_ratio_hertz)
-                   ? sqrt(hertz_ratio(a) * hertz_ratio(b)) * pair->kn
+                   ? sqrt(hertz_ratio(a, nu[0]) * hertz_ratio(b, nu[1])) * pair->kn
                    : 8.0 / shear;
+    pair->kt = o->tangential_ratio < 0.0 ? pair->kt : o->tangential_ratio * pair->kn;
     pair->dn = se3di_restitution_hertz_damping(e) * sqrt(pair->kn);
     /* Over dn: the damping ratio of the tangent stiffnesses, 3/2 kn s and kt s. */
     pair->dt = sqrt(pair->kt / (1.5 * pair->kn));
@@ -79,9 +83,12 @@ static double mean_rate(double a, double b)
 }
 
 /* Damping along the tangent, from what it is over that along the normal. */
-static void drag(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
+static void drag(const se3di_material *a, const se3di_material *b, const se3di_override *o,
+                 se3di_pair *pair)
 {
-    if (is_given(a->tangential_damping, b->tangential_damping)) {
+    if (o->tangential_damping >= 0.0) {
+        pair->dt = o->tangential_damping;
+    } else if (is_given(a->tangential_damping, b->tangential_damping)) {
         pair->dt =
             sqrt(own(a->tangential_damping, pair->dt) * own(b->tangential_damping, pair->dt));
     }
@@ -89,14 +96,28 @@ static void drag(const se3di_material *a, const se3di_material *b, se3di_pair *p
     pair->dt *= pair->dn;
 }
 
-static void roll(const se3di_material *a, const se3di_material *b, se3di_pair *pair)
+static void roll(const se3di_material *a, const se3di_material *b, const se3di_override *o,
+                 se3di_pair *pair)
 {
     const double damping = ROLLING_DAMPING;
-    pair->kr = sqrt(own(a->rolling_ratio, 1.0) * own(b->rolling_ratio, 1.0)) * pair->kt;
-    pair->dr = is_given(a->rolling_damping, b->rolling_damping)
+    pair->kr =
+        choose(o->rolling_ratio, sqrt(own(a->rolling_ratio, 1.0) * own(b->rolling_ratio, 1.0)));
+    pair->kr *= pair->kt;
+    pair->dr = o->rolling_damping >= 0.0 ? o->rolling_damping
+               : is_given(a->rolling_damping, b->rolling_damping)
                    ? sqrt(own(a->rolling_damping, damping) * own(b->rolling_damping, damping))
                    : damping;
     pair->dr *= sqrt(pair->kr);
+}
+
+static double restitution(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
+                          const se3di_override *o)
+{
+    const se3di_material both = {.damping_ratio = o->damping_ratio > 0.0 ? o->damping_ratio : -1.0};
+    return o->damping_ratio >= 0.0
+               ? se3di_material_restitution(law, &both)
+               : choose(o->restitution, sqrt(se3di_material_restitution(law, a) *
+                                             se3di_material_restitution(law, b)));
 }
 
 void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
@@ -104,14 +125,13 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
 {
     const se3di_override none = SE3DI_OVERRIDE_NONE;
     const se3di_override *o = over ? over : &none;
-    double e = choose(o->restitution, sqrt(se3di_material_restitution(law, a) *
-                                           se3di_material_restitution(law, b)));
+    const double e = restitution(law, a, b, o);
     if (law == SE3DI_LAW_HOOKE) {
-        hooke(a, b, o->stiffness, e, pair);
+        hooke(a, b, o, e, pair);
     } else if (law == SE3DI_LAW_CALLBACK) {
         *pair = (se3di_pair){.kn = 0.0}; /* the user knows */
     } else {
-        hertz(a, b, e, pair);
+        hertz(a, b, o, e, pair);
     }
     pair->restitution = e;
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
@@ -123,9 +143,12 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
         choose(o->torsional_friction, sqrt(a->torsional_friction * b->torsional_friction));
     pair->cohesion = 2.0 * PI * choose(o->cohesion, sqrt(a->cohesion * b->cohesion));
     pair->pull_off = 1.5 * PI * choose(o->adhesion, sqrt(a->adhesion * b->adhesion));
-    pair->rn = o->restitution < 0.0 ? mean_rate(a->damping_rate, b->damping_rate) : -1.0;
-    drag(a, b, pair);
-    roll(a, b, pair);
+    pair->rn = o->damping_rate >= 0.0 ? o->damping_rate
+               : o->restitution < 0.0 && o->damping_ratio < 0.0
+                   ? mean_rate(a->damping_rate, b->damping_rate)
+                   : -1.0;
+    drag(a, b, o, pair);
+    roll(a, b, o, pair);
 }
 
 void se3di_pair_mix_all(se3di_model *model)

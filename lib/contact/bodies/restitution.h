@@ -5,7 +5,6 @@
 #define SE3DI_CONTACT_RESTITUTION_H
 
 /* Least restitution for which a damping is sought. */
-#define SE3DI_RESTITUTION_MIN 0.01
 
 /* Hooke: restitution of m* x'' = -max(0, k x + 2 zeta sqrt(k m*) x'), zeta >= 0, and its inverse
  * (e in [SE3DI_RESTITUTION_MIN, 1]). */

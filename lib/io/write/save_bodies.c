@@ -442,7 +442,15 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
                   {"torsional_friction", def.torsional_friction},
                   {"stiffness", def.stiffness},
                   {"cohesion", def.cohesion},
-                  {"adhesion", def.adhesion}};
+                  {"adhesion", def.adhesion},
+                  {"damping_ratio", def.damping_ratio},
+                  {"damping_rate", def.damping_rate},
+                  {"tangential_ratio", def.tangential_ratio},
+                  {"tangential_damping", def.tangential_damping},
+                  {"rolling_ratio", def.rolling_ratio},
+                  {"rolling_damping", def.rolling_damping},
+                  {"young", def.young},
+                  {"poisson", def.poisson}};
     bool any = false;
     for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
         any = any || values[k].value >= 0.0;
