@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-#define LOOK_AT    0.25 /* s of the clock: what the first steps take, if one is not longer */
+#define LOOK_AT    0.25 /* s of the clock: what the first steps take, if two runs do not */
 #define FIRST_RUN  4.0  /* steps of the first run; */
 #define LATER_RUNS 2.0  /* each run after it is so many times as long */
 
@@ -181,7 +181,7 @@ static void time_steps(se3d_system *system, se3d_solver *solver, double length, 
     int goes_on =
         run_lap(system, solver, fmin(t + run, end), &first, out->message, sizeof out->message);
     t += run;
-    while (goes_on && t < end && first.seconds + later.seconds < LOOK_AT) {
+    while (goes_on && t < end && (later.steps == 0 || first.seconds + later.seconds < LOOK_AT)) {
         run *= LATER_RUNS;
         goes_on =
             run_lap(system, solver, fmin(t + run, end), &later, out->message, sizeof out->message);
