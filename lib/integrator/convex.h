@@ -33,13 +33,13 @@ enum {
 /* A point of contact in the step under way. What the passes over all contacts of an island need
  * comes first, and what they need together stands together. */
 typedef struct se3di_convex_contact {
-    int32_t free[2];  /* its bodies, -1: fixed; while a step is solved their places */
-    int32_t coupling; /* of the two, -1: one is fixed */
-    int32_t way;      /* SE3DI_CONVEX_ */
-    int32_t upper;    /* 1: a stop at the upper end of a range */
-    int32_t partner;  /* of rolling: the contact of shapes; of that: its rolling, -1: none */
-    int32_t is_short; /* it is over in too few steps to be followed */
-    int32_t reserved;
+    int32_t free[2];    /* its bodies, -1: fixed; while a step is solved their places */
+    int32_t coupling;   /* of the two, -1: one is fixed */
+    int32_t way;        /* SE3DI_CONVEX_ */
+    int32_t upper;      /* 1: a stop at the upper end of a range */
+    int32_t partner;    /* of rolling: the contact of shapes; of that: its rolling, -1: none */
+    int32_t is_short;   /* it is over in too few steps to be followed */
+    int32_t is_held;    /* it goes on, among what constraints hold */
     double lever[2][9]; /* of the body, in its frame, from its turning to the point's velocity */
     double reach;       /* 1; of turning 0: the body's own velocity does not count */
     double v[3], change[3];           /* velocity of the point: now, of the search */

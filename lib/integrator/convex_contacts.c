@@ -20,6 +20,7 @@
 #define PI          3.1415926535897932384626433832795
 #define FEW_STEPS   12.0 /* the time of a contact that is an impact of one step */
 #define SETTLING    4.0  /* steps in which a resting contact comes to rest */
+#define SETTLED     1.3  /* of a radian: more damping than of a step of this phase is not needed */
 #define LOSS        3e-3 /* of a swing's phase: how much later the spring is of what is followed */
 #define RIGID       1e3  /* an impact of one step, over what moves its bodies as one */
 #define FAST_TIMES  2.0  /* an impact approaches so much faster than loads make it in a step */
@@ -213,6 +214,16 @@ static double restitution_of(const se3di_convex_contact *c, const se3di_pair *pa
                             : se3di_restitution_hooke(0.5 * zeta);
 }
 
+/* The damper by which a spring that is over soon comes to rest. One at the end of a step is damped
+ * as if by h k, the more of what is critical the stiffer it is: of what is held no more is added
+ * than it needs, since what holds it may move it. */
+static double settling_of(const se3di_convex_contact *c, double k, double h)
+{
+    const double phase = h * sqrt(k * c->response[0]);
+    const int needs_less = c->is_held && SETTLED < (1.0 + SETTLING) * phase;
+    return (needs_less ? fmax(0.0, SETTLED / phase - 1.0) : SETTLING) * h * k;
+}
+
 /* How it acts, and its dampers, for an approach `u` at the start of the step and what loads alone
  * add to it in the step. */
 static void choose_way(se3di_convex_contact *c, const se3di_model *model, double h, double u,
@@ -230,10 +241,11 @@ static void choose_way(se3di_convex_contact *c, const se3di_model *model, double
     c->is_short = 1;
     c->lead = h;
     se3di_convex_set_attraction(c, model, h, u);
-    c->damping = fmax(law.along, SETTLING * h * stiffness_of(c, inverse_mass, u));
-    c->drag = h * (h * c->tangential + fmax(law.across, SETTLING * h * c->tangential));
+    c->damping = fmax(law.along, settling_of(c, stiffness_of(c, inverse_mass, u), h));
+    c->drag = h * (h * c->tangential + fmax(law.across, settling_of(c, c->tangential, h)));
     const int parts = record->kind == SE3DI_CONTACT_PARTING && -u > FAST_TIMES * added;
-    const int meets = u > FAST_TIMES * (added + c->attraction * inverse_mass);
+    const int meets = u > FAST_TIMES * (added + c->attraction * inverse_mass) &&
+                      !(c->is_held && h * u < c->overlap);
     const double leaves =
         meets ? se3di_convex_leave(model, record, restitution_of(c, pair), u) : 0.0;
     const int sticks = c->attraction > 0.0 && !(leaves > 0.0);

@@ -250,8 +250,14 @@ static void choose_contacts(se3di_convex *c, se3di_equations *equations,
         if (!contact->record || !contact->is_short) {
             continue;
         }
-        if (contact->record->kind == SE3DI_CONTACT_STEPPED &&
-            (is_at_rest(contact) || is_light(c, contact, mass))) {
+        const int goes_on = contact->record->kind == SE3DI_CONTACT_STEPPED;
+        contact->is_held = goes_on || contact->record->kind == SE3DI_CONTACT_PARTING;
+        if (goes_on && is_at_rest(contact)) {
+            continue;
+        }
+        if (goes_on && is_light(c, contact, mass)) {
+            se3di_convex_choose_contact(c, contact, c->gradient, c->carried);
+            se3di_convex_choose_rolling(c, contact);
             continue;
         }
         is_known = is_known || move_alone(c, equations, island);
