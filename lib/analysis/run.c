@@ -395,6 +395,14 @@ static int must_switch(const se3di_run *run)
     return has_history(run) && se3di_integration_must_leave(&run->integration);
 }
 
+/* What is still asked in the rest of this run, after `crowd` has been seen and does not suit. */
+static int32_t ask_later(int32_t crowd)
+{
+    return crowd == SE3DI_CROWD_ROUGH  ? SE3DI_CROWD_SLOW /* after the first tiny steps */
+           : crowd == SE3DI_CROWD_NEAR ? SE3DI_CROWD_DENSE
+                                       : SE3DI_CROWD_NONE;
+}
+
 /* From the present state by a method for stiff motions, or back from it, or for many bodies at each
  * other; by the same one if rounding alone brought them together. */
 static se3d_status switch_method(se3di_run *run)
@@ -402,11 +410,11 @@ static se3d_status switch_method(se3di_run *run)
     if (se3di_run_is_crowded(run)) {
         return se3di_run_prepare(run);
     }
-    const int is_early = run->integration.settings.leaves_crowd == SE3DI_CROWD_ROUGH;
-    run->integration.settings.leaves_crowd = SE3DI_CROWD_NONE; /* for the rest of this run */
+    const int32_t later = ask_later(run->integration.settings.leaves_crowd);
+    run->integration.settings.leaves_crowd = SE3DI_CROWD_NONE;
     if (!must_switch(run)) {
-        if (is_early) { /* what comes after the first tiny steps is still asked */
-            run->integration.settings.leaves_crowd = SE3DI_CROWD_SLOW;
+        if (later != SE3DI_CROWD_NONE) {
+            run->integration.settings.leaves_crowd = later;
             run->integration.method->stay(run->model);
         }
         return SE3D_OK;

@@ -70,7 +70,7 @@ void se3di_run_tell_crowd(se3di_run *run)
         char many[64];
         snprintf(many, sizeof many, "%d free bodies or more are at each other", SE3DI_CROWD);
         run->told_crowd = method;
-        why = is_crowd ? many : why;
+        why = is_crowd && se3di_bodies_crowd(run->model) ? many : why;
         se3di_log_write(run->error, SE3D_LOG_INFO, SE3D_LOG_METHOD,
                         "t = %g s: %s: %s takes them, of order 1; with a tolerance, each contact "
                         "is followed",

@@ -161,11 +161,12 @@ static int32_t may_crowd(const se3di_run *run)
         !(se3di_crowd_has(model, SE3DI_CROWD_HELD) || se3di_crowd_has_mesh(model))) {
         return SE3DI_CROWD_NONE;
     }
-    if (se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model)) {
-        return SE3DI_CROWD_NEAR;
-    }
     const double step = run->integration.settings.step;
-    if (step > 0.0 && step < STEP_SLOW) {
+    const int is_short = step > 0.0 && step < STEP_SLOW;
+    if (se3di_crowd_has(model, SE3DI_CROWD) && se3di_crowd_suits(model)) {
+        return is_short ? SE3DI_CROWD_DENSE : SE3DI_CROWD_NEAR;
+    }
+    if (is_short) {
         return SE3DI_CROWD_NONE;
     }
     return se3di_crowd_has_mesh(model) ? SE3DI_CROWD_ROUGH : SE3DI_CROWD_SLOW;
@@ -186,7 +187,9 @@ int se3di_run_is_crowded(const se3di_run *run)
     if (crowd == SE3DI_CROWD_NONE || (past && past->takes_crowd)) {
         return crowd != SE3DI_CROWD_NONE;
     }
-    return crowd == SE3DI_CROWD_NEAR ? se3di_bodies_crowd(model) : is_slow(run, past);
+    const int may_be_dense = crowd == SE3DI_CROWD_NEAR || crowd == SE3DI_CROWD_DENSE;
+    return (may_be_dense && se3di_bodies_crowd(model)) ||
+           (crowd != SE3DI_CROWD_DENSE && is_slow(run, past));
 }
 
 /* A function of time or the user's code is among the rows. */

@@ -15,9 +15,10 @@ typedef struct se3di_crowd_watch {
 
 /* What steps are short. */
 typedef struct se3di_crowd_pace {
-    double steps;      /* in a row, */
+    double steps;      /* in a row, of SE3DI_CROWD bodies, */
     double brief;      /* on the average, of any model, */
-    double brief_each; /* or for each free body that touches something [s] */
+    double brief_each; /* or for each of its many bodies [s], */
+    double brief_most; /* but no longer than this [s] */
 } se3di_crowd_pace;
 
 /* After an accepted step, step[0] to step[1]. Returns 1 if the method is to be left for `crowd`, a

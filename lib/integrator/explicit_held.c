@@ -8,7 +8,9 @@
 #include <math.h>
 
 #define PATIENCE 256.0 /* steps, shorter on the average than */
-#define BRIEF    5e-5  /* s: convex makes one of 20 or more */
+#define BRIEF    5e-5  /* s: convex makes one of 20 or more; */
+#define EACH     5e-6  /* s, what a step takes for each body: it is slower than what happens, */
+#define MOST     2e-4  /* s: and convex makes one of 5 or more */
 
 int se3di_explicit_is_held(const se3di_integration *integration)
 {
@@ -21,7 +23,8 @@ void se3di_explicit_watch_crowd(se3di_explicit *m)
     const int32_t crowd = m->step.integration->settings.leaves_crowd;
     if (crowd != SE3DI_CROWD_NONE) {
         const double step[2] = {m->past->at.begin, m->past->at.time};
-        static const se3di_crowd_pace pace = {.steps = PATIENCE, .brief = BRIEF};
+        static const se3di_crowd_pace pace = {
+            .steps = PATIENCE, .brief = BRIEF, .brief_each = EACH, .brief_most = MOST};
         const int meets =
             se3di_crowd_watch_step(&m->past->watch, m->assembly->model, crowd, step, &pace);
         m->past->held = meets ? -1.0 : fmax(m->past->held, 0.0);

@@ -500,7 +500,8 @@ static void watch_crowd(controlled_step *s)
 {
     radau_header *header = s->past.header;
     const double step[2] = {header->at.begin, header->at.time};
-    static const se3di_crowd_pace pace = {.steps = PATIENCE, .brief_each = BRIEF};
+    static const se3di_crowd_pace pace = {
+        .steps = PATIENCE, .brief_each = BRIEF, .brief_most = HUGE_VAL};
     header->leaves =
         se3di_crowd_watch_step(&header->watch, s->m.assembly->model,
                                s->step.integration->settings.leaves_crowd, step, &pace);

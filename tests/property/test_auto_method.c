@@ -149,6 +149,42 @@ static void steps_of_meshes_at_each_other_are_counted_by_their_work(void)
     text_model_close(&m);
 }
 
+/* Boxes that fall one after the other, of which few touch the floor at a time. Those of thirty are
+ * left as soon as their steps are short, those of two never, nor where a step below 1 ms is asked
+ * for or impacts give all back. */
+static void few_that_touch_of_many_free_bodies_go_on_by_convex(void)
+{
+    static const struct {
+        const char *restitution, *method;
+        int count;
+        double step;
+    } rows[] = {{"0.1", "convex", 30, 0.0},
+                {"0.1", "dop853", 2, 0.0},
+                {"0.1", "dop853", 30, 5e-4},
+                {"1", "dop853", 30, 0.0}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+        char text[8000];
+        int length = snprintf(text, sizeof text,
+                              "se3d: 1\nmaterials: [{name: m, density: 1000, friction: 0.5, "
+                              "restitution: %s, stiffness: 3e5}]\ncontact: {law: hooke}\nbodies:\n"
+                              "  - {name: floor, fixed: true, shapes: [{type: plane, material: "
+                              "m}]}\n",
+                              rows[k].restitution);
+        for (int body = 0; body < rows[k].count; ++body) {
+            length += snprintf(text + length, sizeof text - (size_t)length,
+                               "  - {name: b%d, position: [%d, 0, %g], orientation: {axis: [1, 1, "
+                               "0], angle: 0.3}, " BOX,
+                               body, body, 0.1 + 0.1 * body);
+        }
+        snprintf(text + length, sizeof text - (size_t)length,
+                 "analysis: {type: dynamics, duration: 1}\n");
+        text_model m = text_model_open(text, SE3D_METHOD_AUTO, -1, rows[k].step);
+        CHECK(text_model_run(&m, 0.13));
+        CHECK(moves_by(m.solver, rows[k].method));
+        text_model_close(&m);
+    }
+}
+
 static void it_depends_on_what_acts_and_on_the_loops(void)
 {
     static const struct {
@@ -544,6 +580,7 @@ int main(void)
     RUN(a_single_box_that_is_pressed_on_a_mesh_goes_on_by_convex);
     RUN(tiny_steps_on_a_mesh_are_left_at_once);
     RUN(steps_of_meshes_at_each_other_are_counted_by_their_work);
+    RUN(few_that_touch_of_many_free_bodies_go_on_by_convex);
     RUN(it_is_decided_again_when_the_structure_changes);
     RUN(steps_between_runs_are_made_by_dop853);
     RUN(it_is_decided_again_when_gravity_varies);

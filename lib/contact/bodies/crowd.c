@@ -47,6 +47,15 @@ int se3di_bodies_crowd(const se3di_model *model)
     return c.count >= SE3DI_CROWD;
 }
 
+size_t se3di_bodies_free(const se3di_model *model)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < model->body_slots.count; ++k) {
+        count += !model->bodies[k].fixed;
+    }
+    return count;
+}
+
 static int are_balls(const se3di_model *model, const se3di_body_contact *contact)
 {
     return model->shapes[contact->shape_i].kind == SE3DI_SHAPE_SPHERE &&

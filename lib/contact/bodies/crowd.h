@@ -11,14 +11,16 @@
 /* What a method is left for. */
 enum {
     SE3DI_CROWD_NONE = 0,
-    SE3DI_CROWD_NEAR = 1, /* as soon as SE3DI_CROWD free bodies are at each other */
-    SE3DI_CROWD_SLOW = 2, /* when contacts, of SE3DI_CROWD_HELD or more, make it slow */
-    SE3DI_CROWD_ROUGH = 3 /* the same on a mesh: as soon as contacts that come and go do */
+    SE3DI_CROWD_NEAR = 1,  /* as soon as SE3DI_CROWD free bodies are at each other, or as SLOW */
+    SE3DI_CROWD_SLOW = 2,  /* when contacts, of SE3DI_CROWD_HELD or more, make it slow */
+    SE3DI_CROWD_ROUGH = 3, /* the same on a mesh: as soon as contacts that come and go do */
+    SE3DI_CROWD_DENSE = 4  /* as NEAR, but not as SLOW */
 };
 
 /* So many free bodies touch something, or are a small part of their size from doing so while bounds
  * overlap: those of balls do only if they touch. */
 int se3di_bodies_crowd(const se3di_model *model);
+size_t se3di_bodies_free(const se3di_model *model);
 /* The free bodies that touch something at the accepted state, but for balls that touch balls, up to
  * 64. */
 size_t se3di_bodies_touching(const se3di_model *model);

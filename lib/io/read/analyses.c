@@ -46,9 +46,9 @@ static const se3di_key analysis_keys[] = {
          "tree of joints or on loops of plane pins and balls, else dop853; both are left for radau "
          "if stability limits their steps, radau for them where steps of its length would be "
          "stable and nothing touches, dop853 and radau for convex if three free bodies or more, "
-         "or some on a mesh, may touch and contacts alone limit the steps to below 5e-5, or by "
-         "radau to so short ones that it is several times slower than what happens "
-         "(docs/theory/convex.md)"},
+         "or some on a mesh, may touch and contacts alone limit the steps to below 5e-5 "
+         "(2e-4 of many bodies), or by radau to so short ones that it is several times slower than "
+         "what happens (docs/theory/convex.md)"},
     {"order", SE3DI_KIND_COUNT, .most = 20.0, .standard = "chosen",
      .text = "of bdf (1 to 5), rattle (2, 4) and gauss (8, 16)"},
     {"step", SE3DI_KIND_NUMBER, SE3DI_POSITIVE,
