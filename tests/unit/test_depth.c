@@ -482,6 +482,52 @@ static void logs_are_as_deep_as_all_directions_say(void)
     CHECK(wrong == 0);
 }
 
+/* A cap pushed onto a solid, by little and by more than either is thick: what is said to be the
+ * least of all directions is, and most of what lies on a cap is known so. */
+static void what_lies_on_a_cap_is_as_deep_as_all_directions_say(void)
+{
+    static const int others[] = {SE3DI_SHAPE_HULL, SE3DI_SHAPE_CYLINDER};
+    const int poses = poses_count(2000);
+    uint64_t seed = 15;
+    int known[2] = {0, 0}, counted = 0, wrong = 0;
+    for (int k = 0; k < poses; ++k) {
+        poses_solid one, two;
+        se3di_shape_pose at, of;
+        double wanted[3], n[3], a[3], b[3], turn[3];
+        poses_random_solid(SE3DI_SHAPE_CYLINDER, &seed, &one);
+        poses_random_solid(others[k % 2], &seed, &two);
+        poses_turn(&seed, &at);
+        if (k % 4 < 2) {
+            poses_turn(&seed, &of);
+        } else {
+            poses_turn_slightly(&seed, &at, -6.0, -1.0, &of);
+        }
+        const se3di_solid i = {&one.shape, &at}, j = {&two.shape, &of};
+        double axis[3], side[3], back[3], q[3];
+        se3di_solid_axis(&i, 2, axis);
+        se3di_perpendicular(axis, side);
+        se3di_scale(-1.0, axis, back);
+        se3di_core_support(&j, back, q);
+        const double deep = one.shape.half_length * pow(10.0, poses_between(&seed, -6.0, 0.5));
+        se3di_add_scaled(one.shape.half_length - deep - se3di_dot(q, axis), axis, of.x);
+        se3di_add_scaled(one.shape.radius * check_random(&seed), side, of.x);
+        const double least = separation_of(&one.shape, &at, &two.shape, &of, wanted);
+        const double overlap = se3di_caps_overlap(&i, &j, n, a, b);
+        counted += least > 0.0;
+        if (overlap > 0.0) {
+            ++known[k % 2];
+            se3di_sub(n, wanted, turn);
+            wrong += !(fabs(overlap - least) < 1e-12 && se3di_norm(turn) < 1e-6);
+        }
+    }
+    if (poses_are_many()) {
+        printf("%d overlap, %d hulls and %d cylinders are known on a cap, %d wrong\n", counted,
+               known[0], known[1], wrong);
+    }
+    CHECK(counted > poses / 4 && 8 * known[0] > counted && 8 * known[1] > counted);
+    CHECK(wrong == 0);
+}
+
 int main(void)
 {
     RUN(convex_meshes_are_as_deep_as_what_they_enclose);
@@ -491,6 +537,7 @@ int main(void)
     RUN(solids_nearly_parallel_to_a_ridge_are_as_deep_as_others);
     RUN(a_cylinder_along_a_block_is_not_held_by_a_sliver);
     RUN(logs_are_as_deep_as_all_directions_say);
+    RUN(what_lies_on_a_cap_is_as_deep_as_all_directions_say);
     RUN(a_sliver_below_a_dome_leaves_over_an_edge_that_it_does_not_overlap);
     return check_finish();
 }

@@ -268,6 +268,7 @@ typedef struct polytope {
     int vertex_count, face_count;
     vertex v[VERTICES];
     polytope_face face[FACES];
+    int level_count, level[FACES][3]; /* faces among which the nearest points are to be found */
 } polytope;
 
 static void add_face(polytope *P, int a, int b, int c)
@@ -335,6 +336,7 @@ static void begin(polytope *P, const simplex *s)
     double e[3], f[3], g[3], n[3];
     P->vertex_count = 4;
     P->face_count = 0;
+    P->level_count = 0;
     memcpy(P->v, s->v, sizeof s->v);
     se3di_sub(s->v[1].p, s->v[0].p, e);
     se3di_sub(s->v[2].p, s->v[0].p, f);
@@ -390,21 +392,37 @@ static int grow(polytope *P, int vertex_index)
     return seen > 0 && !full;
 }
 
+/* The point of a face nearest to the origin, if it is nearer than `least`. */
+static void try_witness(const polytope *P, const int v[3], double *least, least_reach *best)
+{
+    double point[3] = {0.0, 0.0, 0.0};
+    simplex s = {.count = 3, .v = {P->v[v[0]], P->v[v[1]], P->v[v[2]]}};
+    reduce(&s, 0, point);
+    if (se3di_norm(point) < *least) {
+        *least = se3di_norm(point);
+        witness(s.v, s.weight, s.count, best->a, best->b);
+    }
+}
+
 /* Of the faces in the plane of the nearest one, that with the point nearest to the origin. */
-static void find_witness(const polytope *P, const polytope_face *nearest, double a[3], double b[3])
+static void find_witness(polytope *P, least_reach *best)
 {
     double least = HUGE_VAL;
-    for (int k = -1; k < P->face_count; ++k) {
-        const polytope_face *f = k < 0 ? nearest : &P->face[k];
-        double point[3] = {0.0, 0.0, 0.0};
-        if (f->distance > nearest->distance + 1e-9 * P->D->size) {
-            continue;
-        }
-        simplex s = {.count = 3, .v = {P->v[f->v[0]], P->v[f->v[1]], P->v[f->v[2]]}};
-        reduce(&s, 0, point);
-        if (se3di_norm(point) < least) {
-            least = se3di_norm(point);
-            witness(s.v, s.weight, s.count, a, b);
+    for (int k = 0; k < P->level_count; ++k) {
+        try_witness(P, P->level[k], &least, best);
+    }
+    P->level_count = 0;
+}
+
+/* Keep those faces, the nearest one first: another may be the one whose points are asked for. */
+static void keep_level(polytope *P, const polytope_face *nearest)
+{
+    memcpy(P->level[0], nearest->v, sizeof nearest->v);
+    P->level_count = 1;
+    for (int k = 0; k < P->face_count; ++k) {
+        const polytope_face *f = &P->face[k];
+        if (f != nearest && !(f->distance > nearest->distance + 1e-9 * P->D->size)) {
+            memcpy(P->level[P->level_count++], f->v, sizeof f->v);
         }
     }
 }
@@ -450,8 +468,9 @@ static void expand(polytope *P, least_reach *best)
             best->is_settled = 0;
             best->is_sliver = f->is_sliver;
             se3di_copy(f->n, best->n);
-            find_witness(P, f, best->a, best->b);
+            keep_level(P, f);
             if (P->D->is_round && reach - f->distance < ROUND * P->D->size) {
+                find_witness(P, best);
                 best->is_settled =
                     se3di_convex_polish(P->D->i, P->D->j, best->n, best->a, best->b, &best->reach);
             }
@@ -463,6 +482,7 @@ static void expand(polytope *P, least_reach *best)
             break; /* what rounding has turned is set right at the end */
         }
     }
+    find_witness(P, best);
     best->reach = best->reach < HUGE_VAL ? fmax(best->reach, 0.0) : 0.0;
 }
 
@@ -492,8 +512,8 @@ static double flat_normal(const difference *D, const simplex *s, double normal[3
     return 0.0;
 }
 
-/* The overlap of a box or line and a cylinder or line, <= 0 if they are apart, and of two
- * cylinders, 0 if it is not known; minus infinity: they are other shapes, or two lines. */
+/* The overlap of a box or line and a cylinder or line, <= 0 if they are apart, and of a cylinder
+ * and any other, 0 if it is not known; minus infinity: they are other shapes, or two lines. */
 static double known_overlap(const se3di_solid *i, const se3di_solid *j, double normal[3],
                             double on_i[3], double on_j[3])
 {
@@ -511,7 +531,8 @@ static double known_overlap(const se3di_solid *i, const se3di_solid *j, double n
             return overlap;
         }
     }
-    return -HUGE_VAL;
+    const int has_rims = se3di_solid_has_rims(i) || se3di_solid_has_rims(j);
+    return has_rims ? se3di_caps_overlap(i, j, normal, on_i, on_j) : -HUGE_VAL;
 }
 
 static double size_of(const se3di_solid *solid)

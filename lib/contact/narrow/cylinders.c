@@ -1,8 +1,18 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* The least overlap of two cylinders side by side, without a polytope.
+/* The least overlap of a cylinder and another solid on its cap, and of two side by side, without a
+ * polytope.
  *
- * Let P and Q be places of the axes c, d, at least m from their ends, e the way from P to Q, R, S
- * the radii. With x the larger of |n . c|, |n . d| the two overlap along a unit n by
+ * Caps: let one overlap the point q of the other that is farthest along -n by d > 0, n its normal,
+ * q be r from its axis, R the radius, p = R - r > 0, t = d/p <= 1. The two overlap along a unit at
+ * the angle a from n by d cos a + p sin a or more, which is less than d only within 2 atan(t) of
+ * -n. With e the overlap along -n, of the other cap, and s how far the point of the other farthest
+ * along n is from the axis, it is e cos b + min(R - s, 0) sin b or more at b from -n. So no
+ * direction has less than d if
+ *
+ *     e (1 - t^2) + 2 t min(R - s, 0) >= d (1 + t^2).
+ *
+ * Sides: let P and Q be places of the axes c, d, at least m from their ends, e the way from P to Q,
+ * R, S the radii. With x the larger of |n . c|, |n . d| the two overlap along a unit n by
  *
  *     h(n) >= m x + (R + S) sqrt(1 - x^2) - n . e.
  *
@@ -106,6 +116,70 @@ static double overlap_along(axes *a, const double D[3], double n[3], double on_i
     return se3di_norm(off) < NEAR && is_least(a, overlap, size) ? overlap : 0.0;
 }
 
+typedef struct cap {
+    double n[3], q[3]; /* its normal, outward; the point of the other */
+    double overlap;
+} cap;
+
+/* How far a point is from the axis. */
+static double find_arm(const se3di_solid *solid, const double axis[3], const double x[3])
+{
+    double d[3], along[3];
+    se3di_sub(x, solid->at->x, d);
+    se3di_scale(se3di_dot(d, axis), axis, along);
+    se3di_sub(d, along, d);
+    return se3di_norm(d);
+}
+
+/* How far the two overlap along a normal of the first, and the point of the other that does. */
+static double reach_of(const se3di_solid *solid, const se3di_solid *other, const double n[3],
+                       double q[3])
+{
+    double back[3], p[3], d[3];
+    se3di_scale(-1.0, n, back);
+    se3di_core_support(solid, n, p);
+    se3di_core_support(other, back, q);
+    se3di_sub(p, q, d);
+    return se3di_dot(d, n);
+}
+
+/* The cap of a cylinder on the side of another solid. Returns whether the two overlap along its
+ * normal, and along no other direction by less, for certain. */
+static int look_at_cap(const se3di_solid *solid, const se3di_solid *other, cap *c)
+{
+    double axis[3], D[3], back[3], far[3];
+    se3di_solid_axis(solid, 2, axis);
+    se3di_sub(other->at->x, solid->at->x, D);
+    se3di_scale((se3di_dot(D, axis) < 0.0 ? -1.0 : 1.0) / se3di_norm(axis), axis, c->n);
+    c->overlap = reach_of(solid, other, c->n, c->q);
+    const double inside = solid->shape->radius - find_arm(solid, c->n, c->q);
+    if (!(c->overlap > 0.0 && inside > c->overlap)) {
+        return 0;
+    }
+    se3di_scale(-1.0, c->n, back);
+    const double behind = reach_of(solid, other, back, far);
+    const double beside = fmin(solid->shape->radius - find_arm(solid, c->n, far), 0.0);
+    const double t = c->overlap / inside;
+    return behind * (1.0 - t * t) + 2.0 * t * beside >= c->overlap * (1.0 + t * t);
+}
+
+double se3di_caps_overlap(const se3di_solid *i, const se3di_solid *j, double n[3], double on_i[3],
+                          double on_j[3])
+{
+    for (int k = 0; k < 2; ++k) {
+        const se3di_solid *one = k ? j : i, *other = k ? i : j;
+        cap c;
+        if (se3di_solid_has_rims(one) && look_at_cap(one, other, &c)) {
+            se3di_scale(k ? -1.0 : 1.0, c.n, n);
+            se3di_copy(c.q, k ? on_i : on_j);
+            se3di_copy(c.q, k ? on_j : on_i);
+            se3di_add_scaled(c.overlap, c.n, k ? on_j : on_i);
+            return c.overlap;
+        }
+    }
+    return 0.0;
+}
+
 double se3di_cylinders_overlap(const se3di_solid *i, const se3di_solid *j, double n[3],
                                double on_i[3], double on_j[3])
 {
@@ -116,6 +190,8 @@ double se3di_cylinders_overlap(const se3di_solid *i, const se3di_solid *j, doubl
     se3di_sub(j->at->x, i->at->x, D);
     se3di_cross(a.c, a.d, product);
     const double sine = se3di_norm(product);
-    return sine > ASKEW ? overlap_crossing(&a, D, product, sine, n, on_i, on_j)
-                        : overlap_along(&a, D, n, on_i, on_j);
+    const double crossing =
+        sine > ASKEW ? overlap_crossing(&a, D, product, sine, n, on_i, on_j) : 0.0;
+    const double known = crossing > 0.0 ? crossing : se3di_caps_overlap(i, j, n, on_i, on_j);
+    return known > 0.0 || sine > ASKEW ? known : overlap_along(&a, D, n, on_i, on_j);
 }

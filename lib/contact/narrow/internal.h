@@ -67,7 +67,11 @@ int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const do
 double se3di_cylinder_overlap(const se3di_solid *block, const se3di_solid *cylinder, double n[3],
                               double on_block[3], double on_cylinder[3]);
 
-/* How far two cylinders that lie side by side or cross overlap, as above; 0: it is not known so. */
+/* How far a cylinder and any other solid, of which one touches a cap of the other, overlap, as
+ * above; 0: it is not known so. */
+double se3di_caps_overlap(const se3di_solid *i, const se3di_solid *j, double n[3], double on_i[3],
+                          double on_j[3]);
+/* The same of two cylinders, which may also lie side by side or cross. */
 double se3di_cylinders_overlap(const se3di_solid *i, const se3di_solid *j, double n[3],
                                double on_i[3], double on_j[3]);
 
