@@ -171,7 +171,7 @@ static se3d_status aim(se3di_convex *c, se3di_equations *equations, int drifts, 
 static se3d_status aim_rows(se3di_convex *c, se3di_equations *equations, int drifts, double t)
 {
     se3di_assembly *assembly = &equations->assembly;
-    if (assembly->row_count == 0) {
+    if (!c->is_bound) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_assembly_eval_functions(assembly, t, equations->error));
@@ -353,6 +353,17 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
     }
 }
 
+/* Accelerations and multipliers on the constraints. */
+static se3d_status accelerate_bound(const se3di_convex *c, se3di_equations *equations, double t1)
+{
+    se3di_model *model = equations->assembly.model;
+    const se3d_status status = se3di_acceleration_solve(equations, t1);
+    equations->assembly.push = NULL;
+    se3di_convex_stay(c, equations);
+    se3di_frictions_take_loads(model, model->lambda);
+    return status;
+}
+
 /* Without constraints each body has its own equations; what sleeps has none. */
 static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations, double t1)
 {
@@ -364,13 +375,10 @@ static se3d_status accelerate(const se3di_convex *c, se3di_equations *equations,
             push_by_rows(c, assembly, c->shape_count);
         }
         assembly->push = c->push;
-        const se3d_status status = se3di_acceleration_solve(equations, t1);
-        assembly->push = NULL;
-        se3di_convex_stay(c, equations);
-        se3di_frictions_take_loads(assembly->model, assembly->model->lambda);
-        return status;
-    }
-    if (c->roll_end < c->contact_count) {
+        if (c->is_bound) {
+            return accelerate_bound(c, equations, t1);
+        }
+    } else if (c->roll_end < c->contact_count) {
         memset(c->push, 0, 6 * (size_t)assembly->dense_count * sizeof *c->push);
         push_by_rows(c, assembly, c->roll_end);
         assembly->push = c->push;
@@ -424,7 +432,8 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     model->contacts.frozen = NULL;
     SE3DI_TRY(accelerated);
     SE3DI_TRY(se3di_user_report(model, equations->error));
-    model->work[0] += taken + se3di_convex_stopped(c, model) + se3di_convex_rubbed(c, model);
+    model->work[0] +=
+        taken + se3di_convex_stopped(c, model) + se3di_convex_rubbed(c, &equations->assembly);
     model->work[1] += se3di_convex_fed(c);
     const double driven = model->work_valid > 0 ? model->work[2] + c->driven : 0.0;
     SE3DI_TRY(se3di_work_accept(model, c->h));
@@ -467,7 +476,7 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(se3di_convex_find_drifting(c, assembly, equations->error));
     begin(c, assembly);
     recall_chords(c, assembly);
-    c->gripped = se3di_convex_grip_energy(assembly->model);
+    c->gripped = se3di_convex_grip_energy(c, assembly);
     SE3DI_TRY(aim_all(c, equations, t1));
     SE3DI_TRY(se3di_convex_collect(c, assembly, equations->error));
     SE3DI_TRY(se3di_convex_collect_rolling(c, assembly, equations->error));
@@ -477,9 +486,9 @@ static se3d_status try_step(se3di_convex *c, se3di_equations *equations, double 
     SE3DI_TRY(se3di_convex_collect_friction(c, assembly, equations->error));
     se3di_convex_hold(c, assembly->model);
     SE3DI_TRY(se3di_convex_solve(c, equations));
-    c->driven = assembly->row_count > 0 ? drive(c, assembly) : 0.0;
+    c->driven = c->is_bound ? drive(c, assembly) : 0.0;
     move(c, assembly);
-    SE3DI_TRY(project(equations, t1));
+    SE3DI_TRY(c->is_bound ? project(equations, t1) : SE3D_OK);
     se3di_convex_stay(c, equations);
     if (c->may_part && se3di_convex_gains(c, assembly)) {
         return se3di_error_set(equations->error, SE3D_ERR_NO_CONVERGENCE,

@@ -161,6 +161,7 @@ typedef struct se3di_convex {
     double *reach;   /* [free bodies]: of its shapes */
     size_t sleep_capacity, nest_capacity, reach_capacity;
     size_t asleep_count;
+    int is_bound; /* a constraint may act on what is awake */
     /* Contacts that are followed, see convex_follow.c: */
     double *marks; /* [6 * contacts of the list] */
     se3di_body_contact *followed;
@@ -358,8 +359,8 @@ int se3di_convex_jams(const se3di_convex *c, const se3di_convex_island *island);
 int se3di_convex_has_loads(const se3di_convex *c);
 void se3di_convex_accept_friction(const se3di_convex *c, const se3di_assembly *assembly);
 /* the energy that they hold; what they took from the bodies in the step and do not hold [J]. */
-double se3di_convex_grip_energy(const se3di_model *model);
-double se3di_convex_rubbed(const se3di_convex *c, const se3di_model *model);
+double se3di_convex_grip_energy(const se3di_convex *c, const se3di_assembly *assembly);
+double se3di_convex_rubbed(const se3di_convex *c, const se3di_assembly *assembly);
 
 /* convex_energy.c: what an impulse takes from the bodies in a step [J]; what all on shapes and the
  * step itself do; the work of what moves the surfaces on their bodies. */

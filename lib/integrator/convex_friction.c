@@ -228,13 +228,15 @@ void se3di_convex_accept_friction(const se3di_convex *c, const se3di_assembly *a
     }
 }
 
-double se3di_convex_grip_energy(const se3di_model *model)
+double se3di_convex_grip_energy(const se3di_convex *c, const se3di_assembly *assembly)
 {
+    const se3di_model *model = assembly->model;
     double sum = 0.0;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
         double own;
         if (force->type == SE3DI_FORCE_FRICTION &&
+            !se3di_convex_element_sleeps(c, assembly, force) &&
             se3di_force_potential(model, force, model->time, &own) >= 0) {
             sum += own;
         }
@@ -242,9 +244,9 @@ double se3di_convex_grip_energy(const se3di_model *model)
     return sum;
 }
 
-double se3di_convex_rubbed(const se3di_convex *c, const se3di_model *model)
+double se3di_convex_rubbed(const se3di_convex *c, const se3di_assembly *assembly)
 {
-    double sum = c->gripped - se3di_convex_grip_energy(model);
+    double sum = c->gripped - se3di_convex_grip_energy(c, assembly);
     for (size_t k = c->stop_end; k < c->contact_count; ++k) {
         sum += se3di_convex_taken_by(&c->contacts[k]);
     }

@@ -204,6 +204,17 @@ static void spread(const se3di_convex *c, uint32_t count, uint8_t *marks)
     }
 }
 
+/* Whether a constraint acts on anything but what sleeps. */
+static int is_bound(const se3di_convex *c, const se3di_assembly *assembly)
+{
+    int is_bound = c->asleep_count == 0 && assembly->row_count > 0;
+    for (uint32_t j = 0; j < assembly->constraint_count && !is_bound; ++j) {
+        const int32_t body = se3di_convex_joined(assembly, j);
+        is_bound = body < 0 || !c->asleep[body];
+    }
+    return is_bound;
+}
+
 static void freeze(se3di_convex *c, const se3di_assembly *assembly)
 {
     c->asleep_count = 0;
@@ -214,6 +225,7 @@ static void freeze(se3di_convex *c, const se3di_assembly *assembly)
     for (uint32_t k = 0; k < assembly->body_count; ++k) {
         c->asleep_count += c->asleep[k];
     }
+    c->is_bound = is_bound(c, assembly);
 }
 
 void se3di_convex_wake(se3di_convex *c, const se3di_assembly *assembly)

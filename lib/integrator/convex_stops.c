@@ -63,7 +63,7 @@ void se3di_convex_mark_stops(const se3di_convex *c, const se3di_assembly *assemb
     double speed;
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const int32_t body = body_of(assembly, &model->forces[k]);
-        if (body < 0 || !look(model, &model->forces[k], &x)) {
+        if (body < 0 || c->asleep[body] || !look(model, &model->forces[k], &x)) {
             continue;
         }
         const double reach = NEAR * c->h * (fabs(x.measure.rate) + c->h * fabs(x.acceleration));
