@@ -96,6 +96,9 @@ void se3di_friction_solve_dense(friction *s)
         }
         for (uint32_t r = k + 1; r < m; ++r) {
             const double factor = J[(size_t)r * m + k] / J[(size_t)k * m + k];
+            if (fabs(factor) <= 0.0) {
+                continue; /* it is of another machine */
+            }
             for (uint32_t c = k; c < m; ++c) {
                 J[(size_t)r * m + c] -= factor * J[(size_t)k * m + c];
             }

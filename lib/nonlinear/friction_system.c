@@ -22,7 +22,7 @@ static void copy(double *to, const double *from, size_t count)
 /* Allocation. */
 
 #define ARRAYS 24
-#define MARKS  6 /* arrays of int32_t */
+#define MARKS  7 /* arrays of int32_t */
 
 #define RESTING 1e-9 /* of the accelerations without friction: all that moves is rounding */
 
@@ -69,6 +69,58 @@ static uint32_t count_elements(const se3di_model *model)
     return count;
 }
 
+static size_t count_machine(const se3di_assembly *assembly)
+{
+    return 2 * (size_t)assembly->body_count + assembly->row_count + 1;
+}
+
+static int32_t find_machine(const friction *s, int32_t body)
+{
+    while (s->machine[body] != body) {
+        body = s->machine[body];
+    }
+    return body;
+}
+
+static void join(friction *s, int32_t i, int32_t j)
+{
+    if (i >= 0 && j >= 0) {
+        const int32_t a = find_machine(s, i), b = find_machine(s, j);
+        s->machine[a < b ? b : a] = a < b ? a : b;
+    }
+}
+
+/* What constraints and friction join, directly or by others. */
+static void list_machines(friction *s, const se3di_assembly *assembly)
+{
+    const int32_t bodies = (int32_t)assembly->body_count;
+    s->turns = s->machine + bodies;
+    s->row_machine = s->turns + bodies;
+    for (int32_t k = 0; k < bodies; ++k) {
+        s->machine[k] = k;
+    }
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        for (int32_t e = assembly->joint_begin[j]; e < assembly->joint_begin[j + 1]; ++e) {
+            join(s, assembly->joint_body[assembly->joint_begin[j]], assembly->joint_body[e]);
+        }
+    }
+    for (uint32_t k = 0; k < s->count; ++k) {
+        const se3di_force *force = &assembly->model->forces[s->element[k]];
+        join(s, assembly->free_index[force->body_i], assembly->free_index[force->body_j]);
+    }
+    for (int32_t k = 0; k < bodies; ++k) {
+        s->machine[k] = find_machine(s, k);
+    }
+    for (uint32_t j = 0; j < assembly->constraint_count; ++j) {
+        const se3di_constraint *constraint = &assembly->model->constraints[j];
+        const int32_t begin = assembly->joint_begin[j], end = assembly->joint_begin[j + 1];
+        const int32_t own = end > begin ? s->machine[assembly->joint_body[begin]] : -1;
+        for (uint32_t r = 0; r < constraint->row_count; ++r) {
+            s->row_machine[constraint->row_begin + r] = own;
+        }
+    }
+}
+
 se3d_status se3di_friction_system_init(friction *s, const se3di_assembly *assembly)
 {
     const se3d_allocator *allocator = &assembly->model->allocator;
@@ -81,7 +133,8 @@ se3d_status se3di_friction_system_init(friction *s, const se3di_assembly *assemb
     }
     s->element = se3di_alloc(allocator, 2 * s->count, sizeof *s->element);
     s->holds = se3di_alloc(allocator, MARKS * s->count, sizeof *s->holds);
-    complete = s->element && s->holds;
+    s->machine = se3di_alloc(allocator, count_machine(assembly), sizeof *s->machine);
+    complete = s->element && s->holds && s->machine;
     list_arrays(s, assembly, list, size);
     for (int k = 0; k < ARRAYS && complete; ++k) {
         *list[k] = se3di_alloc(allocator, size[k], sizeof(double));
@@ -98,7 +151,9 @@ se3d_status se3di_friction_system_init(friction *s, const se3di_assembly *assemb
     s->slides = s->stays + s->count;
     s->at = s->slides + s->count;
     s->fixed = s->at + s->count;
+    s->turn = s->fixed + s->count;
     list_elements(s, assembly->model);
+    list_machines(s, assembly);
     return SE3D_OK;
 }
 
@@ -113,6 +168,7 @@ void se3di_friction_system_destroy(friction *s, const se3di_assembly *assembly)
     }
     se3di_free(allocator, s->element, 2 * s->count, sizeof *s->element);
     se3di_free(allocator, s->holds, MARKS * s->count, sizeof *s->holds);
+    se3di_free(allocator, s->machine, s->machine ? count_machine(assembly) : 0, sizeof *s->machine);
     memset(s, 0, sizeof *s);
 }
 
@@ -170,24 +226,70 @@ double se3di_friction_system_acceleration(const se3di_equations *equations, uint
     return dot_unit(assembly, force, Q, equations->x) + se3di_measure_curve(assembly->model, force);
 }
 
+static int32_t machine_of(const se3di_equations *equations, uint32_t u)
+{
+    const friction *s = &equations->friction;
+    const int32_t *free = equations->assembly.free_index;
+    const se3di_force *force = se3di_friction_element(equations, s->unknown[u]);
+    const int32_t i = free[force->body_i], at = i >= 0 ? i : free[force->body_j];
+    return at >= 0 ? s->machine[at] : -1;
+}
+
+/* Machines side by side are solved for together. Returns how often. */
+static int32_t take_turns(se3di_equations *equations)
+{
+    friction *s = &equations->friction;
+    int32_t turns = 0;
+    memset(s->turns, 0, equations->assembly.body_count * sizeof *s->turns);
+    for (uint32_t u = 0; u < s->active; ++u) {
+        const int32_t own = machine_of(equations, u);
+        s->turn[u] = own >= 0 ? s->turns[own]++ : 0;
+        turns = s->turn[u] < turns ? turns : s->turn[u] + 1;
+    }
+    return turns;
+}
+
+/* What of a solution belongs to the machine of an unknown. */
+static void take_own(se3di_equations *equations, uint32_t u)
+{
+    friction *s = &equations->friction;
+    const se3di_assembly *assembly = &equations->assembly;
+    const size_t n = assembly->unknown_count, rows = assembly->row_count;
+    const size_t block = (size_t)assembly->formulation->block;
+    const int32_t own = machine_of(equations, u);
+    for (size_t k = 0; k < n; ++k) {
+        s->X[u * n + k] = s->machine[k / block] == own ? equations->x[k] : 0.0;
+    }
+    for (size_t r = 0; r < rows; ++r) {
+        s->L[u * rows + r] = s->row_machine[r] == own ? equations->l[r] : 0.0;
+    }
+}
+
 /* The solution for a unit force against each unknown's coordinate. */
 static se3d_status solve_units(se3di_equations *equations)
 {
     friction *s = &equations->friction;
     const se3di_assembly *assembly = &equations->assembly;
-    const size_t n = assembly->unknown_count, rows = assembly->row_count;
-    for (uint32_t u = 0; u < s->active; ++u) {
-        const uint32_t k = s->unknown[u];
-        se3di_friction_unit(assembly, se3di_friction_element(equations, k), s->Q + 16 * (size_t)k);
-        memset(equations->b, 0, n * sizeof *equations->b);
-        for (size_t r = 0; r < rows; ++r) {
+    const int32_t turns = take_turns(equations);
+    for (int32_t turn = 0; turn < turns; ++turn) {
+        memset(equations->b, 0, assembly->unknown_count * sizeof *equations->b);
+        for (size_t r = 0; r < assembly->row_count; ++r) {
             equations->c[r] = 0.0;
         }
-        add_unit(assembly, se3di_friction_element(equations, k), s->Q + 16 * (size_t)k, -1.0,
-                 equations->b);
+        for (uint32_t u = 0; u < s->active; ++u) {
+            const uint32_t k = s->unknown[u];
+            const se3di_force *force = se3di_friction_element(equations, k);
+            if (s->turn[u] == turn) {
+                se3di_friction_unit(assembly, force, s->Q + 16 * (size_t)k);
+                add_unit(assembly, force, s->Q + 16 * (size_t)k, -1.0, equations->b);
+            }
+        }
         SE3DI_TRY(se3di_equations_solve(equations));
-        copy(s->X + u * n, equations->x, n);
-        copy(s->L + u * rows, equations->l, rows);
+        for (uint32_t u = 0; u < s->active; ++u) {
+            if (s->turn[u] == turn) {
+                take_own(equations, u);
+            }
+        }
     }
     return SE3D_OK;
 }
@@ -203,9 +305,15 @@ static void eval_responses(se3di_equations *equations)
         const se3di_force *force = se3di_friction_element(equations, k);
         const double *Q = s->Q + 16 * (size_t)k;
         double *R = s->R + (size_t)u * (s->active + 1) * PARTS;
+        const int32_t own = machine_of(equations, u);
         s->a[u] = dot_unit(assembly, force, Q, s->x) + se3di_measure_curve(assembly->model, force);
         se3di_friction_reaction(assembly->model, force, s->l, R);
         for (uint32_t v = 0; v < s->active; ++v) {
+            if (machine_of(equations, v) != own) {
+                s->W[(size_t)u * s->active + v] = 0.0;
+                memset(R + (size_t)(v + 1) * PARTS, 0, PARTS * sizeof *R);
+                continue;
+            }
             s->W[(size_t)u * s->active + v] = dot_unit(assembly, force, Q, s->X + v * n);
             se3di_friction_reaction(assembly->model, force, s->L + v * rows,
                                     R + (size_t)(v + 1) * PARTS);

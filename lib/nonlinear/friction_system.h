@@ -48,6 +48,10 @@ typedef struct se3di_friction_system {
     double *P, *work;  /* of friction_box.h */
     double *work_x, *work_l; /* [unknowns], [rows] */
     double *probes;          /* [SE3DI_FRICTION_PROBES * 4 * count], of integrator/hold_review.h, */
+    int32_t *machine;        /* [bodies]: the first body that it is joined to by any others; */
+    int32_t *row_machine;    /* [rows]: that of what a row acts on, -1: nothing */
+    int32_t *turns;          /* [bodies]: units of a machine that were counted */
+    int32_t *turn;           /* [active]: of all units of its machine the how many-th */
     int32_t has_end;         /* 1: those of the end of the step are known */
 } se3di_friction_system;
 

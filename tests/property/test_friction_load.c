@@ -385,6 +385,57 @@ static void equal_bars_that_friction_stops_stand_still(void)
     }
 }
 
+/* Double pendulums that rub, `count` of them side by side: where the first one is after a while,
+ * and how often equations were solved. */
+static uint64_t swing_side_by_side(int count, double angles[2])
+{
+    char text[4000];
+    int at = snprintf(text, sizeof text, "se3d: 1\ngravity: [0, -9.81, 0]\nbodies:\n");
+    for (int k = 0; k < count; ++k) {
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "  - {name: a%d, mass: 1, inertia: [0.01, 0.01, 0.01], position: [%g, 0, 0]}"
+                       "\n  - {name: b%d, mass: 1, inertia: [0.01, 0.01, 0.01], position: [%g, 0, "
+                       "0]}\n",
+                       k, 9 * k + 0.5, k, 9 * k + 1.5);
+    }
+    at += snprintf(text + at, sizeof text - (size_t)at, "joints:\n");
+    for (int k = 0; k < count; ++k) {
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "  - {name: p%d, type: revolute, body_i: ground, body_j: a%d, at: [%d, 0, "
+                       "0], axis: [0, 0, 1]}\n  - {name: q%d, type: revolute, body_i: a%d, body_j: "
+                       "b%d, at: [%d, 0, 0], axis: [0, 0, 1]}\n",
+                       k, k, 9 * k, k, k, k, 9 * k + 1);
+    }
+    at += snprintf(text + at, sizeof text - (size_t)at, "forces:\n");
+    for (int k = 0; k < count; ++k) {
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "  - {name: f%d, type: friction, joint: p%d, mu: 0.2, radius: 0.1}\n"
+                       "  - {name: g%d, type: friction, joint: q%d, mu: 0.3, radius: 0.1}\n",
+                       k, k, k, k);
+    }
+    (void)snprintf(text + at, sizeof text - (size_t)at,
+                   "analysis: {type: dynamics, duration: 1}\n"
+                   "output: [{file: r.csv, channels: [p0.angle, q0.angle]}]\n");
+    text_model m = text_model_open(text, SE3D_METHOD_RK4, SE3D_FORMULATION_ROMEGA, 1e-3);
+    se3d_solver_stats stats;
+    CHECK(text_model_run(&m, 0.3));
+    CHECK(!se3d_solver_get_stats(m.solver, &stats));
+    angles[0] = text_model_get(&m, 0, 0);
+    angles[1] = text_model_get(&m, 1, 0);
+    text_model_close(&m);
+    return stats.solves;
+}
+
+static void machines_side_by_side_are_solved_for_together(void)
+{
+    double alone[2], beside[2];
+    const uint64_t one = swing_side_by_side(1, alone), four = swing_side_by_side(4, beside);
+    CHECK(fabs(alone[0]) > 0.1);
+    CHECK_NEAR(beside[0], alone[0], 1e-12);
+    CHECK_NEAR(beside[1], alone[1], 1e-12);
+    CHECK(four * 10 < one * 12);
+}
+
 int main(void)
 {
     RUN(bearings_that_nothing_presses_do_not_jam);
@@ -398,5 +449,6 @@ int main(void)
     RUN(the_default_is_under_error_control_with_friction);
     RUN(equal_bars_pass_upright_in_every_method);
     RUN(equal_bars_that_friction_stops_stand_still);
+    RUN(machines_side_by_side_are_solved_for_together);
     return check_finish();
 }
