@@ -874,14 +874,15 @@ static se3d_status tell_alike(const se3di_model *model, const se3di_force *const
     const int wants = find_wants(which);
     patch c[SE3DI_TYRE_LANES];
     told o[SE3DI_TYRE_LANES];
-    for (int k = 0; k < count; ++k) {
+    int k = 0;
+    do { /* there is one */
         SE3DI_TRY(take_patch(model, tyres[k], model->time, &c[k]));
-    }
+    } while (++k < count);
     const int in_lanes = wants >= 0 && fit_lanes(tyres, c, count);
     if (in_lanes) {
         find_in_lanes(tyres, c, count, wants, o);
     }
-    for (int k = 0; k < count; ++k) {
+    for (k = 0; k < count; ++k) {
         if (!in_lanes) {
             find_alone(tyres[k], &c[k], wants, &o[k]);
         }
