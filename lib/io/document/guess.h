@@ -16,7 +16,7 @@ se3di_guess se3di_guess_begin(const char *word);
 void se3di_guess_offer(se3di_guess *guess, const char *candidate);
 /* The best one, or NULL if none is near enough. */
 const char *se3di_guess_get(const se3di_guess *guess);
-/* Where a type belongs, "a type of `joints`", also a key of the model; NULL: nowhere. */
+/* What a type is one of, "a type of `joints`", also a key of the model; NULL: of nothing. */
 const char *se3di_guess_place(const char *word);
 
 #endif
