@@ -338,9 +338,10 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
     size_t n = model->material_slots.count;
     for (size_t b = 0; b < n; ++b) {
         if (model->materials[b].users > 0) {
-            step = fmin(step,
-                        se3di_pair_step((se3di_contact_law)model->contact.law, &model->materials[a],
-                                        &model->pairs[a * n + b], radius, mass, reduced_mass));
+            step =
+                fmin(step, se3di_pair_step((se3di_contact_law)model->contact.law,
+                                           &model->materials[a], &model->overrides[a * n + b],
+                                           &model->pairs[a * n + b], radius, mass, reduced_mass));
         }
     }
     return step;

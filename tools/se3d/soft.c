@@ -42,7 +42,8 @@ static int stuff_read(const se3d_system *system, se3d_material material, stuff *
                    .adhesion = choose(pair.adhesion, def.adhesion),
                    .cohesion = choose(pair.cohesion, def.cohesion),
                    .limit = contact.overlap_limit};
-    out->k = out->is_hertz ? 2.0 / 3.0 * def.young / (1.0 - def.poisson * def.poisson)
+    const double nu = choose(pair.poisson, def.poisson);
+    out->k = out->is_hertz ? 2.0 / 3.0 * choose(pair.young, def.young) / (1.0 - nu * nu)
                            : choose(pair.stiffness, def.stiffness);
     return contact.law != SE3D_CONTACT_LAW_CALLBACK;
 }

@@ -170,8 +170,8 @@ const se3di_pair *se3di_pair_of(const se3di_model *model, uint32_t i, uint32_t j
     return &model->pairs[first * model->material_slots.count + (size_t)model->shapes[j].material];
 }
 
-double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
-                       double radius, double mass, double reduced_mass)
+double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_override *over,
+                       const se3di_pair *pair, double radius, double mass, double reduced_mass)
 {
     if (law == SE3DI_LAW_CALLBACK) {
         return HUGE_VAL;
@@ -182,8 +182,9 @@ double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3
         return 0.02 * PI / (rate + fmax(pair->dn / sqrt(reduced_mass), pair->rn));
     }
     double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
-    double shear_modulus = a->young / (2.0 * (1.0 + a->poisson));
-    double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * a->poisson + 0.8766);
+    const double young = choose(over->young, a->young), nu = choose(over->poisson, a->poisson);
+    double shear_modulus = young / (2.0 * (1.0 + nu));
+    double rayleigh = PI * radius * sqrt(density / shear_modulus) / (0.1631 * nu + 0.8766);
     /* Mindlin's springs have 1.5 at most */
     const double step = 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass) /
                         (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);

@@ -22,8 +22,8 @@ const se3di_pair *se3di_pair_of(const se3di_model *model, uint32_t i, uint32_t j
 
 /* The longest time of a step that resolves a contact of two spheres (a wall: radius_b and mass_b
  * infinite): 1/50 of the contact's time (hooke), 1/40 of Rayleigh's time (hertz_mindlin), of which
- * the lightest partner, `reduced_mass`, may leave less. */
-double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_pair *pair,
-                       double radius, double mass, double reduced_mass);
+ * the lightest partner, `reduced_mass`, may leave less. `over`: what the user said of the pair. */
+double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_override *over,
+                       const se3di_pair *pair, double radius, double mass, double reduced_mass);
 
 #endif
