@@ -662,8 +662,10 @@ static void eval_lanes(const se3di_model *model, const se3di_force *const tyres[
             of[m] = lanes.of[m][k];
         }
         apply(model, tyres[k], &c[k], of, &loads->of[k]);
-        loads->of[k].rate[0] = lanes.rate[0][k];
-        loads->of[k].rate[1] = lanes.rate[1][k];
+        for (int direction = 0; direction < 2; ++direction) {
+            const int lags = tyres[k]->tyre->lags[direction];
+            loads->of[k].rate[direction] = lags ? lanes.rate[direction][k] : 0.0;
+        }
     }
 }
 
@@ -869,7 +871,7 @@ static int find_wants(uint32_t which)
 
 /* Of tyres that are alike. */
 static se3d_status tell_alike(const se3di_model *model, const se3di_force *const *tyres, int count,
-                              uint32_t which, double (*values)[SE3D_TYRE_VALUES])
+                              uint32_t which, se3di_tyre_values *values)
 {
     const int wants = find_wants(which);
     patch c[SE3DI_TYRE_LANES];
@@ -892,7 +894,7 @@ static se3d_status tell_alike(const se3di_model *model, const se3di_force *const
 }
 
 se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *const *tyres, size_t count,
-                            uint32_t which, double (*values)[SE3D_TYRE_VALUES])
+                            uint32_t which, se3di_tyre_values *values)
 {
     for (size_t begin = 0, end; begin < count; begin = end) {
         end = begin + 1;

@@ -129,10 +129,13 @@ void se3di_tyre_eval_alike(const se3di_model *model, uint32_t first, double t,
 se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
                                        double deflection[2]);
 
+/* In the order of se3d_tyre_value. */
+typedef double se3di_tyre_values[SE3D_TYRE_VALUES];
+
 /* What tyres tell at the present state, bit k of `which`: value k (se3d_tyre_value) of all of them;
  * the others may be left out. Tyres that are alike are computed side by side where they follow each
  * other. @return as se3di_force_eval */
 se3d_status se3di_tyre_tell(const se3di_model *model, const se3di_force *const *tyres, size_t count,
-                            uint32_t which, double (*values)[SE3D_TYRE_VALUES]);
+                            uint32_t which, se3di_tyre_values *values);
 
 #endif
