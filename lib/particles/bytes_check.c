@@ -343,7 +343,7 @@ static int is_bond(const se3di_particles *set, const se3di_bond *bond)
     return are_finite(sizes, 4) && bond->length > 0.0 && bond->radius > 0.0 &&
            are_finite(bond->stiffness, 4) && are_finite(bond->damping, 4) &&
            are_finite(bond->axis[0], 6) && are_finite(bond->turn, 4) &&
-           are_finite(bond->force, 3) && are_finite(bond->drag, 3) &&
+           are_finite(bond->stress, 2) && are_finite(bond->force, 3) && are_finite(bond->drag, 3) &&
            are_finite(bond->torque[0], 6) && are_finite(bond->brake[0], 6) &&
            bond->group < set->bond_group_count && bond->end[0] < set->bond_end_count &&
            bond->end[1] < set->bond_end_count && bond->end[0] != bond->end[1] &&

@@ -381,7 +381,9 @@ static void bonds_without_ends_are_refused(void)
     must_be_finite(&w, &bond->dissipated, 1);
     must_be_finite(&w, bond->stiffness, 4);
     must_be_finite(&w, bond->damping, 4);
-    must_be_finite(&w, bond->axes[0], 18);
+    must_be_finite(&w, bond->axis[0], 6);
+    must_be_finite(&w, bond->turn, 4);
+    must_be_finite(&w, bond->stress, 2);
     must_be_finite(&w, bond->force, 3);
     must_be_finite(&w, bond->drag, 3);
     must_be_finite(&w, bond->torque[0], 6);
