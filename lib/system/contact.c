@@ -53,7 +53,7 @@ static se3d_status check_damping(se3d_system *system, int32_t law, const se3di_m
     return e >= SE3DI_RESTITUTION_MIN
                ? SE3D_OK
                : SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
-                               " = %g is a restitution of %g with this law, must be so small that "
+                               " = %g, a restitution of %g with this law, must be so small that "
                                "it is %g or more",
                                material->damping_ratio, e, SE3DI_RESTITUTION_MIN);
 }
@@ -313,7 +313,7 @@ static se3d_status check_pair(se3d_system *system, const se3d_material_pair_def 
 #undef CHECK_ONE
     if (def->damping_ratio >= 0.0 && def->restitution >= 0.0) {
         return SE3DI_FAIL_OF(system, "damping_ratio", SE3D_ERR_INVALID_ARGUMENT,
-                             " = %g stands in place of `restitution`, must not be beside it",
+                             " = %g, in place of `restitution`, must not be beside it",
                              def->damping_ratio);
     }
     return check_ratio(system, system->model.contact.law, def->damping_ratio);

@@ -210,6 +210,7 @@ static void what_is_in_the_wrong_place_is_told_where_it_belongs(void)
         {CHANNELS("a."), "`a` is not a channel, it has: position, orientation"},
         {CHANNELS("rail"), "`rail` is not a channel, it has: "},
         {CHANNELS("energy"), "`energy` is not a channel, it has: kinetic"},
+        {CHANNELS("steps."), "`steps.` is unknown, did you mean `steps`?"},
         {CHANNELS("d"), "`d` is unknown, did you mean `a`?"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {

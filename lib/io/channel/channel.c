@@ -622,7 +622,7 @@ static bool find_absolute(const se3d_model *model, const char *name, se3di_chann
         }
     } else if (!se3di_ionames_find(&model->element_names, head, NULL)) {
         if (!explain_system(head, tail, problem, problem_size)) {
-            explain_unknown(model, head, problem, problem_size);
+            explain_unknown(model, *tail ? head : name, problem, problem_size);
         }
         return false;
     }
