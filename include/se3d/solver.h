@@ -230,9 +230,10 @@ static inline se3d_status se3d_solver_get_start_change(const se3d_solver *solver
  * one that the method in use reaches if that is larger (dop853, gauss, rk45, rk4 6.7e-12, but
  * gauss 6.7e-13 in joint coordinates on open trees without contact, functions and friction, bdf
  * 1e-11, radau 1e-13, or 1e-10 with redundant equations, generalized_alpha, hht 1e-11, rattle,
- * verlet 1e-10, of order 4 1e-11); the log is told of that.
- * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses, and
- *                        generalized_alpha, hht, rattle and verlet with a step)
+ * verlet 1e-10, of order 4 1e-11, convex 1e-6); the log is told of that.
+ * @param[out] tolerance  [relative] 0: errors are not controlled (other analyses,
+ *                        generalized_alpha, hht, rattle and verlet with a step, and convex with one
+ *                        or if no tolerance is asked for)
  * @return OK, NULL.
  * @since 0.1 */
 SE3D_API se3d_status se3d_solver_get_tolerance(const se3d_solver *solver, double *tolerance);

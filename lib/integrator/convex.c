@@ -506,6 +506,7 @@ static se3d_status advance(se3di_integration *integration, double t1)
     c->h = t1 - equations->assembly.model->time;
     se3di_convex_wake(c, &equations->assembly);
     if (se3di_convex_rests(c, &equations->assembly)) {
+        c->contact_count = 0;
         wait(c, equations->assembly.model, t1);
         ++equations->counters.steps;
         return SE3D_OK;

@@ -15,14 +15,15 @@
 #include <math.h>
 #include <string.h>
 
-#define KEPT   7    /* numbers of each body in the history */
-#define REACH  1e-6 /* below it, steps are too short for their rounding and for what meets */
-#define PART   0.1  /* of the tolerance: the error of a step */
-#define LOOSE  1e-3 /* a tolerance: from here on impacts may be those of one step */
-#define SAFETY 0.9  /* of the step that would just do */
-#define LEAST  1e-5 /* of the longest step */
-#define SHRINK 0.1
-#define GROWTH 4.0
+#define KEPT    7     /* numbers of each body in the history */
+#define REACH   1e-6  /* below it, steps are too short for their rounding and for what meets */
+#define PART    0.1   /* of the tolerance: the error of a step */
+#define LOOSE   1e-3  /* a tolerance: from here on impacts may be those of one step */
+#define SAFETY  0.9   /* of the step that would just do */
+#define LEAST   1e-5  /* of the longest step */
+#define ROUNDED 1e-14 /* of the time: so much longer than its rounding */
+#define SHRINK  0.1
+#define GROWTH  4.0
 
 size_t se3di_convex_history_count(const se3di_assembly *assembly)
 {
@@ -58,16 +59,12 @@ static se3d_status keep(se3di_integration *integration)
     return status < 0 ? se3di_error_set(equations->error, status, "no memory for a step") : SE3D_OK;
 }
 
-static se3d_status come_back(se3di_integration *integration)
+/* The model has had this state, and its room. */
+static void come_back(const se3di_integration *integration)
 {
     se3di_model *model = integration->equations->assembly.model;
-    const se3d_status status = se3di_saved_reserve(&integration->before_trials, model);
-    if (status < 0) {
-        return se3di_error_set(integration->equations->error, status, "no memory for a step");
-    }
     se3di_saved_restore(&integration->before_trials, model);
     se3di_user_begin(model);
-    return SE3D_OK;
 }
 
 static void keep_ends(se3di_convex *c, const se3di_assembly *assembly)
@@ -80,16 +77,25 @@ static void keep_ends(se3di_convex *c, const se3di_assembly *assembly)
 /* Islands in which something was an impact, whose velocities no short step makes continuous. */
 static void mark_struck(se3di_convex *c, const se3di_assembly *assembly)
 {
+    for (size_t k = 0; k < c->island_count; ++k) {
+        c->islands[k].is_struck = 0;
+    }
     for (size_t k = 0; k < c->contact_count; ++k) {
         const se3di_convex_contact *contact = &c->contacts[k];
         const int is_impact =
             contact->way == SE3DI_CONVEX_IMPACT || contact->way == SE3DI_CONVEX_TRACED;
         for (int e = 0; e < 2 && is_impact && se3di_norm(contact->impulse) > 0.0; ++e) {
-            const int32_t free = contact->free[e];
-            for (uint32_t body = 0; free >= 0 && body < assembly->body_count; ++body) {
-                c->struck[body] |= (int32_t)body == free || c->number[body] == c->number[free];
+            if (contact->free[e] >= 0) { /* a place */
+                const int32_t body = c->body_at[contact->free[e]];
+                c->struck[body] = 1;
+                if (c->number[body] >= 0) {
+                    c->islands[c->number[body]].is_struck = 1;
+                }
             }
         }
+    }
+    for (uint32_t body = 0; body < assembly->body_count && c->contact_count > 0; ++body) {
+        c->struck[body] |= c->number[body] >= 0 && c->islands[c->number[body]].is_struck;
     }
 }
 
@@ -160,9 +166,9 @@ static se3d_status try_both(se3di_integration *integration, se3di_convex_stepper
     if (*made >= 0) {
         keep_ends(c, &equations->assembly);
         mark_struck(c, &equations->assembly);
+        come_back(integration);
+        *made = step(integration, middle);
     }
-    const se3d_status room = come_back(integration);
-    *made = room < 0 ? room : *made < 0 ? *made : step(integration, middle);
     if (*made >= 0) {
         mark_struck(c, &equations->assembly);
         *made = step(integration, t1);
@@ -172,7 +178,10 @@ static se3d_status try_both(se3di_integration *integration, se3di_convex_stepper
         *error = measure(c, &equations->assembly,
                          se3di_integration_get_tolerance(integration, equations->assembly.model));
     }
-    return se3di_aside_end(&aside, *made);
+    const se3d_status ends = se3di_aside_end(&aside, *made);
+    return ends >= 0 && *made < 0 && !se3di_adaptive_may_shrink(*made)
+               ? se3di_error_set(equations->error, *made, "%s", aside.ignored.message)
+               : ends;
 }
 
 /* By how much the next step may be longer than one that erred so: errors are of order 2. */
@@ -181,7 +190,7 @@ static double factor_of(double error)
     return fmin(GROWTH, fmax(SHRINK, SAFETY / sqrt(fmax(error, 1e-12))));
 }
 
-/* What the trial has come to; if steps are watched, once more. */
+/* What the trial has come to; if steps are watched, once more, for which nobody counts. */
 static se3d_status accept(se3di_integration *integration, se3di_convex_stepper step, double t1)
 {
     se3di_equations *equations = integration->equations;
@@ -189,10 +198,16 @@ static se3d_status accept(se3di_integration *integration, se3di_convex_stepper s
         equations->counters.steps += 2;
         return SE3D_OK;
     }
-    SE3DI_TRY(come_back(integration));
+    come_back(integration);
     const double middle = 0.5 * (equations->assembly.model->time + t1);
-    const se3d_status status = step(integration, middle);
-    return status == SE3D_OK ? step(integration, t1) : status;
+    se3di_guard none = {0}, *guard = equations->guard ? equations->guard : &none;
+    const double tried = guard->steps;
+    ++guard->muted; /* an end between the halves would be one within a step */
+    se3d_status status = step(integration, middle);
+    status = status == SE3D_OK ? step(integration, t1) : status;
+    --guard->muted;
+    guard->steps = tried;
+    return status;
 }
 
 /* A step to t1, or a shorter one. */
@@ -200,25 +215,26 @@ static se3d_status advance(se3di_integration *integration, se3di_convex_stepper 
                            double least)
 {
     se3di_equations *equations = integration->equations;
-    const se3di_model *model = equations->assembly.model;
-    const double begin = model->time, whole = t1 - begin;
+    const double begin = equations->assembly.model->time, whole = t1 - begin;
     const double wanted = *next_of(&equations->assembly);
     SE3DI_TRY(keep(integration));
     for (double h = whole;;) {
         double error = HUGE_VAL;
         se3d_status made = SE3D_OK;
         SE3DI_TRY(se3di_equations_try_step(equations, begin));
-        SE3DI_TRY(try_both(integration, step, t1, &error, &made));
-        if (made >= 0 && (error <= 1.0 || h <= least)) {
-            SE3DI_TRY(accept(integration, step, t1));
+        const se3d_status ends = try_both(integration, step, t1, &error, &made);
+        if (ends >= 0 && made >= 0 && (error <= 1.0 || h <= least)) {
+            const se3d_status status = accept(integration, step, t1);
             const double next = h * factor_of(error);
-            *next_of(&equations->assembly) =
-                h < whole ? next : fmax(next, fmin(wanted, 2.0 * next));
-            return model->time < t1 ? SE3D_INFO_EVENT : SE3D_OK;
+            if (status >= 0) {
+                *next_of(&equations->assembly) =
+                    h < whole ? next : fmax(next, fmin(wanted, 2.0 * next));
+            }
+            return status;
         }
-        SE3DI_TRY(come_back(integration));
-        if (made < 0 && (h <= least || !se3di_adaptive_may_shrink(made))) {
-            return step(integration, t1); /* it says why */
+        come_back(integration);
+        if (ends < 0 || (made < 0 && h <= least)) {
+            return ends < 0 ? ends : step(integration, t1); /* it says why */
         }
         ++equations->counters.rejected;
         h = fmax(least, h * fmin(0.7, factor_of(error)));
@@ -234,14 +250,15 @@ se3d_status se3di_convex_control(se3di_integration *integration, se3di_convex_st
     se3d_status status = SE3D_OK;
     while (model->time < t_end && status == SE3D_OK) {
         const double rest = t_end - model->time, next = *next_of(assembly);
-        double h = next > 0.0 ? fmin(next, most) : most;
-        h = h >= rest ? rest : fmin(h, fmax(0.5 * rest, LEAST * most));
+        const double least = fmax(LEAST * most, ROUNDED * fabs(model->time));
+        double h = next > 0.0 ? fmax(least, fmin(next, most)) : most;
+        h = h >= rest ? rest : fmin(h, fmax(0.5 * rest, least));
         double t1 = rest > (1.0 + 1e-9) * h ? model->time + h : t_end;
-        h = se3di_kink_step(integration, model->time, h, fmin(2.0 * h, rest), &t1);
+        (void)se3di_kink_step(integration, model->time, h, fmin(2.0 * h, rest), &t1);
         if (integration->at_kink) {
             break;
         }
-        status = advance(integration, step, t1, LEAST * most);
+        status = advance(integration, step, t1, least);
     }
     return status;
 }

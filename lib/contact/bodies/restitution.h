@@ -4,8 +4,6 @@
 #ifndef SE3DI_CONTACT_RESTITUTION_H
 #define SE3DI_CONTACT_RESTITUTION_H
 
-/* Least restitution for which a damping is sought. */
-
 /* Hooke: restitution of m* x'' = -max(0, k x + 2 zeta sqrt(k m*) x'), zeta >= 0, and its inverse
  * (e in [SE3DI_RESTITUTION_MIN, 1]). */
 double se3di_restitution_hooke(double zeta);
