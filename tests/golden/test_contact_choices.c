@@ -417,8 +417,40 @@ static void pairs_of_model_files_say_so_too(void)
     }
 }
 
+/* A pair that is harder than its materials is followed in its own steps: nothing is lost or won. */
+static void steps_follow_the_pair(void)
+{
+    const char *const text =
+        "se3d: 1\ngravity: [0, 0, 0]\ncontact: {law: hertz_mindlin, pairs: [{material_1: a, "
+        "material_2: b, young: 1.0e+12}]}\nmaterials: [{name: a, density: 2500, young: 1.0e+8, "
+        "friction: 0, restitution: 1}, {name: b, density: 2500, young: 1.0e+8, friction: 0, "
+        "restitution: 1}]\nparticles: [{material: a, radius: 0.01, position: [0, 0, 0], velocity: "
+        "[9, 0, 0]}, {material: b, radius: 0.01, position: [0.0201, 0, 0]}]\nanalysis: {type: "
+        "dynamics, duration: 1}\noutput: [{file: r.csv, channels: [particles.kinetic]}]\n";
+    se3d_model_error error;
+    se3d_model *model = read_model(text, &error);
+    se3d_solver_def def = se3d_solver_def_default();
+    se3d_solver *solver = NULL;
+    double before = 0.0, after = 0.0;
+    size_t width = 0;
+    CHECK(model != NULL);
+    if (model) {
+        CHECK(se3d_model_get_solver(model, 0, &def) == SE3D_OK);
+        CHECK(se3d_solver_create(se3d_model_get_system(model), &def, &solver) == SE3D_OK);
+        CHECK(!SE3D_FAILED(se3d_solver_run(solver, 1e-6)));
+        CHECK(!se3d_model_get_channel_value(model, 0, 0, NULL, &before, &width));
+        CHECK(!SE3D_FAILED(se3d_solver_run(solver, 1e-3)));
+        CHECK(!se3d_model_get_channel_value(model, 0, 0, NULL, &after, &width));
+        CHECK(before > 0.1);
+        CHECK_NEAR(after, before, 1e-2 * before);
+        se3d_solver_destroy(solver);
+        se3d_model_destroy(model);
+    }
+}
+
 int main(void)
 {
+    RUN(steps_follow_the_pair);
     RUN(the_tangential_stiffness_of_hertz_is_that_given);
     RUN(tangential_damping_is_that_given);
     RUN(a_damping_ratio_stands_for_a_restitution);
