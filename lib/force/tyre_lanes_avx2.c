@@ -129,42 +129,42 @@ static __attribute__((noinline)) void turn_of(number x, number *sine, number *co
 
 /* ---- math/dual.inc, values ---- */
 
-#define OF(name)                 lanes_##name
-#define lanes_of(x)              ((dual){WIDE(x)})
-#define lanes_seed(x, at, s)     lanes_of(x)
-#define lanes_chain(f, s, x)     ((void)(s), (dual){f})
-#define lanes_line(a, b, x)      ((dual){(a) + (b) * (x).v})
-#define lanes_scale(b, x)        ((dual){(b) * (x).v})
-#define lanes_square(a, b, c, x) lanes_square_of(WIDE(a), WIDE(b), WIDE(c), x)
-#define lanes_pick(c, x, y)      lanes_pick_of((verdict)(c), x, y)
+#define OF(name)                      se3di_wide_##name
+#define se3di_wide_of(x)              ((dual){WIDE(x)})
+#define se3di_wide_seed(x, at, s)     se3di_wide_of(x)
+#define se3di_wide_chain(f, s, x)     ((void)(s), (dual){f})
+#define se3di_wide_line(a, b, x)      ((dual){(a) + (b) * (x).v})
+#define se3di_wide_scale(b, x)        ((dual){(b) * (x).v})
+#define se3di_wide_square(a, b, c, x) se3di_wide_square_of(WIDE(a), WIDE(b), WIDE(c), x)
+#define se3di_wide_pick(c, x, y)      se3di_wide_pick_of((verdict)(c), x, y)
 
-static inline dual lanes_square_of(number a, number b, number c, dual x)
+static inline dual se3di_wide_square_of(number a, number b, number c, dual x)
 {
     return (dual){a + (b + c * x.v) * x.v};
 }
 
-static inline dual lanes_pick_of(verdict takes_first, dual x, dual y)
+static inline dual se3di_wide_pick_of(verdict takes_first, dual x, dual y)
 {
     return (dual){(number)_mm256_blendv_pd((__m256d)y.v, (__m256d)x.v, (__m256d)takes_first)};
 }
 
-static inline dual lanes_add(dual x, dual y)
+static inline dual se3di_wide_add(dual x, dual y)
 {
     return (dual){x.v + y.v};
 }
 
-static inline dual lanes_sub(dual x, dual y)
+static inline dual se3di_wide_sub(dual x, dual y)
 {
     return (dual){x.v - y.v};
 }
 
-static inline dual lanes_mul(dual x, dual y)
+static inline dual se3di_wide_mul(dual x, dual y)
 {
     return (dual){x.v * y.v};
 }
 
 /* Divisions by zero are not made, see math/over.h. */
-static inline dual lanes_div(dual x, dual y)
+static inline dual se3di_wide_div(dual x, dual y)
 {
     const verdict is_zero = y.v == 0.0;
     if (!ANY(is_zero)) {
@@ -176,55 +176,55 @@ static inline dual lanes_div(dual x, dual y)
     return x;
 }
 
-static inline dual lanes_abs(dual x)
+static inline dual se3di_wide_abs(dual x)
 {
     return (dual){ABS(x.v)};
 }
 
-static inline dual lanes_sqrt(dual x)
+static inline dual se3di_wide_sqrt(dual x)
 {
     return (dual){ROOT(x.v)};
 }
 
-static inline dual lanes_asin(dual x)
+static inline dual se3di_wide_asin(dual x)
 {
     return (dual){ARCSINE(x.v)};
 }
 
-static inline dual lanes_sin(dual x)
+static inline dual se3di_wide_sin(dual x)
 {
     number sine, cosine;
     turn_of(x.v, &sine, &cosine);
     return (dual){sine};
 }
 
-static inline dual lanes_cos(dual x)
+static inline dual se3di_wide_cos(dual x)
 {
     number sine, cosine;
     turn_of(x.v, &sine, &cosine);
     return (dual){cosine};
 }
 
-static inline dual lanes_tan(dual x)
+static inline dual se3di_wide_tan(dual x)
 {
     number sine, cosine;
     turn_of(x.v, &sine, &cosine);
     return (dual){sine / cosine};
 }
 
-static inline dual lanes_atan(dual x)
+static inline dual se3di_wide_atan(dual x)
 {
     return (dual){arctangent(x.v)};
 }
 
-static inline dual lanes_cos_atan(dual x)
+static inline dual se3di_wide_cos_atan(dual x)
 {
     return (dual){1.0 / ROOT(1.0 + x.v * x.v)};
 }
 
-static inline dual lanes_exp(dual x)
+static inline dual se3di_wide_exp(dual x)
 {
-    return ANY(ABS(x.v) > 0.0) ? (dual){each(se3di_exp, x.v)} : lanes_of(1.0);
+    return ANY(ABS(x.v) > 0.0) ? (dual){each(se3di_exp, x.v)} : se3di_wide_of(1.0);
 }
 
 /* ---- laws ---- */
