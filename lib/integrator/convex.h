@@ -274,6 +274,12 @@ static inline double se3di_convex_hertz_depth(double k, double inverse_mass, dou
 {
     return u > 0.0 ? se3di_pow(1.25 * u * u / (inverse_mass * k), 0.4) : 0.0;
 }
+/* A law's damper less what the step damps by itself, if it has as much: what nothing moves, or is
+ * hardly damped, keeps it. */
+static inline double se3di_convex_ease(double damper, double own)
+{
+    return damper < own ? damper : damper - own;
+}
 /* What the contacts that were found at the end of the step remember of it. */
 void se3di_convex_record(const se3di_convex *c, se3di_model *model);
 /* A stretch turns about the normal by the mean of what the two surfaces do in a step. */

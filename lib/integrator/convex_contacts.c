@@ -192,9 +192,9 @@ void se3di_convex_follow_law(se3di_convex_contact *c, const se3di_model *model, 
     c->lead = se3di_convex_lead_of(inverse_mass > 0.0 ? stiffness_of(c, inverse_mass, u) : 0.0,
                                    inverse_mass, h);
     se3di_convex_set_attraction(c, model, h, u);
-    c->damping = fmax(0.0, law.along - c->lead * law.stiffness);
     const double yields = (may_follow ? c->lead : h) * c->tangential;
-    c->drag = h * (yields + fmax(0.0, law.across - yields));
+    c->damping = se3di_convex_ease(law.along, c->lead * law.stiffness);
+    c->drag = h * (yields + se3di_convex_ease(law.across, yields));
 }
 
 int se3di_convex_is_over_soon(const se3di_convex_contact *c, double inverse_mass, double h,

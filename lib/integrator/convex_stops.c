@@ -121,7 +121,7 @@ void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
     if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
         stop->lead = se3di_convex_lead_of(force->k, inverse_mass, h);
         const double damper = se3di_stop_get_damper(force, fmax(0.0, h * speed - gap));
-        stop->damping = fmax(0.0, damper - stop->lead * force->k);
+        stop->damping = se3di_convex_ease(damper, stop->lead * force->k);
         return;
     }
     stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;

@@ -193,7 +193,7 @@ static int ask(void *ctx)
     return ++f->calls == f->bad;
 }
 
-/* Where the box is at 0.15 s after a run that was to end at the k-th question, or where the k-th
+/* The box at 0.15 s after a run that was to end at the k-th question, or where the k-th
  * call of a force fails, and another one; negative: none is. */
 static void run_in_two(int k, int ends, double r[3])
 {
