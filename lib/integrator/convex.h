@@ -216,6 +216,11 @@ static inline void se3di_convex_slip(const se3di_convex_contact *contact, const 
     se3di_add(out, contact->drift, out);
     se3di_add(out, contact->shift, out);
 }
+/* How fast the two surfaces approach at the start of the step, as the point wanders. */
+static inline double se3di_convex_approach(const se3di_convex_contact *contact)
+{
+    return se3di_dot(contact->shift, contact->normal) - se3di_dot(contact->before, contact->normal);
+}
 /* out [unknowns] += scale J^T p, J from velocities of the bodies to that of the point. */
 static inline void se3di_convex_press(const se3di_convex_contact *contact, double scale,
                                       const double p[3], double *out)

@@ -358,7 +358,7 @@ static double see_approach(se3di_convex_contact *c, double h)
     if (c->record->kind == SE3DI_CONTACT_STEPPED) {
         se3di_scale(0.5 * h, c->record->wander, c->shift);
     }
-    return se3di_dot(c->shift, c->normal) - se3di_dot(c->before, c->normal);
+    return se3di_convex_approach(c);
 }
 
 void se3di_convex_choose_contact(const se3di_convex *convex, se3di_convex_contact *c,

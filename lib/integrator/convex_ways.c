@@ -39,10 +39,8 @@ static se3d_status solve_alone(se3di_convex *c, se3di_equations *equations,
     const size_t begin = 6 * island->body;
     memset(equations->c, 0, (island->row_end - island->row) * sizeof *equations->c);
     ++equations->counters.solves;
-    const se3d_status status =
-        se3di_kkt_solve(island->kkt, &values, equations->b + begin, aimed ? aimed : equations->c,
-                        c->change + begin, c->rows.lambda + island->row, NULL);
-    return status;
+    return se3di_kkt_solve(island->kkt, &values, equations->b + begin, aimed ? aimed : equations->c,
+                           c->change + begin, c->rows.lambda + island->row, NULL);
 }
 
 /* What an impulse at a point makes of the velocities of an island, in `change`. */
@@ -156,11 +154,6 @@ static double mass_of(const se3di_convex *c, const se3di_convex_island *island)
     return moves_as_one(c, island) ? sum : HUGE_VAL;
 }
 
-static double approach_of(const se3di_convex_contact *contact)
-{
-    return se3di_dot(contact->shift, contact->normal) - se3di_dot(contact->before, contact->normal);
-}
-
 /* Whether a contact is over soon whatever its bodies' joints move with them: one of them has none,
  * or what all weigh together is too little. */
 static int is_light(const se3di_convex *c, const se3di_convex_contact *contact, double mass)
@@ -171,7 +164,7 @@ static int is_light(const se3di_convex *c, const se3di_convex_contact *contact, 
             inverse = fmax(inverse, c->mobility[10 * (size_t)contact->free[k]]);
         }
     }
-    return se3di_convex_is_over_soon(contact, inverse, c->h, approach_of(contact));
+    return se3di_convex_is_over_soon(contact, inverse, c->h, se3di_convex_approach(contact));
 }
 
 /* Whether it makes no difference how a contact acts: it goes on, and all that it would be damped by
