@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* What particles are drawn from: random numbers, radii, places in a region. */
+/* What particles are drawn from: radii, places in a region. */
 
 #include "particles/draw.h"
 
 #include <float.h>
 #include <math.h>
-
-double se3di_random_draw(uint64_t *state)
-{
-    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
-    z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
 
 static double weight_of(const se3di_radii *radii, size_t k)
 {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* Random numbers (splitmix64), radii and places. */
+/* Radii and places, by chance. */
 #ifndef SE3DI_PARTICLES_DRAW_H
 #define SE3DI_PARTICLES_DRAW_H
 
+#include "math/random.h"
 #include "particles/set.h"
 
-/* Uniform in [0, 1); a radius; a point such that a sphere of that radius is within the box of a
+/* A radius; a point such that a sphere of that radius is within the box of a
  * region, or, along an axis along which it is flat, its centre; what rounding may take of a length
  * beside a border; whether the region holds it. */
-double se3di_random_draw(uint64_t *state);
 double se3di_radii_draw(const se3di_radii *radii, uint64_t *state);
 void se3di_region_draw(const se3di_region *region, double radius, uint64_t *state, double x[3]);
 static inline int se3di_region_is_flat(const double lower[3], const double upper[3], int axis)

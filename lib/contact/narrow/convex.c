@@ -7,10 +7,14 @@
  * simplex that walks towards it (Gilbert, Johnson, Keerthi 1988); the nearest point of a simplex is
  * the best of those of all its parts. Overlapping: the boundary of D nearest to the origin, by a
  * polytope inside D that grows where it is nearest (van den Bergen 2001). For polyhedra both end
- * exactly, for round bodies when a step gains less than 1e-12 of their size. */
+ * exactly, for round bodies when a step gains less than 1e-12 of their size. Of prisms side by side
+ * many corners of D lie in a plane, or on a line, but for rounding, which may spoil the polytope:
+ * then the search is made again with corners that are moved a little, by chance (joggled input of
+ * Qhull: Barber, Dobkin, Huhdanpaa 1996), and its direction set right. */
 #include "contact/narrow/internal.h"
 
 #include "math/larger.h"
+#include "math/random.h"
 #include "math/vec3.h"
 
 #include <float.h>
@@ -26,6 +30,8 @@
 #define SLIVER      1e-4  /* sine of the angle of a face below which it is one */
 #define APART       1e-9  /* of the size: cores that are */
 #define PLANE_SLACK 1e-13 /* relative; a face is not seen from closer to its plane */
+#define SHAKES      4     /* tries with moved corners */
+#define SHAKE       1e-10 /* of the size: how far corners are moved first, then ten times as far */
 
 typedef struct vertex {
     double p[3], a[3], b[3]; /* p = a - b */
@@ -36,7 +42,23 @@ typedef struct difference {
     double size;
     int is_round; /* by one cylinder or what is smooth: two cylinders may have rims that meet near
                      an axis, where the overlap is known only from close by */
+    double shake; /* how far its corners are moved by chance */
 } difference;
+
+/* By what its digits say: a corner that is met again moves as before. */
+static void shake_place(double far, double p[3])
+{
+    uint64_t state = 0;
+    for (int k = 0; k < 3; ++k) {
+        uint64_t bits;
+        memcpy(&bits, &p[k], sizeof bits);
+        state ^= bits;
+        (void)se3di_random_draw(&state);
+    }
+    for (int k = 0; k < 3; ++k) {
+        p[k] += far * (2.0 * se3di_random_draw(&state) - 1.0);
+    }
+}
 
 static void support(const difference *D, const double d[3], vertex *v)
 {
@@ -45,6 +67,9 @@ static void support(const difference *D, const double d[3], vertex *v)
     se3di_core_support(D->i, d, v->a);
     se3di_core_support(D->j, back, v->b);
     se3di_sub(v->a, v->b, v->p);
+    if (D->shake > 0.0) {
+        shake_place(D->shake, v->p);
+    }
 }
 
 typedef struct simplex {
@@ -448,15 +473,18 @@ static polytope_face *next_face(polytope *P, const least_reach *best)
 /* The normal with the least reach of D that a nearest face has had; the reach is the overlap. Near
  * a face of a round body the least reach is found at once, and what is left is to know that no
  * other face has a lesser one behind it. A face that cannot grow for rounding is left there, the
- * search goes on with the next: every reach is a bound. */
-static void expand(polytope *P, least_reach *best)
+ * search goes on with the next: every reach is a bound. Returns whether of polyhedra there is no
+ * lesser one; rounding may have spoilt their polytope. */
+static int expand(polytope *P, least_reach *best)
 {
     const double same = GAIN * P->D->size;
     double bound = -HUGE_VAL;
+    int is_least = 0;
     while (P->vertex_count < VERTICES) {
         polytope_face *f = next_face(P, best);
         const int is_spoilt = f && f->distance < bound - APART * P->D->size;
-        if (!f || !(f->distance < best->reach - same) || (is_spoilt && !P->D->is_round)) {
+        is_least = !f || !(f->distance < best->reach - same);
+        if (is_least || (is_spoilt && !P->D->is_round)) {
             break;
         }
         bound = f->distance;
@@ -479,11 +507,45 @@ static void expand(polytope *P, least_reach *best)
         if (reach - f->distance > same && grow(P, P->vertex_count)) {
             ++P->vertex_count;
         } else if (!P->D->is_round) {
+            is_least = !(reach - f->distance > same);
             break; /* what rounding has turned is set right at the end */
         }
     }
     find_witness(P, best);
     best->reach = best->reach < HUGE_VAL ? fmax(best->reach, 0.0) : 0.0;
+    return is_least;
+}
+
+/* From a simplex that holds the origin. */
+static int search(polytope *P, const difference *D, const simplex *s, least_reach *best)
+{
+    *best = (least_reach){.reach = HUGE_VAL};
+    P->D = D;
+    begin(P, s);
+    return expand(P, best);
+}
+
+/* Again, of polyhedra, with their corners moved a little. */
+static void search_shaken(polytope *P, const difference *D, const simplex *s, least_reach *best)
+{
+    difference shaken = *D;
+    int is_least = 0;
+    shaken.shake = SHAKE * D->size;
+    for (int k = 0; k < SHAKES && !is_least; ++k, shaken.shake *= 10.0) {
+        simplex moved = *s;
+        least_reach here;
+        for (int c = 0; c < moved.count; ++c) {
+            shake_place(shaken.shake, moved.v[c].p);
+        }
+        is_least = search(P, &shaken, &moved, &here);
+        vertex v;
+        support(D, here.n, &v);
+        here.reach = se3di_dot(v.p, here.n);
+        (void)se3di_convex_polish(D->i, D->j, here.n, here.a, here.b, &here.reach);
+        if (here.reach < best->reach) {
+            *best = here;
+        }
+    }
 }
 
 /* Cores without volume in their difference (crossing lines): perpendicular to both. */
@@ -542,7 +604,7 @@ static double size_of(const se3di_solid *solid)
 
 int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double distance)
 {
-    difference D = {i, j, size_of(i) + size_of(j), 0};
+    difference D = {i, j, size_of(i) + size_of(j), 0, 0.0};
     simplex s;
     double point[3];
     memset(&s, 0, sizeof s);
@@ -553,7 +615,7 @@ int se3di_convex_are_apart(const se3di_solid *i, const se3di_solid *j, double di
 int se3di_convex_are_parted(const se3di_solid *i, const se3di_solid *j, const double n[3],
                             double distance)
 {
-    difference D = {i, j, size_of(i) + size_of(j), 0};
+    difference D = {i, j, size_of(i) + size_of(j), 0, 0.0};
     vertex v;
     support(&D, n, &v);
     return -se3di_dot(v.p, n) > se3di_raised(APART * D.size, distance);
@@ -578,10 +640,10 @@ static double overlap_of(const difference *D, simplex *s, double normal[3], doub
         return flat_normal(D, s, normal);
     }
     polytope P;
-    least_reach best = {.reach = HUGE_VAL};
-    P.D = D;
-    begin(&P, s);
-    expand(&P, &best);
+    least_reach best;
+    if (!search(&P, D, s, &best) && !D->is_round) {
+        search_shaken(&P, D, s, &best);
+    }
     const int is_smooth = se3di_solid_is_smooth(D->i) || se3di_solid_is_smooth(D->j);
     if (!best.is_settled && (best.is_sliver || is_smooth || rims_i || rims_j)) {
         (void)se3di_convex_polish(D->i, D->j, best.n, best.a, best.b, &best.reach);
@@ -597,7 +659,7 @@ double se3di_convex_distance(const se3di_solid *i, const se3di_solid *j, double 
 {
     const int smooth = se3di_solid_is_smooth(i) || se3di_solid_is_smooth(j);
     difference D = {i, j, size_of(i) + size_of(j),
-                    smooth || se3di_solid_has_rims(i) != se3di_solid_has_rims(j)};
+                    smooth || se3di_solid_has_rims(i) != se3di_solid_has_rims(j), 0.0};
     simplex s;
     double point[3];
     const double least = APART * D.size;
