@@ -9,6 +9,7 @@
 #include "support/separation.h"
 
 #define SAME  5e-8 /* what overlaps less may not be known to */
+#define BULGE 6e-5 /* of the radius of a rim: what its points may be less deep than it */
 #define SIDES 4
 
 /* A polygon of 3 to SIDES corners on an ellipse, between two ends. */
@@ -66,54 +67,88 @@ static double deepest(const se3di_manifold *m)
     return most;
 }
 
+typedef struct tally {
+    int counted, wrong;
+} tally;
+
+/* Side by side, moved until they overlap by what is wanted, see test_depth.c. */
+static void try_pair(uint64_t *seed, int k, const se3di_shape *i, const se3di_shape *j, int flush,
+                     tally *all)
+{
+    se3di_shape_pose at, of;
+    se3di_manifold m;
+    double n[3], along[3] = {0.0, 0.0, 0.0};
+    const double lean = k % 2 == 0 ? 0.0 : pow(10.0, poses_between(seed, -15.0, -3.0));
+    const int is_round = se3di_shape_is(i, SE3DI_SHAPE_HAS_RIMS);
+    const double same = SAME + (is_round ? BULGE * i->radius : 0.0);
+    poses_turn(seed, &of);
+    turn_beside(seed, &of, lean, &at);
+    for (int c = 0; c < 2; ++c) {
+        along[c] = 0.1 * check_random(seed);
+    }
+    along[2] = flush ? 0.0 : 0.05 * check_random(seed);
+    se3di_mul(of.R, along, at.x);
+    const double least = separation_of(i, &at, j, &of, n);
+    const double wanted = 0.03 * pow(10.0, poses_between(seed, -7.0, 0.0));
+    if (!(least > wanted)) {
+        return;
+    }
+    se3di_add_scaled(wanted - least, n, at.x);
+    se3di_narrow_find(i, &at, j, &of, &m);
+    const double found = deepest(&m);
+    ++all->counted;
+    if (!(fabs(found - wanted) < same)) {
+        ++all->wrong;
+        if (poses_are_many()) {
+            printf("%d: overlap %.12g, not %.12g, lean %.3g, %u points\n", k, found, wanted, lean,
+                   m.count);
+        }
+    }
+}
+
+static void check_tally(const char *what, int poses, const tally *all)
+{
+    if (poses_are_many()) {
+        printf("%d %s, %d wrong\n", all->counted, what, all->wrong);
+    }
+    CHECK(2 * all->counted > poses);
+    CHECK(all->wrong == 0);
+}
+
 static void prisms_side_by_side_are_as_deep_as_the_least_translation(void)
 {
     const int poses = poses_count(4000);
     uint64_t seed = 21;
-    int counted = 0, wrong = 0;
+    tally all = {0, 0};
     for (int k = 0; k < poses; ++k) {
         poses_solid i, j;
-        se3di_shape_pose at, of;
-        se3di_manifold m;
-        double n[3], along[3] = {0.0, 0.0, 0.0}, axis[3];
+        const int flush = k % 3 == 0;
         const double half = poses_between(&seed, 0.04, 0.25);
         random_prism(&seed, half, &i);
-        random_prism(&seed, k % 3 == 0 ? half : poses_between(&seed, 0.04, 0.25), &j);
-        const double lean = k % 2 == 0 ? 0.0 : pow(10.0, poses_between(&seed, -15.0, -3.0));
-        poses_turn(&seed, &of);
-        turn_beside(&seed, &of, lean, &at);
-        for (int c = 0; c < 2; ++c) {
-            along[c] = 0.1 * check_random(&seed);
-        }
-        along[2] = k % 3 == 0 ? 0.0 : 0.05 * check_random(&seed);
-        se3di_mul(of.R, along, axis);
-        se3di_copy(axis, at.x);
-        const double least = separation_of(&i.shape, &at, &j.shape, &of, n);
-        const double wanted = 0.03 * pow(10.0, poses_between(&seed, -7.0, 0.0));
-        if (!(least > wanted)) {
-            continue;
-        }
-        se3di_add_scaled(wanted - least, n, at.x);
-        se3di_narrow_find(&i.shape, &at, &j.shape, &of, &m);
-        const double found = deepest(&m);
-        ++counted;
-        if (!(fabs(found - wanted) < SAME)) {
-            ++wrong;
-            if (poses_are_many()) {
-                printf("%d: overlap %.12g, not %.12g, lean %.3g, %u points\n", k, found, wanted,
-                       lean, m.count);
-            }
-        }
+        random_prism(&seed, flush ? half : poses_between(&seed, 0.04, 0.25), &j);
+        try_pair(&seed, k, &i.shape, &j.shape, flush, &all);
     }
-    if (poses_are_many()) {
-        printf("%d prisms, %d wrong\n", counted, wrong);
+    check_tally("prisms", poses, &all);
+}
+
+/* Within its length, or beyond its ends. */
+static void a_log_along_a_block_is_as_deep_as_the_least_translation(void)
+{
+    const int poses = poses_count(4000);
+    uint64_t seed = 22;
+    tally all = {0, 0};
+    for (int k = 0; k < poses; ++k) {
+        poses_solid i, j;
+        poses_random_solid(SE3DI_SHAPE_CYLINDER, &seed, &i);
+        poses_random_solid(SE3DI_SHAPE_BOX, &seed, &j);
+        try_pair(&seed, k, &i.shape, &j.shape, k % 3 == 0, &all);
     }
-    CHECK(2 * counted > poses);
-    CHECK(wrong == 0);
+    check_tally("logs along blocks", poses, &all);
 }
 
 int main(void)
 {
     RUN(prisms_side_by_side_are_as_deep_as_the_least_translation);
+    RUN(a_log_along_a_block_is_as_deep_as_the_least_translation);
     return check_finish();
 }

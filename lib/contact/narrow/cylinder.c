@@ -324,6 +324,35 @@ static void try_rims(search *s, int edge)
 
 /* ---- ---- */
 
+/* The middle of the line on the side of the cylinder that looks along -n; returns 0 if a cap does.
+ */
+static int find_side(const search *s, double q[3])
+{
+    double side[3];
+    se3di_copy(s->n, side);
+    se3di_add_scaled(-se3di_dot(s->n, s->c), s->c, side);
+    const double size = se3di_norm(side);
+    se3di_copy(s->d, q);
+    se3di_add_scaled(size > 0.0 ? -s->radius / size : 0.0, side, q);
+    return size > SKEW;
+}
+
+/* Whether no direction has a lesser overlap because none has one of the line on the side of the
+ * cylinder that is deepest, whose directions are faces and products alone: what lies on a face or
+ * across an edge. */
+static int is_least_of_line(const search *s)
+{
+    search line = *s;
+    line.radius = 0.0;
+    line.least = HUGE_VAL;
+    if (!find_side(s, line.d)) {
+        return 0;
+    }
+    try_flats(&line);
+    try_edges(&line);
+    return !(line.least < s->least - s->tie);
+}
+
 /* The place where an edge of the block and a straight side of the cylinder cross, on the part of
  * the edge that is beside the side. */
 static void touch_lines(const search *s, const double p[3], const double q[3], double at[3])
@@ -345,16 +374,12 @@ static void touch_lines(const search *s, const double p[3], const double q[3], d
 /* The places of the two that are farthest in each other, in the frame of the block. */
 static void find_places(const search *s, double on_block[3], double on_cylinder[3])
 {
-    double p[3], q[3], side[3];
+    double p[3], q[3];
     const double up = se3di_dot(s->n, s->c) < 0.0 ? 1.0 : -1.0; /* it looks along -n */
     for (int k = 0; k < 3; ++k) {
         p[k] = s->n[k] < 0.0 ? -s->half[k] : s->half[k];
     }
-    se3di_copy(s->n, side);
-    se3di_add_scaled(-se3di_dot(s->n, s->c), s->c, side);
-    const double size = se3di_norm(side);
-    se3di_copy(s->d, q);
-    se3di_add_scaled(size > 0.0 ? -s->radius / size : 0.0, side, q);
+    (void)find_side(s, q);
     if (s->what == OF_LINES) {
         p[s->edge] = 0.0;
         touch_lines(s, p, q, on_block);
@@ -392,7 +417,7 @@ double se3di_cylinder_overlap(const se3di_solid *block, const se3di_solid *cylin
     se3di_mul_transposed(block->at->R, arm, s.d);
     try_flats(&s);
     try_edges(&s);
-    if (s.radius > 0.0 && s.least > 0.0) {
+    if (s.radius > 0.0 && s.least > 0.0 && !is_least_of_line(&s)) {
         try_corners(&s);
         for (int k = 0; k < 3 && s.least > 0.0; ++k) {
             if (s.half[k] > 0.0) {
