@@ -49,13 +49,14 @@ typedef struct se3di_assembly {
     uint32_t *timed_rows;      /* rows with a function of time */
     uint32_t timed_count;
     uint32_t constraint_count, place_count, dense_count, joint_body_count;
-    double *H;           /* body blocks */
-    double *H_pair;      /* of the bodies that armatures couple: rows of the first, columns of the
+    double *H;       /* body blocks */
+    double *H_pair;  /* of the bodies that armatures couple: rows of the first, columns of the
                             second */
-    double *C;           /* joint blocks */
-    double *f;           /* [rows * 3] jets of the functions of time */
-    double *wrench;      /* [dense bodies * 6] */
-    double power[2];     /* of gravity and elements with it: dissipated, fed in [W] */
+    double *C;       /* joint blocks */
+    double *f;       /* [rows * 3] jets of the functions of time */
+    double *wrench;  /* [dense bodies * 6] */
+    double power[2]; /* of gravity and elements with it: dissipated, fed in [W] */
+    double contact_power[2]; /* the same of contacts of bodies, of the last loads */
     const double *push;  /* the same, from outside the model's elements (particles); NULL: none */
     double time;         /* of the last evaluation, and of its functions of time */
     uint32_t user_count; /* constraints with a callback */

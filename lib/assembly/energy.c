@@ -107,21 +107,22 @@ se3d_status se3di_loads_potential(const se3di_model *model, double t, double *po
     return SE3D_OK;
 }
 
-se3d_status se3di_loads_complete_power(const se3di_model *model, double t, double power[3])
+se3d_status se3di_loads_complete_power(const se3di_model *model, double t, const double contacts[2],
+                                       double power[3])
 {
     power[2] = 0.0;
     SE3DI_TRY(driver_power(model, t, &power[2]));
-    double into, fed;
-    se3di_contacts_power(model, t, &into, &fed);
-    power[0] += into;
-    power[1] += fed;
+    power[0] += contacts[0];
+    power[1] += contacts[1];
     return SE3D_OK;
 }
 
 se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3])
 {
+    double contacts[2];
     SE3DI_TRY(eval_power(model, t, power));
-    return se3di_loads_complete_power(model, t, power);
+    se3di_contacts_power(model, t, contacts);
+    return se3di_loads_complete_power(model, t, contacts, power);
 }
 
 se3d_status se3di_work_accept(se3di_model *model, double h)

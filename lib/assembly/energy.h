@@ -17,8 +17,9 @@ se3d_status se3di_loads_potential(const se3di_model *model, double t, double *po
  * changes, fed in by drivers (from model->lambda)}. All that goes into contacts counts as
  * dissipated; what their springs hold of it is subtracted when energies are reported. */
 se3d_status se3di_loads_power(const se3di_model *model, double t, double power[3]);
-/* The same where power[0] and power[1] hold those of gravity and elements. */
-se3d_status se3di_loads_complete_power(const se3di_model *model, double t, double power[3]);
+/* The same where power[0] and power[1] hold those of gravity and elements; contacts: theirs. */
+se3d_status se3di_loads_complete_power(const se3di_model *model, double t, const double contacts[2],
+                                       double power[3]);
 /* Add the work since the last accepted state, over a step h, by the trapezoidal rule to model->work
  * (h = 0: only note the present power, and begin the audit if it is void). */
 se3d_status se3di_work_accept(se3di_model *model, double h);

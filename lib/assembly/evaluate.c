@@ -280,7 +280,7 @@ se3d_status se3di_assembly_sum_loads(se3di_assembly *assembly, double t, se3di_f
                                      se3di_error *error)
 {
     SE3DI_TRY(sum_elements(assembly, t, sums, error));
-    se3di_contacts_add_wrenches(assembly->model, t, assembly->wrench);
+    se3di_contacts_add_wrenches(assembly->model, t, assembly->wrench, assembly->contact_power);
     for (size_t k = 0; assembly->push && k < 6 * (size_t)assembly->dense_count; ++k) {
         assembly->wrench[k] += assembly->push[k];
     }

@@ -4,7 +4,7 @@
 se3d_status se3di_loads_sum(const se3di_model *model, double t, se3di_force_sums *sums)
 {
     SE3DI_TRY(se3di_forces_sum(model, t, sums));
-    se3di_contacts_add_wrenches(model, t, sums->wrench);
+    se3di_contacts_add_wrenches(model, t, sums->wrench, NULL);
     return SE3D_OK;
 }
 

@@ -336,7 +336,7 @@ static void find_push(const se3di_convex *c, const se3di_assembly *assembly, dou
     const size_t count = 6 * (size_t)assembly->dense_count;
     memset(c->push, 0, count * sizeof *c->push);
     if (model->contacts.count > 0) { /* else all pairs would be looked at once more */
-        se3di_contacts_add_wrenches(model, t1, c->push);
+        se3di_contacts_add_wrenches(model, t1, c->push, NULL);
     }
     for (size_t k = 0; k < count; ++k) {
         c->push[k] = 0.0 - c->push[k];
@@ -611,10 +611,10 @@ static void rouse(se3di_integration *integration)
 static se3d_status renew(se3di_integration *integration)
 {
     se3di_model *model = integration->equations->assembly.model;
-    double into, fed;
-    se3di_contacts_power(model, model->time, &into, &fed);
-    model->power[0] -= into + se3di_convex_apart_power(model);
-    model->power[1] -= fed;
+    double contacts[2];
+    se3di_contacts_power(model, model->time, contacts);
+    model->power[0] -= contacts[0] + se3di_convex_apart_power(model);
+    model->power[1] -= contacts[1];
     rouse(integration);
     return SE3D_OK;
 }

@@ -96,9 +96,12 @@ se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, cons
     if (l && assembly->row_count > 0 && l != model->lambda) {
         memcpy(model->lambda, l, assembly->row_count * sizeof *l);
     }
+    static const double none[2] = {0.0, 0.0};
+    const int may_touch = model->shape_slots.count > 1;
     power[2] = 0.0;
-    return l || model->shape_slots.count > 1 ? se3di_loads_complete_power(model, t, power)
-                                             : SE3D_OK;
+    return l || may_touch ? se3di_loads_complete_power(
+                                model, t, may_touch ? assembly->contact_power : none, power)
+                          : SE3D_OK;
 }
 
 /* All of a derivative but the powers. @return where these begin */

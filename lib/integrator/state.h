@@ -39,7 +39,8 @@ se3d_status se3di_state_derivative_of(se3di_equations *equations, double t, doub
 se3d_status se3di_state_powers(se3di_assembly *assembly, double t, const double *l,
                                double power[3]);
 
-/* The same where power[0] and power[1] hold those of gravity and elements. */
+/* The same where power[0] and power[1] hold those of gravity and elements, and the loads were found
+ * last. */
 se3d_status se3di_state_complete_powers(se3di_assembly *assembly, double t, const double *l,
                                         double power[3]);
 

@@ -162,7 +162,10 @@ static void wrench_at(const trial *t, const se3di_frame base[3], int direction, 
         (a < 3 ? frame->v : frame->w)[a % 3] += s;
     }
     se3di_frame_update(frame);
-    se3di_contacts_add_wrenches(t->model, t->time, wrench);
+    double power[2], alone[2];
+    se3di_contacts_add_wrenches(t->model, t->time, wrench, power);
+    se3di_contacts_power(t->model, t->time, alone);
+    CHECK(power[0] == alone[0] && power[1] == alone[1]);
     memcpy(out, wrench + 6, 12 * sizeof *out);
     memcpy(t->model->frames, base, 3 * sizeof *base);
 }

@@ -168,15 +168,27 @@ void se3di_contacts_look(se3di_model *model)
     }
 }
 
+static se3d_status add_power(void *ctx, const se3di_encounter *e)
+{
+    double *sum = ctx;
+    sum[0] += se3di_encounter_power(e);
+    sum[1] += se3di_encounter_fed(e);
+    return SE3D_OK;
+}
+
+typedef struct wrench_sums {
+    double *wrench, *power; /* power NULL: not asked for */
+} wrench_sums;
+
 static se3d_status add_wrench(void *ctx, const se3di_encounter *e)
 {
-    double *wrench = ctx;
+    const wrench_sums *sums = ctx;
     double both[12];
     se3di_encounter_wrench(e, both);
     for (int k = 0; k < 12; ++k) {
-        wrench[6 * (size_t)e->body[k / 6] + (size_t)(k % 6)] += both[k];
+        sums->wrench[6 * (size_t)e->body[k / 6] + (size_t)(k % 6)] += both[k];
     }
-    return SE3D_OK;
+    return sums->power ? add_power(sums->power, e) : SE3D_OK;
 }
 
 void se3di_contact_push(const se3di_frame *frame, const double arm[3], double share,
@@ -206,8 +218,13 @@ static void add_stepped_wrench(const se3di_model *model, const se3di_body_contac
     }
 }
 
-void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench)
+void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench,
+                                 double power[2])
 {
+    wrench_sums sums = {wrench, power};
+    if (power) {
+        power[0] = power[1] = 0.0;
+    }
     if (are_stepped(model)) {
         for (size_t k = 0; k < model->contacts.count; ++k) {
             const se3di_body_contact *c = &model->contacts.list[k];
@@ -217,7 +234,7 @@ void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wre
         }
         return;
     }
-    (void)se3di_contacts_visit(model, t, add_wrench, wrench);
+    (void)se3di_contacts_visit(model, t, add_wrench, &sums);
 }
 
 static se3d_status add_energy(void *ctx, const se3di_encounter *e)
@@ -254,22 +271,12 @@ double se3di_contacts_potential(const se3di_model *model, double t)
     return sum;
 }
 
-static se3d_status add_power(void *ctx, const se3di_encounter *e)
+void se3di_contacts_power(const se3di_model *model, double t, double power[2])
 {
-    double *sum = ctx;
-    sum[0] += se3di_encounter_power(e);
-    sum[1] += se3di_encounter_fed(e);
-    return SE3D_OK;
-}
-
-void se3di_contacts_power(const se3di_model *model, double t, double *power, double *fed)
-{
-    double sum[2] = {0.0, 0.0};
+    power[0] = power[1] = 0.0;
     if (!are_stepped(model)) { /* else the step has counted what its impulses did */
-        (void)se3di_contacts_visit(model, t, add_power, sum);
+        (void)se3di_contacts_visit(model, t, add_power, power);
     }
-    *power = sum[0];
-    *fed = sum[1];
 }
 
 void se3di_contacts_begin(se3di_model *model, double h, double weight, int jumps)

@@ -32,8 +32,10 @@ const char *se3di_shape_describe(const se3di_model *model, uint32_t shape);
 void se3di_contacts_describe_depth(const se3di_model *model, const uint32_t shapes[2],
                                    double overlap, char text[SE3DI_DEPTH_SIZE]);
 
-/* Add the wrenches of all contacts, [bodies * 6] as those of force elements. */
-void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench);
+/* Add the wrenches of all contacts, [bodies * 6] as those of force elements. `power` gets what
+ * se3di_contacts_power tells; NULL: it is not asked for. */
+void se3di_contacts_add_wrenches(const se3di_model *model, double t, double *wrench,
+                                 double power[2]);
 /* Add `share` of a force (ground frame) at `arm` from the centre of mass to the wrench of a
  * body. */
 void se3di_contact_push(const se3di_frame *frame, const double arm[3], double share,
@@ -45,7 +47,7 @@ double se3di_contact_stiffness(const se3di_model *model, const se3di_body_contac
 double se3di_contacts_potential(const se3di_model *model, double t);
 /* Power that goes into them [W]: into springs, and lost; of that what the drives of surfaces that
  * move on their bodies give. */
-void se3di_contacts_power(const se3di_model *model, double t, double *power, double *fed);
+void se3di_contacts_power(const se3di_model *model, double t, double power[2]);
 
 /* Memory that the state at t will need, if it does not have many more contacts than the last one:
  * for methods that cannot go back once they have moved something. */
