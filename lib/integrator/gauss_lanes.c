@@ -125,6 +125,9 @@ static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m,
     fill_group(own, rule, index * w, w, m->assembly->model->gravity);
     se3di_lanes_lay_out(&own->lanes, tree, g->core, own->verdict + w);
     se3di_lanes_load(&own->lanes, own->gravity, 0);
+    if (m->equations->is_open_tree) {
+        se3di_lanes_take_plane(&own->lanes);
+    }
     if (g->has_loops) {
         se3di_lanes_take_loops(&own->lanes, &loops->rows,
                                loops->memory + index * w * se3di_lane_loops_room(&loops->rows));
@@ -158,6 +161,12 @@ static void lay_out(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_r
     }
 }
 
+/* One stage after the other, in space, is done without lanes, to the same bits. */
+static int suits_width(const se3di_tree *tree, const se3di_lane_core *core)
+{
+    return core->width > 1 || se3di_tree_is_planar(tree);
+}
+
 /* Nothing that they are laid out by changes within a call, but for the stages and whether loops can
  * be computed so. */
 se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_rule *rule)
@@ -166,7 +175,7 @@ se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_r
     se3di_gauss_lanes *g = (se3di_gauss_lanes *)(void *)work;
     const se3di_lane_core *core = find_core(rule->stages);
     const int has_loops = se3di_gauss_lanes_take_loops(m);
-    if (!has_loops && (core->width == 1 || !is_bare_tree(m))) {
+    if (!has_loops && !(is_bare_tree(m) && suits_width(m->equations->tree, core))) {
         return NULL;
     }
     if (m->laid_out != rule->stages || g->has_loops != has_loops) {

@@ -41,10 +41,11 @@ typedef struct extent {
     size_t nodes, velocities, branches, bodies;
 } extent;
 
-#define PARTS      14
+#define PARTS      15
 #define LINK_SIZE  (sizeof(se3di_tree_link) / sizeof(double))
 #define INERTIA    (sizeof(se3di_tree_inertia) / sizeof(double))
 #define FRAME_SIZE (sizeof(se3di_frame) / sizeof(double))
+#define PLANE_SIZE (sizeof(se3di_lane_plane) / sizeof(double))
 
 /* @return numbers of all */
 static size_t list_parts(se3di_lanes *l, extent of, part parts[PARTS])
@@ -65,6 +66,7 @@ static size_t list_parts(se3di_lanes *l, extent of, part parts[PARTS])
         {&l->joint, 12 * of.nodes},
         {&l->frames, FRAME_SIZE * of.bodies},
         {&l->loads, 6 * of.bodies},
+        {&l->planes, PLANE_SIZE * of.nodes},
     };
     size_t total = 0;
     _Static_assert(sizeof list == PARTS * sizeof *list, "all of them");
@@ -143,6 +145,10 @@ void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts)
 
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot)
 {
+    if (lanes->plane) {
+        lanes->core->fall_in_plane(lanes, qddot);
+        return;
+    }
     lanes->core->factor(lanes, effort);
     if (lanes->loops) {
         lanes->core->factor_rows(lanes);

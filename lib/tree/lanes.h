@@ -39,6 +39,15 @@ typedef struct se3di_lane_load {
     double force[3], torque[3];
 } se3di_lane_load;
 
+/* A node of a tree that moves in planes (lane_plane.inc), in the plane of its root: from the
+ * parent's point to its own at the parent's angle zero, and from there to the centre of mass. */
+typedef struct se3di_lane_plane {
+    double d[2], s[2];
+    double turn, sense; /* its angle, less the parent's, is turn + sense q */
+    double J, mass;     /* about the joint point */
+    double axes[6];     /* of the plane, of a root */
+} se3di_lane_plane;
+
 struct se3di_tree_loops;
 
 /* A row of a loop. */
@@ -117,6 +126,8 @@ typedef struct se3di_lane_core {
      * lanes->c, and the largest; the least change, weighed by the masses, that closes them. */
     void (*find_gaps)(const se3di_lanes *lanes, int rates, double *largest);
     void (*correct)(const se3di_lanes *lanes, double *dq);
+    /* Accelerations of a tree that moves in planes by gravity alone, after place(). */
+    void (*fall_in_plane)(const se3di_lanes *lanes, double *qddot);
     /* 1.0 if all [count] numbers are finite, else not a number. */
     void (*check)(size_t count, const double *x, double *verdict);
 } se3di_lane_core;
@@ -146,6 +157,8 @@ struct se3di_lanes {
     size_t memory_count;
     const se3di_lane_loops *loops; /* NULL: there are none, or nobody closes them */
     double *K, *Y, *L, *pivot, *c, *z;
+    const se3di_lane_plane *plane; /* [nodes], NULL: all moves in space; */
+    double *planes;                /* memory for them */
 };
 
 /* Memory for `core`; with frames and loads of bodies if wanted. @return OK, NO_MEMORY */
@@ -171,6 +184,13 @@ void se3di_lane_loops_take_least(se3di_lane_loops *lane_loops, double part);
 /* Numbers of a state that their work takes, in memory that somebody else has, aligned. */
 size_t se3di_lane_loops_room(const se3di_lane_loops *lane_loops);
 void se3di_lanes_take_loops(se3di_lanes *lanes, const se3di_lane_loops *lane_loops, double *memory);
+
+/* Whether all that moves, moves in planes: the joints of a tree are revolutes about parallel axes
+ * without inertia of their own. */
+int se3di_tree_is_planar(const se3di_tree *tree);
+/* If so, the lanes place, accelerate and measure by the three freedoms that links have in a plane,
+ * for lanes on which nothing but gravity acts. */
+void se3di_lanes_take_plane(se3di_lanes *lanes);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot);

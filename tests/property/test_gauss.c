@@ -8,6 +8,7 @@
 #include "support/text_model.h"
 #include "support/tree_world.h"
 #include "support/world.h"
+#include "tree/lanes.h"
 
 #include <math.h>
 #include <string.h>
@@ -361,27 +362,40 @@ static int add_effort(se3d_system *system, const tree_world *w)
     return 0;
 }
 
-/* A force element, though it does nothing, has the stages computed one after the other. */
+/* How far the bodies of two systems are apart, and their velocities. */
+static double compare_worlds(const tree_world *w, const se3d_system *other)
+{
+    double largest = 0.0;
+    for (int k = 1; k < w->count; ++k) {
+        const se3di_frame *a = &w->system->model.frames[k], *b = &other->model.frames[k];
+        for (int c = 0; c < 3; ++c) {
+            largest = fmax(largest, fabs(a->r[c] - b->r[c]) + fabs(a->p[c] - b->p[c]));
+            largest = fmax(largest, fabs(a->v[c] - b->v[c]) + fabs(a->w[c] - b->w[c]));
+        }
+    }
+    return largest;
+}
+
+/* A force element, though it does nothing, has the stages computed one after the other. What moves
+ * in a plane is rounded otherwise there. */
 static void stages_in_lanes_have_the_same_bits_as_one_by_one(void)
 {
     int compared = 0;
     for (uint64_t seed = 0; seed < 24; ++seed) {
         tree_world w;
+        se3di_tree tree;
         se3d_system *other;
         const double tolerance = seed % 4 < 2 ? 1e-4 : 1e-8;
         const int32_t order = seed % 2 ? 8 : 16;
         make_bare(&w, seed);
+        CHECK(!se3di_tree_init(&tree, &w.system->model, 1, NULL));
+        const int is_planar = se3di_tree_is_planar(&tree);
+        se3di_tree_destroy(&tree);
         CHECK(!se3d_system_clone(w.system, &other));
         const int differs = add_effort(other, &w);
-        compared += differs;
+        compared += differs && !is_planar;
         CHECK(run_bare(w.system, order, tolerance) == run_bare(other, order, tolerance));
-        for (int k = 1; differs && k < w.count; ++k) {
-            const se3di_frame *a = &w.system->model.frames[k], *b = &other->model.frames[k];
-            for (int c = 0; c < 3; ++c) {
-                CHECK(a->r[c] == b->r[c] && a->p[c] == b->p[c]);
-                CHECK(a->v[c] == b->v[c] && a->w[c] == b->w[c]);
-            }
-        }
+        CHECK(!(compare_worlds(&w, other) > (is_planar ? 1e-10 : 0.0)));
         se3d_system_destroy(other);
         tree_world_destroy(&w);
     }

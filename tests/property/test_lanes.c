@@ -299,12 +299,139 @@ static void sums_and_unit_quaternions_are_those_of_doubles(void)
     }
 }
 
+/* A revolute whose axis is `axis`, up to its sign on either body, but for `tilt`. */
+static void add_parallel_joint(tree_world *w, int i, int j, const double axis[3], double tilt)
+{
+    double at[3], along[3], tilted[3];
+    se3d_joint_def def = se3d_joint_def_default();
+    tree_vector(w, at, 3, 1.5);
+    se3di_scale(tree_below(w, 2) ? 1.0 : -1.0, axis, along);
+    def.angle0 = tree_uniform(w, -4.0, 4.0);
+    def.body_i = w->bodies[i];
+    def.body_j = w->bodies[j];
+    tree_to_body(w, i, at, along, def.point_i, def.axis_i);
+    se3di_scale(tree_below(w, 2) ? 1.0 : -1.0, axis, tilted);
+    tilted[0] += tilt;
+    tilted[1] -= 0.3 * tilt;
+    tree_to_body(w, j, at, tilted, def.point_j, def.axis_j);
+    CHECK(!se3d_joint_create_revolute(w->system, &def, &w->joints[w->joint_count++]));
+}
+
+/* Bodies of any inertia, anywhere along the axes; several of them may hang on the ground or on one
+ * body. */
+static void make_parallel(tree_world *w, uint64_t seed, double tilt)
+{
+    double axis[3], gravity[3];
+    tree_world_init(w, seed, 0, 0);
+    tree_unit(w, axis, 3);
+    tree_vector(w, gravity, 3, 10.0);
+    CHECK(!se3d_system_set_gravity(w->system, gravity));
+    for (int k = 1; k <= 1 + (int)(seed % TREE_BODIES_MAX); ++k) {
+        tree_add_body(w);
+        const int other = k > 1 && tree_below(w, 3) == 0 ? tree_below(w, k) : k - 1;
+        const int turned = tree_below(w, 2);
+        add_parallel_joint(w, turned ? k : other, turned ? other : k, axis, k == 2 ? tilt : 0.0);
+    }
+}
+
+/* Accelerations of all lanes, and sizes of the rates as changes. */
+static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_plane, const double *q,
+                 const double *qdot, double *qddot, double *sizes)
+{
+    static const double scale[3] = {0.7, 1.3, 0.9};
+    _Alignas(SE3DI_LANES_ALIGN) double gravity[3 * SE3DI_LANES_MAX], change[LANE_NUMBERS];
+    const size_t w = (size_t)core->width, count = tree->v_count * w;
+    se3di_lanes lanes;
+    CHECK(!se3di_lanes_init(&lanes, tree, core, 0));
+    for (size_t k = 0; k < 3 * w; ++k) {
+        gravity[k] = tree->model->gravity[k / w] * (double)(1 + k % w);
+    }
+    se3di_lanes_load(&lanes, gravity, 0);
+    if (in_plane) {
+        se3di_lanes_take_plane(&lanes);
+        CHECK(lanes.plane);
+    }
+    core->place(&lanes, q, qdot);
+    se3di_lanes_accelerate(&lanes, NULL, qddot);
+    memcpy(change, qdot, count * sizeof *change);
+    memcpy(change + count, qddot, count * sizeof *change);
+    core->measure(&lanes, q, change, scale, sizes);
+    se3di_lanes_destroy(&lanes);
+}
+
+static void trees_of_parallel_axes_move_in_a_plane_as_in_space(void)
+{
+    for (uint64_t seed = 0; seed < 3 * MECHANISMS; ++seed) {
+        _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
+        _Alignas(SE3DI_LANES_ALIGN) double in_space[LANE_NUMBERS], sizes[2][SE3DI_LANES_MAX];
+        double alone[NUMBERS], largest = 1.0;
+        tree_world world;
+        se3di_tree tree;
+        make_parallel(&world, seed, 0.0);
+        CHECK(!se3di_tree_init(&tree, &world.system->model, 1, NULL));
+        CHECK(se3di_tree_is_planar(&tree));
+        for (size_t n = 0; n < sizeof widths / sizeof *widths; ++n) {
+            const se3di_lane_core *core = se3di_lane_core_find(widths[n]);
+            const size_t w = (size_t)widths[n];
+            uint64_t same = seed + 1;
+            for (size_t k = 0; core && k < tree.v_count; ++k) { /* the same in lane 0 */
+                q[k * w] = 3.0 * check_random(&same);
+                qdot[k * w] = 4.0 * check_random(&same);
+                for (size_t lane = 1; lane < w; ++lane) {
+                    q[k * w + lane] = 3.0 * check_random(&world.seed);
+                    qdot[k * w + lane] = 4.0 * check_random(&world.seed);
+                }
+            }
+            if (!core) {
+                continue;
+            }
+            fall(&tree, core, 0, q, qdot, in_space, sizes[0]);
+            fall(&tree, core, 1, q, qdot, out, sizes[1]);
+            for (size_t k = 0; k < tree.v_count * w; ++k) {
+                largest = fmax(largest, fabs(in_space[k]));
+            }
+            for (size_t k = 0; k < tree.v_count * w; ++k) {
+                CHECK_NEAR(out[k] / largest, in_space[k] / largest, 1e-11);
+            }
+            for (size_t lane = 0; lane < w; ++lane) {
+                CHECK_NEAR(sizes[1][lane] / sizes[0][lane], 1.0, 1e-10);
+            }
+            for (size_t k = 0; k < tree.v_count; ++k) {
+                CHECK(w == 1 || out[k * w] == alone[k]);
+                alone[k] = out[k * w];
+            }
+        }
+        se3di_tree_destroy(&tree);
+        tree_world_destroy(&world);
+    }
+}
+
+static void axes_that_are_not_parallel_do_not_move_in_a_plane(void)
+{
+    for (uint64_t seed = 1; seed < TREE_BODIES_MAX; ++seed) { /* two bodies or more */
+        tree_world world;
+        se3di_tree tree;
+        make_parallel(&world, seed, 1e-9);
+        CHECK(!se3di_tree_init(&tree, &world.system->model, 1, NULL));
+        int hangs = 0; /* a tilt on the ground is the plane of its own root */
+        for (uint32_t k = 0; k < tree.count; ++k) {
+            hangs += tree.nodes[k].parent >= 0 && (tree.nodes[k].T[2] != 0.0) &&
+                     fabs(tree.nodes[k].T[2]) + fabs(tree.nodes[k].T[5]) > 1e-12;
+        }
+        CHECK(se3di_tree_is_planar(&tree) == (hangs == 0));
+        se3di_tree_destroy(&tree);
+        tree_world_destroy(&world);
+    }
+}
+
 int main(void)
 {
     RUN(a_state_has_the_same_bits_in_every_lane_and_alone);
     RUN(lanes_may_have_gravity_and_masses_of_their_own);
     RUN(what_fails_stays_in_its_lane);
     RUN(a_coordinate_without_inertia_is_told_in_its_lane);
+    RUN(trees_of_parallel_axes_move_in_a_plane_as_in_space);
+    RUN(axes_that_are_not_parallel_do_not_move_in_a_plane);
     RUN(sums_and_unit_quaternions_are_those_of_doubles);
     return check_finish();
 }
