@@ -132,6 +132,7 @@ se3di_explicit se3di_explicit_begin(se3di_integration *integration, int is_contr
         fmin(m.tolerance, fmax(SE3DI_EXPLICIT_PART * asked, SE3DI_EXPLICIT_LEAST));
     const double eps = regularisation(integration->method, is_controlled, solved);
     m.kkt = se3di_state_begin(m.equations, eps, fmin(1e-6, 1e-3 * solved));
+    m.is_bare = is_controlled && m.methods->is_bare && m.methods->is_bare(&m);
     return m;
 }
 
@@ -197,6 +198,14 @@ const double *se3di_explicit_grow_scale(se3di_explicit *m)
     scale->energy = fmax(scale->energy, m->past->energy_least);
     grow_balance(m);
     return rates;
+}
+
+void se3di_explicit_grow_bare_scale(se3di_explicit *m)
+{
+    const double *g = m->assembly->model->gravity;
+    se3di_state_scale_take(m->squares, &m->past->scale);
+    m->past->balance[0] = fmax(0.95 * m->past->balance[0], sqrt(se3di_dot(g, g)));
+    m->past->balance[1] *= 0.95;
 }
 
 void se3di_explicit_combine(const se3di_explicit *m, const double *rows, const double *base,

@@ -18,6 +18,8 @@ se3di_explicit se3di_explicit_begin(se3di_integration *integration, int is_contr
 const double *se3di_explicit_get_rates(const se3di_explicit *m);
 /* @return them */
 const double *se3di_explicit_grow_scale(se3di_explicit *m);
+/* The same by m->squares, where nothing acts but gravity. */
+void se3di_explicit_grow_bare_scale(se3di_explicit *m);
 /* Derivative at the state that was set last. */
 se3d_status se3di_explicit_differentiate(se3di_explicit *m, double t, double *derivative);
 /* What the velocities of the step that is tried are measured by: not below what rounding makes of

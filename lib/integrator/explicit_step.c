@@ -35,7 +35,22 @@ _Static_assert(2 * SE3DI_TYRE_NOTES <= SE3DI_FORCE_STATES,
 static void arrive(se3di_explicit *m, double h)
 {
     m->methods->arrive(m, h);
-    m->motion->set(m->equations, m->y);
+    if (!m->is_bare) {
+        m->motion->set(m->equations, m->y);
+    }
+}
+
+/* The derivative there; what is not finite without frames is told by the way that has them. */
+static se3d_status differentiate_end(se3di_explicit *m, double t)
+{
+    if (m->is_bare) {
+        if (m->methods->find_end(m, t)) {
+            return SE3D_OK;
+        }
+        m->is_bare = 0;
+        m->motion->set(m->equations, m->y);
+    }
+    return se3di_explicit_differentiate(m, t, se3di_explicit_end(m));
 }
 
 /* Stages, error, projection. The derivative at the end is that before the projection, which moves
@@ -55,9 +70,9 @@ static se3d_status attempt_once(se3di_explicit *m, double h, double *error)
     }
     arrive(m, h);
     SE3DI_TRY(m->is_closed ? se3di_explicit_project(m, t, 0) : SE3D_OK);
-    SE3DI_TRY(se3di_explicit_differentiate(m, t, se3di_explicit_end(m)));
+    SE3DI_TRY(differentiate_end(m, t));
     *error = m->methods->estimate_end(m, h, of_stages);
-    if (m->is_closed || se3di_explicit_is_too_large(m, *error)) {
+    if (m->is_closed || m->is_bare || se3di_explicit_is_too_large(m, *error)) {
         return SE3D_OK;
     }
     SE3DI_TRY(se3di_explicit_project(m, t, 1));
@@ -101,6 +116,21 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
     return SE3D_OK;
 }
 
+/* The scale, and the accelerations that the next step of a run begins with. */
+static void grow_scale(se3di_explicit *m)
+{
+    if (m->is_bare) {
+        se3di_explicit_grow_bare_scale(m);
+        m->has_rates = 1; /* nobody looks at them */
+        return;
+    }
+    const double *rates = m->leaves_scale ? NULL : se3di_explicit_grow_scale(m);
+    if (rates && m->step.methods) {
+        se3di_state_set_rates(m->assembly, rates);
+        m->has_rates = 1;
+    }
+}
+
 /* The frames hold the projected y_1, at t. */
 static void accept(se3di_explicit *m, double t)
 {
@@ -113,17 +143,16 @@ static void accept(se3di_explicit *m, double t)
     m->past->gap = -1.0;
     m->has_stages = m->stands = 1;
     const size_t work = m->count - SE3DI_STATE_WORK;
+    if (m->is_bare) {
+        m->motion->take(m->equations, m->y);
+    }
     m->motion->keep(m->equations, m->y1);
     memcpy(m->y1 + work, m->y + work, SE3DI_STATE_WORK * sizeof *m->y);
     if (!m->waits) {
         memcpy(m->f1, m->next, m->count * sizeof *m->f1);
     }
     m->past->unscaled = m->leaves_scale;
-    const double *rates = m->leaves_scale ? NULL : se3di_explicit_grow_scale(m);
-    if (rates && m->step.methods) { /* a run, whose next step begins with these accelerations */
-        se3di_state_set_rates(m->assembly, rates);
-        m->has_rates = 1;
-    }
+    grow_scale(m);
     if (!(m->past->wide > 0.0)) { /* else one with little part in its dependence may seem clear */
         const double dependent = m->motion->count_dependent(m->equations);
         m->past->redundant = fmin(m->past->redundant, dependent);
@@ -219,6 +248,10 @@ static se3d_status review_contacts(se3di_explicit *m, double h, double *error)
 static se3d_status prepare(se3di_explicit *m, double h, double *error)
 {
     se3di_model *model = m->assembly->model;
+    if (m->is_bare) {
+        m->next = se3di_explicit_end(m);
+        return SE3D_OK;
+    }
     SE3DI_TRY(review_contacts(m, h, error));
     SE3DI_TRY(*error <= 1.0 ? settle_memory(m, h, error) : SE3D_OK);
     if (!(*error <= 1.0)) {
@@ -305,6 +338,9 @@ static se3di_explicit *get_explicit(se3di_adaptive *step)
 static double pace(se3di_adaptive *step, double h)
 {
     const se3di_explicit *m = get_explicit(step);
+    if (m->is_bare) {
+        return h;
+    }
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
 }
@@ -407,9 +443,13 @@ static se3d_status repeat(se3di_explicit *m)
     return error <= 1.0 ? SE3D_OK : se3di_step_list_fail(m->step.integration);
 }
 
-/* The frames are at the forward state; turns count from step to step, not from an output. */
+/* The frames are at the forward state, unless nobody looks at them; turns count from step to step,
+ * not from an output. */
 static void stand_at_begin(se3di_explicit *m)
 {
+    if (m->is_bare) {
+        return;
+    }
     if (m->stands) {
         m->motion->set_again(m->equations, m->y1);
     } else {
@@ -433,7 +473,7 @@ static se3d_status advance(se3di_explicit *m, double t_end)
     se3di_forces_show(model, 0);
     stand_at_begin(m);
     SE3DI_TRY(m->past->unscaled > 0.0 ? catch_up(m) : SE3D_OK);
-    if (!m->has_rates) {
+    if (!m->has_rates && !m->is_bare) {
         se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
     }
     m->has_rates = 0;
@@ -547,9 +587,8 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
     for (size_t k = 0; k < m->count; ++k) {
         m->y[k] = m->y1[k] + h0 * m->f1[k];
     }
-    m->motion->set(m->equations, m->y);
     double d2 = 0.0;
-    const se3d_status status = se3di_explicit_differentiate(m, m->past->at.time + h0, m->K);
+    const se3d_status status = se3di_explicit_evaluate(m, m->past->at.time + h0, m->y, m->K);
     if (status >= 0) {
         for (size_t k = 0; k < m->count; ++k) {
             m->K[k] -= m->f1[k];

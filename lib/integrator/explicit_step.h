@@ -57,6 +57,11 @@ struct se3di_explicit_class {
     se3d_status (*make_stages)(se3di_explicit *m, double h, double *error);
     /* y at the end, to m->y. */
     void (*arrive)(se3di_explicit *m, double h);
+    /* Whether steps of this call are made without the frames of the model, which nobody looks at
+     * between them; then the derivative at m->y at t, to the end, and how fast bodies move there,
+     * to m->squares: 0 if something is not finite. NULL: never. */
+    int (*is_bare)(const se3di_explicit *m);
+    int (*find_end)(se3di_explicit *m, double t);
     /* The error of the step, with the derivative at its end; `error`: that from the stages. */
     double (*estimate_end)(se3di_explicit *m, double h, double error);
     /* The step of h is about to be accepted: m->y1, m->f1 are still those before. NULL: nothing. */
@@ -99,10 +104,12 @@ struct se3di_explicit {
     double tolerance;
     double h;           /* of the step that is tried; 0: none yet */
     double contraction; /* gauss: of the iterations of this step; 0: unknown */
+    double squares[4];  /* of a bare step: as of se3di_state_scale_take */
     double remembered;  /* the least error that the choice of the next step counts with */
     int stages;         /* gauss: of this step */
     int laid_out;       /* gauss: the stages that lanes are laid out for; 0: none yet */
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
+    int is_bare;        /* no frames are made between steps */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
     int stands;         /* the frames are at y_1: a step of this call has ended there */
     int has_rates;      /* the accelerations of the model are those at y_1 */

@@ -341,6 +341,12 @@ static void arrive(se3di_explicit *m, double h)
     se3di_explicit_combine(m, get_form(m, 0), m->y1, h, &whole, 1, m->y);
 }
 
+static int find_end(se3di_explicit *m, double t)
+{
+    se3di_gauss_lanes *lanes = se3di_gauss_lanes_find(m, se3di_gauss_find(m->stages));
+    return lanes && se3di_gauss_lanes_differentiate(lanes, m, t, se3di_explicit_end(m), m->squares);
+}
+
 /* Of so many stages, which the compiler knows. */
 static inline void subtract_ends(const se3di_explicit *m, const int stages, double *restrict begin,
                                  double *restrict end)
@@ -383,7 +389,11 @@ static double estimate_end(se3di_explicit *m, double h, double error)
     const double defect = fmax(begin, end), whole = length_of(m, get_form(m, 0));
     const double *const defects[2] = {m->sum, m->sum3};
     double sizes[2];
-    se3di_explicit_sizes(m, defects, sizes);
+    if (m->is_bare) {
+        se3di_gauss_lanes_sizes(se3di_gauss_lanes_find(m, rule), defects, sizes);
+    } else {
+        se3di_explicit_sizes(m, defects, sizes);
+    }
     const double size = h * fmax(sizes[0], sizes[1]);
     const double part = defect < whole ? defect / whole : 1.0;
     if (!(size > 0.0)) {
@@ -484,6 +494,8 @@ static void interpolate(const se3di_explicit *m, double t, double *y)
 static const se3di_explicit_class gauss_class = {
     .make_stages = make_stages,
     .arrive = arrive,
+    .is_bare = se3di_gauss_lanes_are_bare,
+    .find_end = find_end,
     .estimate_end = estimate_end,
     .accept = accept,
     .next_step = next_step,

@@ -14,7 +14,7 @@
 /* Numbers per stage besides those of the tree: K, and those of a group. */
 static size_t count_numbers(size_t state, size_t stages)
 {
-    return 5 * state + 3 * stages + SE3DI_GAUSS_FORMS + 3 + 1 + 1;
+    return 5 * state + 3 * stages + SE3DI_GAUSS_FORMS + 3 + 1 + 1 + 4;
 }
 
 size_t se3di_gauss_work_count(const se3di_assembly *assembly)
@@ -122,8 +122,9 @@ static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m,
     own->gravity = own->forms + w * SE3DI_GAUSS_FORMS;
     own->sizes = own->gravity + 3 * w;
     own->verdict = own->sizes + w;
+    own->squares = own->verdict + w;
     fill_group(own, rule, index * w, w, m->assembly->model->gravity);
-    se3di_lanes_lay_out(&own->lanes, tree, g->core, own->verdict + w);
+    se3di_lanes_lay_out(&own->lanes, tree, g->core, own->squares + 4 * w);
     se3di_lanes_load(&own->lanes, own->gravity, 0);
     if (m->equations->is_open_tree) {
         se3di_lanes_take_plane(&own->lanes);
@@ -132,7 +133,8 @@ static double *take_group(se3di_gauss_lanes *g, const se3di_explicit *m,
         se3di_lanes_take_loops(&own->lanes, &loops->rows,
                                loops->memory + index * w * se3di_lane_loops_room(&loops->rows));
     }
-    return own->verdict + w + se3di_lanes_room(tree->count, tree->v_count, tree->branch_count, w);
+    return own->squares + 4 * w +
+           se3di_lanes_room(tree->count, tree->v_count, tree->branch_count, w);
 }
 
 /* What is closed may come nearer to a singular position than single states do, as far as rounding,
@@ -161,12 +163,6 @@ static void lay_out(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_r
     }
 }
 
-/* One stage after the other, in space, is done without lanes, to the same bits. */
-static int suits_width(const se3di_tree *tree, const se3di_lane_core *core)
-{
-    return core->width > 1 || se3di_tree_is_planar(tree);
-}
-
 /* Nothing that they are laid out by changes within a call, but for the stages and whether loops can
  * be computed so. */
 se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_rule *rule)
@@ -175,7 +171,7 @@ se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_r
     se3di_gauss_lanes *g = (se3di_gauss_lanes *)(void *)work;
     const se3di_lane_core *core = find_core(rule->stages);
     const int has_loops = se3di_gauss_lanes_take_loops(m);
-    if (!has_loops && !(is_bare_tree(m) && suits_width(m->equations->tree, core))) {
+    if (!has_loops && !is_bare_tree(m)) {
         return NULL;
     }
     if (m->laid_out != rule->stages || g->has_loops != has_loops) {
@@ -338,6 +334,77 @@ void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m, double
                 to[c] = own->Y[c * w + lane];
             }
             memset(to + state, 0, SE3DI_STATE_WORK * sizeof *to);
+        }
+    }
+}
+
+/* ---- the end of a step ---- */
+
+/* The coordinates are all the angles that are counted: turns need no limit. */
+static int has_its_angles(const se3di_tree *tree, const se3di_model *model)
+{
+    uint32_t k = 0;
+    while (k < tree->angle_count && tree->counted[k] >= 0) {
+        ++k;
+    }
+    return k == model->angle_count && tree->angle_count == model->angle_count;
+}
+
+int se3di_gauss_lanes_are_bare(const se3di_explicit *m)
+{
+    const se3di_assembly *assembly = m->assembly;
+    const se3di_model *model = assembly->model;
+    return is_bare_tree(m) && !m->equations->tree->has_states && !assembly->push &&
+           assembly->timed_count == 0 && assembly->user_count == 0 && model->broken_count == 0 &&
+           model->left_out_count == 0 && has_its_angles(m->equations->tree, model);
+}
+
+/* One state in all lanes of the first group. */
+int se3di_gauss_lanes_differentiate(se3di_gauss_lanes *g, se3di_explicit *m, double t,
+                                    double *derivative, double squares[4])
+{
+    const se3di_gauss_group *own = &g->groups[0];
+    const size_t w = g->width, state = g->positions + g->velocities, at = g->positions * w;
+    se3di_lanes lanes = own->lanes;
+    lanes.wants_points = 1;
+    for (size_t c = 0; c < state; ++c) {
+        for (size_t lane = 0; lane < w; ++lane) {
+            own->Y[c * w + lane] = m->y[c];
+        }
+    }
+    g->core->normalise(&lanes, own->Y);
+    g->core->place(&lanes, own->Y, own->Y + at);
+    se3di_lanes_accelerate(&lanes, NULL, own->next + at);
+    g->core->find_rates(&lanes, own->Y, own->Y + at, own->next);
+    g->core->survey(&lanes, own->squares);
+    m->equations->assembly.time = t;
+    ++m->equations->counters.evaluations;
+    for (size_t c = 0; c < state; ++c) {
+        derivative[c] = own->next[c * w];
+    }
+    memset(derivative + state, 0, SE3DI_STATE_WORK * sizeof *derivative);
+    for (size_t k = 0; k < 4; ++k) {
+        squares[k] = own->squares[k * w];
+    }
+    return is_finite(g, own);
+}
+
+void se3di_gauss_lanes_sizes(const se3di_gauss_lanes *g, const double *const change[2],
+                             double size[2])
+{
+    const se3di_gauss_group *own = &g->groups[0];
+    const size_t w = g->width, state = g->positions + g->velocities;
+    for (size_t first = 0; first < 2; first += w) {
+        const double *one = change[first > 0], *others = change[1];
+        for (size_t c = 0; c < state; ++c) {
+            own->change[c * w] = one[c];
+            for (size_t lane = 1; lane < w; ++lane) {
+                own->change[c * w + lane] = others[c];
+            }
+        }
+        g->core->measure(&own->lanes, own->Y, own->change, g->scale, own->sizes);
+        for (size_t lane = 0; lane < w && first + lane < 2; ++lane) {
+            size[first + lane] = own->sizes[lane];
         }
     }
 }

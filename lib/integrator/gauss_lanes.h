@@ -28,6 +28,7 @@ typedef struct se3di_gauss_group {
     double *gravity; /* [3][w] */
     double *sizes;   /* [w] of the changes */
     double *verdict; /* [w] */
+    double *squares; /* [4][w] */
 } se3di_gauss_group;
 
 typedef struct se3di_gauss_lanes {
@@ -62,6 +63,15 @@ void se3di_gauss_lanes_begin(se3di_gauss_lanes *g, const se3di_explicit *m, doub
  * are finite: they are not where rows of loops are not clear of each other */
 int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
                             int k, double h, double *change);
+/* Whether steps are made here from end to end, and nobody looks at what is between them. */
+int se3di_gauss_lanes_are_bare(const se3di_explicit *m);
+/* The derivative at m->y; `squares`: how fast bodies move there, as survey() of the lanes has it.
+ * @return whether all is finite */
+int se3di_gauss_lanes_differentiate(se3di_gauss_lanes *g, se3di_explicit *m, double t,
+                                    double *derivative, double squares[4]);
+/* The sizes of two changes at the state that was differentiated last. */
+void se3di_gauss_lanes_sizes(const se3di_gauss_lanes *g, const double *const change[2],
+                             double size[2]);
 /* The forms of the polynomial through the derivatives, those of positions at the velocities of the
  * last iteration: `forms` [stages][m->count]. */
 void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m, double *forms);

@@ -49,6 +49,8 @@ typedef struct se3di_motion {
     /* How far it is off, see se3di_state_measure_gap. */
     se3d_status (*measure_gap)(se3di_equations *equations, double t, const se3di_state_scale *scale,
                                double *gap);
+    /* y becomes the state that was set last; nothing is placed. NULL: it always is. */
+    void (*take)(se3di_equations *equations, const double *y);
     /* That state as a vector: all but the works. */
     void (*keep)(se3di_equations *equations, double *y);
     /* The frames of the model are at y, as kept: it becomes the state that was set last. */

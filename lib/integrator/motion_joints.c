@@ -78,6 +78,12 @@ static void set(se3di_equations *equations, const double *y)
     place(equations);
 }
 
+static void take(se3di_equations *equations, const double *y)
+{
+    take_state(equations->tree, y);
+    equations->is_placed = 0;
+}
+
 /* Of coordinates and rates that are, unit quaternions among them, the frames are finite. */
 static int are_moderate(size_t count, const double *x)
 {
@@ -748,6 +754,7 @@ const se3di_motion se3di_motion_joints = {
     .get = get,
     .set = set,
     .set_again = set_again,
+    .take = take,
     .set_frames = set_frames,
     .get_rates = get_rates,
     .evaluate = evaluate,

@@ -511,15 +511,21 @@ void se3di_state_scale_grow(const se3di_assembly *assembly, const double *deriva
         wdot = se3di_raised(wdot, se3di_dot(derivative + 10, derivative + 10));
         energy += body_energy(assembly, assembly->free_body[k], derivative, scale->length);
     }
-    v = fmax(sqrt(v), sqrt(sqrt(a) * scale->length));
-    w = fmax(sqrt(w), sqrt(sqrt(wdot)));
+    const double squares[4] = {v, w, a, wdot};
+    se3di_state_scale_take(squares, scale);
+    scale->energy = fmax(0.95 * scale->energy, energy);
+}
+
+void se3di_state_scale_take(const double squares[4], se3di_state_scale *scale)
+{
+    double v = fmax(sqrt(squares[0]), sqrt(sqrt(squares[2]) * scale->length));
+    double w = fmax(sqrt(squares[1]), sqrt(sqrt(squares[3])));
     /* centres of mass that stay where they are, or bodies that do not turn: their rounding is
      * measured by what moves */
     v = fmax(v, LEAST_PART * w * scale->length);
     w = fmax(w, LEAST_PART * v / scale->length);
     scale->speed = fmax(0.95 * scale->speed, v);
     scale->spin = fmax(0.95 * scale->spin, w);
-    scale->energy = fmax(0.95 * scale->energy, energy);
 }
 
 /* Sums that overflow, and Euler parameters that vanish. */

@@ -99,6 +99,9 @@ double se3di_state_length(const se3di_model *model);
 /* Grow speed, spin and energy to those of the present state with derivative `derivative`. */
 void se3di_state_scale_grow(const se3di_assembly *assembly, const double *derivative,
                             se3di_state_scale *scale);
+/* Speed and spin alone, by the largest squares of velocities, angular ones, and accelerations of
+ * both. */
+void se3di_state_scale_take(const double squares[4], se3di_state_scale *scale);
 
 /* Whether free body k carries a user-defined state: of its six velocities the first is one, and its
  * position means nothing. */

@@ -126,6 +126,10 @@ typedef struct se3di_lane_core {
      * lanes->c, and the largest; the least change, weighed by the masses, that closes them. */
     void (*find_gaps)(const se3di_lanes *lanes, int rates, double *largest);
     void (*correct)(const se3di_lanes *lanes, double *dq);
+    /* The largest squares, over all bodies, of velocities of centres of mass and angular ones, and
+     * of accelerations of both, by the accelerations that were found last; wants points, with
+     * gravity. */
+    void (*survey)(const se3di_lanes *lanes, double *squares);
     /* Accelerations of a tree that moves in planes by gravity alone, after place(). */
     void (*fall_in_plane)(const se3di_lanes *lanes, double *qddot);
     /* 1.0 if all [count] numbers are finite, else not a number. */

@@ -22,7 +22,23 @@ typedef struct states_of {
     double q[STATES][NUMBERS], qdot[STATES][NUMBERS], effort[STATES][NUMBERS];
     double loads[STATES][LOADS];
     double qddot[STATES][NUMBERS], held[STATES][NUMBERS], rates[STATES][NUMBERS];
+    double squares[STATES][4];
 } states_of;
+
+/* The largest squares of velocities, angular ones, and accelerations of both, of all bodies. */
+static void survey_alone(const states_of *s, double squares[4])
+{
+    double rate[6];
+    memset(squares, 0, 4 * sizeof *squares);
+    for (uint32_t i = 0; i < s->tree.count; ++i) {
+        const se3di_frame *frame = &s->model->frames[s->tree.nodes[i].body];
+        se3di_tree_link_acceleration(&s->tree, i, frame, rate);
+        squares[0] = fmax(squares[0], se3di_dot(frame->v, frame->v));
+        squares[1] = fmax(squares[1], se3di_dot(frame->w, frame->w));
+        squares[2] = fmax(squares[2], se3di_dot(rate, rate));
+        squares[3] = fmax(squares[3], se3di_dot(rate + 3, rate + 3));
+    }
+}
 
 static void solve_alone(states_of *s, int k)
 {
@@ -34,6 +50,7 @@ static void solve_alone(states_of *s, int k)
     se3di_tree_take_wrenches(tree, s->model->frames, s->loads[k]);
     CHECK(!se3di_tree_factor(tree, s->effort[k]));
     se3di_tree_accelerate(tree, tree->e, s->qddot[k]);
+    survey_alone(s, s->squares[k]);
     se3di_tree_propagate(tree, s->effort[k]);
     se3di_tree_efforts(tree, s->effort[k], joint, s->held[k]);
     se3di_tree_rates(tree, s->q[k], s->qdot[k], s->rates[k]);
@@ -107,6 +124,7 @@ static void compare(states_of *s, const se3di_lane_core *core, int shift)
     _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], effort[LANE_NUMBERS];
     _Alignas(SE3DI_LANES_ALIGN) double out[LANE_NUMBERS], verdict[SE3DI_LANES_MAX];
     const int w = core->width;
+    _Alignas(SE3DI_LANES_ALIGN) double squares[4 * SE3DI_LANES_MAX];
     const size_t v = s->tree.v_count;
     se3di_lanes lanes;
     CHECK(!se3di_lanes_init(&lanes, &s->tree, core, 1));
@@ -118,6 +136,11 @@ static void compare(states_of *s, const se3di_lane_core *core, int shift)
     core->take_wrenches(&lanes);
     se3di_lanes_accelerate(&lanes, effort, out);
     CHECK(EQUAL(out, qddot, v));
+    core->survey(&lanes, squares);
+    for (int k = 0; k < 4 * w; ++k) {
+        const double alone = s->squares[(k % w + shift) % STATES][k / w];
+        CHECK_NEAR(squares[k] / (1.0 + alone), alone / (1.0 + alone), 1e-9);
+    }
     core->find_efforts(&lanes, effort, out);
     CHECK(EQUAL(out, held, v));
     core->find_rates(&lanes, q, qdot, out);
@@ -334,7 +357,9 @@ static void make_parallel(tree_world *w, uint64_t seed, double tilt)
     }
 }
 
-/* Accelerations of all lanes, and sizes of the rates as changes. */
+/* Accelerations of all lanes, sizes of the rates as changes, and how fast all moves. */
+enum { SURVEY = SE3DI_LANES_MAX, SIZES = 5 * SE3DI_LANES_MAX };
+
 static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_plane, const double *q,
                  const double *qdot, double *qddot, double *sizes)
 {
@@ -351,8 +376,10 @@ static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_pla
         se3di_lanes_take_plane(&lanes);
         CHECK(lanes.plane);
     }
+    lanes.wants_points = 1;
     core->place(&lanes, q, qdot);
     se3di_lanes_accelerate(&lanes, NULL, qddot);
+    core->survey(&lanes, sizes + SURVEY);
     memcpy(change, qdot, count * sizeof *change);
     memcpy(change + count, qddot, count * sizeof *change);
     core->measure(&lanes, q, change, scale, sizes);
@@ -363,7 +390,7 @@ static void trees_of_parallel_axes_move_in_a_plane_as_in_space(void)
 {
     for (uint64_t seed = 0; seed < 3 * MECHANISMS; ++seed) {
         _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
-        _Alignas(SE3DI_LANES_ALIGN) double in_space[LANE_NUMBERS], sizes[2][SE3DI_LANES_MAX];
+        _Alignas(SE3DI_LANES_ALIGN) double in_space[LANE_NUMBERS], sizes[2][SIZES];
         double alone[NUMBERS], largest = 1.0;
         tree_world world;
         se3di_tree tree;
@@ -395,6 +422,9 @@ static void trees_of_parallel_axes_move_in_a_plane_as_in_space(void)
             }
             for (size_t lane = 0; lane < w; ++lane) {
                 CHECK_NEAR(sizes[1][lane] / sizes[0][lane], 1.0, 1e-10);
+            }
+            for (size_t k = SURVEY; k < SURVEY + 4 * w; ++k) {
+                CHECK_NEAR((sizes[1][k] - sizes[0][k]) / (1.0 + sizes[0][k]), 0.0, 1e-9);
             }
             for (size_t k = 0; k < tree.v_count; ++k) {
                 CHECK(w == 1 || out[k * w] == alone[k]);
