@@ -595,7 +595,11 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
         }
         d2 = se3di_over(se3di_explicit_measure(m, m->K), h0);
     }
-    m->motion->set(m->equations, m->y1);
+    if (m->motion->take && !m->equations->is_placed) { /* the frames have stayed at y_1 */
+        m->motion->take(m->equations, m->y1);
+    } else {
+        m->motion->set(m->equations, m->y1);
+    }
     m->equations->error = error;
     if (status == SE3D_ERR_CALLBACK) {
         return se3di_error_set(error, status, "%s", ignored.message);
