@@ -328,6 +328,54 @@ static void make_bare(tree_world *w, uint64_t seed)
     se3d_coordinates_destroy(c);
 }
 
+static void run_tree(uint64_t seed, int32_t method, double tolerance, double r[][3],
+                     se3d_solver_stats *stats)
+{
+    tree_world w;
+    se3d_solver *solver;
+    se3d_solver_def def = se3d_solver_def_default();
+    make_bare(&w, seed);
+    def.method = method;
+    def.tolerance = tolerance;
+    CHECK(!se3d_solver_create(w.system, &def, &solver));
+    CHECK(se3d_solver_run(solver, 2.0) >= 0);
+    CHECK(!se3d_solver_get_stats(solver, stats));
+    for (int k = 1; k < w.count; ++k) {
+        CHECK(!se3d_body_get_position(w.system, w.bodies[k], r[k]));
+    }
+    se3d_solver_destroy(solver);
+    tree_world_destroy(&w);
+}
+
+/* Of what the control of errors was not tuned on. */
+static void errors_follow_the_tolerance_on_random_trees(void)
+{
+    static double exact[TREE_BODIES_MAX + 1][3], out[TREE_BODIES_MAX + 1][3];
+    double steps = 0.0, rejected = 0.0;
+    for (uint64_t seed = 0; seed < 16; ++seed) {
+        se3d_solver_stats stats;
+        memset(exact, 0, sizeof exact);
+        memset(out, 0, sizeof out);
+        run_tree(seed, SE3D_METHOD_DOP853, 1e-12, exact, &stats);
+        for (int k = 3; k <= 11; k += 2) {
+            double error = 0.0, size = 1.0;
+            run_tree(seed, SE3D_METHOD_AUTO, pow(10.0, -k), out, &stats);
+            for (int b = 0; b < 3 * (TREE_BODIES_MAX + 1); ++b) {
+                error = fmax(error, fabs(out[b / 3][b % 3] - exact[b / 3][b % 3]));
+                size = fmax(size, fabs(exact[b / 3][b % 3]));
+            }
+            steps += (double)stats.steps;
+            rejected += (double)stats.rejected;
+            if (getenv("SE3D_TEST_VERBOSE")) {
+                fprintf(stderr, "tree %d 1e-%d: error %.1e, steps %d, rejected %d\n", (int)seed, k,
+                        error / size, (int)stats.steps, (int)stats.rejected);
+            }
+            CHECK(error < (10.0 * pow(10.0, -k) + 1e-11) * size);
+        }
+    }
+    CHECK(rejected < 0.2 * steps);
+}
+
 static uint64_t run_bare(se3d_system *system, int32_t order, double tolerance)
 {
     se3d_solver *solver;
@@ -400,6 +448,7 @@ static void stages_in_lanes_are_those_one_by_one(void)
 int main(void)
 {
     RUN(errors_follow_the_tolerance_and_few_steps_are_rejected);
+    RUN(errors_follow_the_tolerance_on_random_trees);
     RUN(a_loose_tolerance_takes_few_steps);
     RUN(freedoms_and_tolerance_choose_the_stages);
     RUN(steps_back_lead_to_where_it_came_from);
