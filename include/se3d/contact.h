@@ -2,8 +2,9 @@
 /* Contact: the law between materials (se3d/material.h) and what shapes (se3d/shape.h) do by it.
  *
  * Every shape with a material touches particles (se3d/particles.h) and the shapes of other bodies.
- * One law holds for all contacts of a system: a penalty force along the normal, and friction by a
- * spring with history, capped by Coulomb.
+ * One law holds for all contacts of a system, or for some pairs of materials another one
+ * (se3d_material_set_pair): a penalty force along the normal, and friction by a spring with
+ * history, capped by Coulomb.
  *
  * Threads: the rule of se3d/se3d.h. */
 #ifndef SE3D_CONTACT_H

@@ -110,6 +110,10 @@ typedef struct se3d_material_pair_def {
     double rolling_ratio;      /* [1] <= 100, stiffness of rolling and torsion over kt */
     double rolling_damping;    /* [1] <= 10, over sqrt(m* stiffness of rolling) */
     double young, poisson;     /* hertz_mindlin, as if both were of it: [Pa] > 0, [1] <= 0.5 */
+    /* SE3D_CONTACT_LAW_HOOKE or _HERTZ_MINDLIN, whose materials must have what it needs, in place
+     * of the system's law; not in place of a law of the user's own. @since 0.1 */
+    int32_t law;
+    int32_t reserved;
 } se3d_material_pair_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_pair_def_default. @since 0.1 */

@@ -333,7 +333,7 @@ static inline double se3di_convex_cap(const se3di_convex_contact *contact)
 
 /* convex_stick.c: the attraction at an overlap [N]; what it has given to get there [J]; the speed
  * of what leaves that came at u. */
-double se3di_convex_attraction(const se3di_pair *pair, int hertz, double radius, double delta);
+double se3di_convex_attraction(const se3di_pair *pair, double radius, double delta);
 double se3di_convex_stuck(const se3di_model *model, const se3di_body_contact *r);
 double se3di_convex_leave(const se3di_model *model, const se3di_body_contact *r, double e,
                           double u);

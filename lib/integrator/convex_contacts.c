@@ -144,7 +144,7 @@ void se3di_convex_set_attraction(se3di_convex_contact *c, const se3di_model *mod
         const se3di_body_contact *r = c->record;
         const double radius = se3di_convex_radius(model, r);
         const double delta = c->overlap + (c->is_short ? 0.0 : c->lead * u);
-        c->attraction = h * se3di_convex_attraction(pair, c->power > 1.0, radius, delta);
+        c->attraction = h * se3di_convex_attraction(pair, radius, delta);
     }
 }
 
@@ -270,7 +270,7 @@ void se3di_convex_set_law(se3di_convex_contact *c, const se3di_model *model)
 {
     const se3di_body_contact *r = c->record;
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
-    const int hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN;
+    const int hertz = se3di_pair_is_hertz(pair);
     const double radius = se3di_convex_radius(model, r);
     c->overlap = r->overlap;
     c->power = hertz ? 1.5 : 1.0;

@@ -41,7 +41,7 @@ typedef struct tracing {
     /* what an impulse along the second normal makes of the velocity along the first one, of bodies
      * by themselves; 0 for points of other shapes */
     double alone[SE3DI_CONVEX_TRACED_ROWS][SE3DI_CONVEX_TRACED_ROWS];
-    int count, hertz;
+    int count;
 } tracing;
 
 /* W_ij, [3 x 3]. */
@@ -63,22 +63,23 @@ static double step_of(const tracing *t)
         const ptrdiff_t at = p->presser ? p->presser - t->points : k;
         const double *W = block_of(t, k, k);
         const double kn = p->pair->kn;
-        const double s = t->hertz
-                             ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
-                                                                         t->alone[at][at], speed))
-                             : 1.0;
+        const int hertz = se3di_pair_is_hertz(p->pair);
+        const double s = hertz ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
+                                                                           t->alone[at][at], speed))
+                               : 1.0;
         const double stiffest =
-            (p->presser ? p->pair->kr : fmax(kn * (t->hertz ? 1.5 : 1.0), p->pair->kt)) * s;
+            (p->presser ? p->pair->kr : fmax(kn * (hertz ? 1.5 : 1.0), p->pair->kt)) * s;
         rate2 += stiffest * (W[0] + W[4] + W[8]);
     }
     return PHASE / sqrt(rate2);
 }
 
 /* The law of rolling and torsion, whose stretch is along the normal. */
-static void roll_by_law(const point *p, int hertz, double xi[3], double force[3])
+static void roll_by_law(const point *p, double xi[3], double force[3])
 {
     const double *n = p->contact->normal, normal = p->presser->normal;
-    const double s = hertz ? sqrt(p->radius * fmax(0.0, p->presser->delta)) : 1.0;
+    const double s =
+        se3di_pair_is_hertz(p->pair) ? sqrt(p->radius * fmax(0.0, p->presser->delta)) : 1.0;
     const double k = p->pair->kr * s, damping = p->pair->dr * p->presser->root_mass * sqrt(s);
     double stretch[2][3];
     se3di_scale(se3di_dot(xi, n), n, stretch[0]);
@@ -100,19 +101,19 @@ static void roll_by_law(const point *p, int hertz, double xi[3], double force[3]
 }
 
 /* The law: the force on j, and what friction leaves of a stretch xi. Returns whether they press. */
-static int press_by_law(point *p, int hertz, double xi[3], double force[3])
+static int press_by_law(point *p, double xi[3], double force[3])
 {
     if (p->presser) {
-        roll_by_law(p, hertz, xi, force);
+        roll_by_law(p, xi, force);
         return 0;
     }
     const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
-    const double s = hertz ? sqrt(p->radius * fmax(0.0, p->delta)) : 1.0;
+    const double s = se3di_pair_is_hertz(p->pair) ? sqrt(p->radius * fmax(0.0, p->delta)) : 1.0;
     const double root = p->root_mass * sqrt(s), kt = p->pair->kt * s;
     const double normal = p->pair->kn * s * p->delta - p->pair->dn * root * vn;
     double pull[3];
     memset(force, 0, 3 * sizeof *force);
-    p->attraction = se3di_convex_attraction(p->pair, hertz, p->radius, p->delta);
+    p->attraction = se3di_convex_attraction(p->pair, p->radius, p->delta);
     p->normal = p->delta > 0.0 ? fmax(0.0, normal) : 0.0;
     if (!(p->normal > 0.0)) {
         memset(xi, 0, 3 * sizeof *xi);
@@ -165,7 +166,7 @@ static int find_impulses(tracing *t, double time, double impulse[][3], int is_ex
         point *p = &t->points[k];
         double xi[3];
         se3di_copy(p->xi, xi);
-        presses |= press_by_law(p, t->hertz, xi, impulse[k]);
+        presses |= press_by_law(p, xi, impulse[k]);
         se3di_scale(time, impulse[k], impulse[k]);
         if (!is_expected) {
             p->drawn += time * p->attraction;
@@ -361,9 +362,7 @@ static int is_sound(const tracing *t)
 
 int se3di_convex_trace(const se3di_convex *c, se3di_convex_traced *traced, const se3di_model *model)
 {
-    tracing t = {.traced = traced,
-                 .count = traced->count,
-                 .hertz = model->contact.law == SE3DI_LAW_HERTZ_MINDLIN};
+    tracing t = {.traced = traced, .count = traced->count};
     begin(&t, c, model);
     for (int k = 0; k < traced->points * traced->points; ++k) {
         const int i = k / traced->points, j = k % traced->points;

@@ -8,7 +8,8 @@
 typedef enum se3di_contact_law {
     SE3DI_LAW_HOOKE = 0,
     SE3DI_LAW_HERTZ_MINDLIN = 1,
-    SE3DI_LAW_CALLBACK = 2
+    SE3DI_LAW_CALLBACK = 2,
+    SE3DI_LAW_MIXED = 3 /* of a set of particles: by their pairs, hooke or hertz_mindlin */
 } se3di_contact_law;
 
 typedef struct se3di_material {
@@ -52,12 +53,14 @@ typedef struct se3di_override {
 #define SE3DI_MEMBER(name, least, most) double name;
     SE3DI_OVERRIDE_LIST(SE3DI_MEMBER)
 #undef SE3DI_MEMBER
+    int32_t law; /* se3di_contact_law, HOOKE or HERTZ_MINDLIN; negative: the system's */
+    int32_t reserved;
 } se3di_override;
 
 #define SE3DI_NONE_OF(name, least, most) .name = -1.0,
 #define SE3DI_OVERRIDE_NONE                                                                        \
     {                                                                                              \
-        SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF)                                                         \
+        SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF).law = -1                                                \
     }
 
 /* Coefficients of one pair of materials; with s = 1 (hooke) or sqrt(R* delta) (hertz_mindlin):
@@ -76,7 +79,14 @@ typedef struct se3di_pair {
     double cohesion, pull_off, kr;
     double restitution;
     double rn, rt;
+    int32_t law; /* se3di_contact_law, not MIXED */
+    int32_t reserved;
 } se3di_pair;
+
+static inline int se3di_pair_is_hertz(const se3di_pair *pair)
+{
+    return pair->law == SE3DI_LAW_HERTZ_MINDLIN;
+}
 
 #define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need, but rn and rt */
 

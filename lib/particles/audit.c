@@ -91,10 +91,10 @@ void se3di_audit_unite(se3di_particles *set)
 }
 
 /* Of a contact with this overlap, and the displacements of its springs. */
-static void add_contact(const se3di_particles *set, const se3di_pair *pair, double radius,
-                        double overlap, const double xi[3], const double rho[4], double *elastic)
+static void add_contact(const se3di_pair *pair, double radius, double overlap, const double xi[3],
+                        const double rho[4], double *elastic)
 {
-    const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
+    const int hertz = se3di_pair_is_hertz(pair);
     const double s = hertz ? sqrt(radius * overlap) : 1.0;
     const double kn = s * pair->kn, kt = s * pair->kt, kr = s * pair->kr;
     const double pull = sqrt(radius * pair->pull_off * kn * overlap) * overlap;
@@ -124,8 +124,8 @@ static void add_pair(const se3di_particles *set, const se3di_particle_block *blo
     se3di_particles_wrap(set, d);
     const double reach = a->radius + b->radius, overlap = reach - se3di_norm(d);
     if (overlap > 0.0) {
-        add_contact(set, pair_of(set, i, set->spins[j].material), a->radius * b->radius / reach,
-                    overlap, xi, rho, elastic);
+        add_contact(pair_of(set, i, set->spins[j].material), a->radius * b->radius / reach, overlap,
+                    xi, rho, elastic);
     }
 }
 
@@ -136,7 +136,7 @@ static void add_wall(const se3di_particles *set, const se3di_wall *wall, uint32_
     const double radius = set->particles[i].radius, other = wall->shape.radius;
     const int ball = se3di_shape_is(&wall->shape, SE3DI_SHAPE_IS_BALL);
     if (distance < radius) {
-        add_contact(set, pair_of(set, i, wall->material),
+        add_contact(pair_of(set, i, wall->material),
                     ball ? radius * other / (radius + other) : radius, radius - distance, xi, rho,
                     elastic);
     }

@@ -204,13 +204,13 @@ typedef struct answer {
     double springs, dampers;
 } answer;
 
-/* The stiffest and the most damped of what a material's contacts may be. */
-static se3di_pair hardest(const se3di_particles *set, size_t material)
+/* The stiffest and the most damped of what a material's contacts of a law may be. */
+static se3di_pair hardest(const se3di_particles *set, size_t material, int is_hertz)
 {
     se3di_pair out = {.kn = 0.0};
     for (size_t b = 0; b < set->stuff_count; ++b) {
         const se3di_pair *pair = &set->pairs[material * set->stuff_count + b];
-        if (set->stuffs[b].held) {
+        if (set->stuffs[b].held && se3di_pair_is_hertz(pair) == is_hertz) {
             out.kn = fmax(out.kn, pair->kn);
             out.kt = fmax(out.kt, pair->kt);
             out.dn = fmax(out.dn, fmax(pair->dn, pair->dt));
@@ -223,11 +223,15 @@ static se3di_pair hardest(const se3di_particles *set, size_t material)
 /* Stiffness and damping of a contact of two particles like this one that carry `load`. Of Hertz
  * s = (R* delta)^(1/2), where load = kn s delta. */
 static answer contact_answer(const se3di_particles *set, const se3di_particle *particle,
-                             double load)
+                             double load, int is_hertz)
 {
-    const se3di_pair pair = hardest(set, set->spins[particle - set->particles].material);
+    const size_t material = set->spins[particle - set->particles].material;
+    const se3di_pair pair = hardest(set, material, is_hertz);
     double s = 1.0, normal = pair.kn;
-    if (set->law == SE3DI_LAW_HERTZ_MINDLIN) {
+    if (!(pair.kn > 0.0)) { /* a user-defined law, or no contact of this one */
+        return (answer){0.0, 0.0};
+    }
+    if (is_hertz) {
         s = se3di_pow(0.5 * particle->radius * load / pair.kn, 1.0 / 3.0);
         normal *= 1.5;
     }
@@ -249,9 +253,10 @@ static void add_contacts(const se3di_particles *set, double pressure, double h, 
     const double each = 1.5 * pressure * se3di_domain_volume(set) / (contacts * size);
     for (size_t k = 0; k < set->count; ++k) {
         const double area = set->particles[k].radius * set->particles[k].radius;
-        const answer one = contact_answer(set, &set->particles[k], each * area);
-        sum->springs += 4.0 / 3.0 * area * contacts * h * one.springs;
-        sum->dampers += 4.0 / 3.0 * area * contacts * one.dampers;
+        const answer hooke = contact_answer(set, &set->particles[k], each * area, 0);
+        const answer hertz = contact_answer(set, &set->particles[k], each * area, 1);
+        sum->springs += 4.0 / 3.0 * area * contacts * h * fmax(hooke.springs, hertz.springs);
+        sum->dampers += 4.0 / 3.0 * area * contacts * fmax(hooke.dampers, hertz.dampers);
     }
 }
 

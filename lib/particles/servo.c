@@ -87,7 +87,7 @@ double se3di_servo_wanted(const se3di_servo *servo)
 }
 
 /* Stiffness and damping of what presses a wall: its bonds and what may touch it. */
-enum { BONDS_K, BONDS_C, TOUCHES_K, TOUCHES_C, TOUCHES_RATE, TOTALS };
+enum { BONDS_K, BONDS_C, HOOKE_K, HOOKE_C, HOOKE_RATE, HERTZ_K, HERTZ_C, HERTZ_RATE, TOTALS };
 
 typedef struct totals {
     double sum[TOTALS];
@@ -131,7 +131,6 @@ static void add_bonds(const se3di_particles *set, const se3di_servo *servo, tota
 /* All particles that are near. */
 static void add_touches(const se3di_particles *set, const se3di_servo *servo, totals *out)
 {
-    const int hertz = set->law == SE3DI_LAW_HERTZ_MINDLIN;
     for (size_t k = 0; set->list_valid && k < set->near_count; ++k) {
         const uint32_t i = set->near_walls[k].i & ~SE3DI_LIST_ACTIVE;
         const se3di_wall *wall = &set->walls[set->near_walls[k].wall];
@@ -139,10 +138,11 @@ static void add_touches(const se3di_particles *set, const se3di_servo *servo, to
         if (is_same(wall->handle, servo->shape) && !se3di_particle_is_fixed(g)) {
             const se3di_pair *pair =
                 &set->pairs[set->spins[i].material * set->stuff_count + wall->material];
+            const int hertz = se3di_pair_is_hertz(pair);
             const double root = hertz ? sqrt(g->radius) : 1.0;
-            add(set, TOUCHES_K, pair->kn * root, out);
-            add(set, TOUCHES_C, pair->dn * sqrt(root / g->inverse_mass), out);
-            add(set, TOUCHES_RATE, pair->rn * root / g->inverse_mass, out);
+            add(set, hertz ? HERTZ_K : HOOKE_K, pair->kn * root, out);
+            add(set, hertz ? HERTZ_C : HOOKE_C, pair->dn * sqrt(root / g->inverse_mass), out);
+            add(set, hertz ? HERTZ_RATE : HOOKE_RATE, pair->rn * root / g->inverse_mass, out);
         }
     }
 }
@@ -155,14 +155,13 @@ static double resistance(const se3di_particles *set, const se3di_servo *servo, d
     add_bonds(set, servo, &of);
     add_touches(set, servo, &of);
     unite(set, &of);
-    const double K = of.sum[TOUCHES_K], C = of.sum[TOUCHES_C], rate = of.sum[TOUCHES_RATE];
-    const double bonds = STEPS * h * of.sum[BONDS_K] + DAMPS * of.sum[BONDS_C];
-    if (set->law == SE3DI_LAW_HERTZ_MINDLIN &&
-        K > 0.0) { /* F = K d^(3/2), C d^(1/4), rate d^(1/2) */
+    const double K = of.sum[HERTZ_K], C = of.sum[HERTZ_C], rate = of.sum[HERTZ_RATE];
+    double sum = STEPS * h * of.sum[BONDS_K] + DAMPS * of.sum[BONDS_C];
+    if (K > 0.0) { /* F = K d^(3/2), C d^(1/4), rate d^(1/2) */
         const double root = se3di_pow(force / K, 1.0 / 3.0);
-        return bonds + STEPS * h * 1.5 * K * root + DAMPS * (C * sqrt(root) + rate * root);
+        sum = sum + STEPS * h * 1.5 * K * root + DAMPS * (C * sqrt(root) + rate * root);
     }
-    return bonds + STEPS * h * K + DAMPS * (C + rate);
+    return sum + STEPS * h * of.sum[HOOKE_K] + DAMPS * (of.sum[HOOKE_C] + of.sum[HOOKE_RATE]);
 }
 
 static double choose_speed(const se3di_particles *set, const se3di_servo *servo, double h)

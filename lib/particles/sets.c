@@ -37,7 +37,7 @@ static se3d_status check_step(const se3di_particles *set, const se3di_model *mod
     const char *name = set_name(set, &of);
     double safe = se3di_particles_safe_step(set, model);
     double limit =
-        safe * (model->contact.law == SE3DI_LAW_HOOKE ? STEP_LIMIT_HOOKE : STEP_LIMIT_HERTZ);
+        safe * (set->law == SE3DI_LAW_HERTZ_MINDLIN ? STEP_LIMIT_HERTZ : STEP_LIMIT_HOOKE);
     const double bonds = se3di_bonds_step(set);
     if (h > SE3DI_BONDS_STABLE * bonds) {
         return se3di_error_set(error, SE3D_ERR_STEP_SIZE,

@@ -339,8 +339,7 @@ static double pair_steps(const se3di_model *model, size_t a, double radius, doub
     for (size_t b = 0; b < n; ++b) {
         if (model->materials[b].users > 0) {
             step =
-                fmin(step, se3di_pair_step((se3di_contact_law)model->contact.law,
-                                           &model->materials[a], &model->overrides[a * n + b],
+                fmin(step, se3di_pair_step(&model->materials[a], &model->overrides[a * n + b],
                                            &model->pairs[a * n + b], radius, mass, reduced_mass));
         }
     }

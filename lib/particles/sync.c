@@ -71,6 +71,7 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
     set->rolling = 0;
     set->cohesive = 0;
     set->rated = 0;
+    int32_t law = -1;
     for (size_t k = 0; k < n * n; ++k) {
         se3di_handle a = set->stuffs[k / n].handle;
         se3di_handle b = set->stuffs[k % n].handle;
@@ -82,8 +83,13 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
             set->rolling |= set->pairs[k].rolling > 0.0 || set->pairs[k].torsion > 0.0;
             set->cohesive |= set->pairs[k].cohesion > 0.0 || set->pairs[k].pull_off > 0.0;
             set->rated |= set->pairs[k].rn > 0.0;
+            const int32_t of_pair = set->pairs[k].law;
+            law = law < 0 || law == of_pair ? of_pair : (int32_t)SE3DI_LAW_MIXED;
+        } else {
+            set->pairs[k] = (se3di_pair){.kn = 0.0}; /* nobody is made of it any more */
         }
     }
+    set->law = (se3di_contact_law)(law < 0 ? model->contact.law : law);
     return SE3D_OK;
 }
 
@@ -258,7 +264,6 @@ static se3d_status reserve_sums(se3di_particles *set)
 
 static void take_law(se3di_particles *set, const se3di_model *model)
 {
-    set->law = (se3di_contact_law)model->contact.law;
     set->callback = model->contact.callback;
     set->ctx = model->contact.ctx;
     set->overlap_limit = model->contact.overlap_limit;

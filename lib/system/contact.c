@@ -25,7 +25,8 @@ void se3d_material_def_init(se3d_material_def *def, size_t size)
 
 void se3d_material_pair_def_init(se3d_material_pair_def *def, size_t size)
 {
-    se3d_material_pair_def defaults = {.struct_size = size, SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF)};
+    se3d_material_pair_def defaults = {.struct_size = size,
+                                       SE3DI_OVERRIDE_LIST(SE3DI_NONE_OF).law = -1};
     se3di_def_init(def, size, &defaults, sizeof defaults);
 }
 
@@ -65,6 +66,32 @@ static se3d_status check_ratio(se3d_system *system, int32_t law, double damping_
     return damping_ratio > 0.0 ? check_damping(system, law, &of_it) : SE3D_OK;
 }
 
+/* What a pair with a law of its own, or else nobody, needs of its materials. */
+static se3d_status check_pair_law(se3d_system *system, const se3di_override *over,
+                                  const se3di_material *a, const se3di_material *b)
+{
+    const se3di_material *const of[2] = {a, b};
+    for (int k = 0; over->law >= 0 && k < 2; ++k) {
+        SE3DI_TRY(check_law(system, over->law, fmax(over->stiffness, of[k]->stiffness),
+                            fmax(over->young, of[k]->young)));
+        SE3DI_TRY(check_damping(system, over->law, of[k]));
+    }
+    const se3di_contact_law of_all = (se3di_contact_law)system->model.contact.law;
+    return check_ratio(system, (int32_t)se3di_pair_law(of_all, over), over->damping_ratio);
+}
+
+/* The same of a material that becomes `data`. */
+static se3d_status check_pair_laws(se3d_system *system, uint32_t index, const se3di_material *data)
+{
+    const se3di_model *model = &system->model;
+    const size_t n = model->material_slots.count;
+    for (size_t k = 0; k < n; ++k) {
+        SE3DI_TRY(check_pair_law(system, &model->overrides[index * n + k], data,
+                                 k == index ? data : &model->materials[k]));
+    }
+    return SE3D_OK;
+}
+
 se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_settings *settings)
 {
     SE3DI_SET(system);
@@ -96,7 +123,9 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
         SE3DI_TRY(check_damping(system, full.law, &model->materials[k]));
         for (size_t j = 0; j <= k; ++j) {
             const se3di_override *over = &model->overrides[k * model->material_slots.count + j];
-            SE3DI_TRY(check_ratio(system, full.law, over->damping_ratio));
+            SE3DI_TRY(check_ratio(system,
+                                  (int32_t)se3di_pair_law((se3di_contact_law)full.law, over),
+                                  over->damping_ratio));
         }
     }
     const double before = se3di_audit_contacts(model);
@@ -226,6 +255,7 @@ se3d_status se3d_material_set(se3d_system *system, se3d_material material,
     se3di_material data = read_material(&full);
     data.name = model->materials[index].name;
     data.users = model->materials[index].users;
+    SE3DI_TRY(check_pair_laws(system, index, &data));
     const double before = se3di_audit_contacts(model);
     model->materials[index] = data;
     se3di_pair_mix_all(model);
@@ -316,7 +346,12 @@ static se3d_status check_pair(se3d_system *system, const se3d_material_pair_def 
                              " = %g, in place of `restitution`, must not be beside it",
                              def->damping_ratio);
     }
-    return check_ratio(system, system->model.contact.law, def->damping_ratio);
+    if (def->law > SE3D_CONTACT_LAW_HERTZ_MINDLIN) {
+        return SE3DI_FAIL_OF(system, "law", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %d, must be hooke, hertz_mindlin or negative (the system's)",
+                             (int)def->law);
+    }
+    return SE3D_OK;
 }
 
 se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_material b,
@@ -330,8 +365,10 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
     SE3DI_TRY(se3di_check_def(system, "pair def", def, &full, sizeof full));
     SE3DI_TRY(check_pair(system, &full));
 #define TAKE(name, least, most) .name = full.name,
-    const se3di_override over = {SE3DI_OVERRIDE_LIST(TAKE)};
+    const se3di_override over = {SE3DI_OVERRIDE_LIST(TAKE).law = full.law};
 #undef TAKE
+    SE3DI_TRY(check_pair_law(system, &over, &system->model.materials[index_a],
+                             &system->model.materials[index_b]));
     const double before = se3di_audit_contacts(&system->model);
     se3di_model_set_override(&system->model, index_a, index_b, &over);
     se3di_pair_mix_all(&system->model);
@@ -360,7 +397,7 @@ se3d_status se3d_material_get_pair(const se3d_system *system, se3d_material a, s
         &system->model.overrides[index_a * system->model.material_slots.count + index_b];
 #define TELL(name, least, most) .name = over->name,
     const se3d_material_pair_def full = {.struct_size = def->struct_size,
-                                         SE3DI_OVERRIDE_LIST(TELL)};
+                                         SE3DI_OVERRIDE_LIST(TELL).law = over->law};
 #undef TELL
     return se3di_sized_give(def, def->struct_size, &full, sizeof full);
 }

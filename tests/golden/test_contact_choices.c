@@ -375,7 +375,8 @@ static void a_pair_may_say_what_both_could(void)
 static void pairs_of_model_files_say_so_too(void)
 {
     const char *const text =
-        "se3d: 1\ncontact: {pairs: [{material_1: m, material_2: m, damping_rate: 0, "
+        "se3d: 1\ncontact: {pairs: [{material_1: m, material_2: m, law: hertz_mindlin, "
+        "damping_rate: 0, "
         "tangential_ratio: 0.3, tangential_damping: 0, rolling_ratio: 2, rolling_damping: 0.4, "
         "young: 7, poisson: 0.2}]}\nmaterials: [{name: m, density: 1, stiffness: 1, damping_rate: "
         "5}]\nparticles: [{material: m, radius: 1, lower: [0, 0, 0], upper: [9, 9, 9]}]\n";
@@ -393,6 +394,7 @@ static void pairs_of_model_files_say_so_too(void)
         se3d_system *system = se3d_model_get_system(model);
         CHECK(se3d_system_get_material(system, 0, &material) == SE3D_OK);
         CHECK(se3d_material_get_pair(system, material, material, &pair) == SE3D_OK);
+        CHECK(pair.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN);
         CHECK_NEAR(pair.damping_ratio, -1.0, 0.0);
         CHECK_NEAR(pair.damping_rate, 0.0, 0.0);
         CHECK_NEAR(pair.tangential_ratio, 0.3, 0.0);

@@ -211,6 +211,7 @@ static const field pair_fields[] = {NUMBERS(se3d_material_pair_def, friction),
                                     NUMBERS(se3d_material_pair_def, rolling_damping),
                                     NUMBERS(se3d_material_pair_def, young),
                                     NUMBERS(se3d_material_pair_def, poisson),
+                                    INTEGER(se3d_material_pair_def, law),
                                     FIELDS_END};
 
 FILL_IN(se3d_contact_settings, settings)

@@ -37,7 +37,8 @@ static int stuff_read(const se3d_system *system, se3d_material material, stuff *
         SE3D_FAILED(se3d_material_get_pair(system, material, material, &pair))) {
         return 0;
     }
-    *out = (stuff){.is_hertz = contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN,
+    *out = (stuff){.is_hertz =
+                       (pair.law < 0 ? contact.law : pair.law) == SE3D_CONTACT_LAW_HERTZ_MINDLIN,
                    .density = def.density,
                    .adhesion = choose(pair.adhesion, def.adhesion),
                    .cohesion = choose(pair.cohesion, def.cohesion),

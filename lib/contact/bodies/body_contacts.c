@@ -246,13 +246,13 @@ static se3d_status add_energy(void *ctx, const se3di_encounter *e)
 double se3di_contact_stiffness(const se3di_model *model, const se3di_body_contact *contact)
 {
     const se3di_shape *i = &model->shapes[contact->shape_i], *j = &model->shapes[contact->shape_j];
-    const double kn = se3di_pair_of(model, contact->shape_i, contact->shape_j)->kn;
+    const se3di_pair *pair = se3di_pair_of(model, contact->shape_i, contact->shape_j);
     const double radius = se3di_shapes_contact_radius(i, j);
-    switch (model->contact.law) {
+    switch (pair->law) {
     case SE3DI_LAW_HOOKE:
-        return kn;
+        return pair->kn;
     case SE3DI_LAW_HERTZ_MINDLIN:
-        return 1.5 * kn * sqrt(radius * contact->overlap);
+        return 1.5 * pair->kn * sqrt(radius * contact->overlap);
     default: /* as it lands it has a force, and no overlap yet */
         return se3di_norm(contact->force) / fmax(contact->overlap, LANDED * radius);
     }

@@ -258,8 +258,8 @@ void se3di_encounter_place(se3di_encounter *e)
     const se3di_shape *j = &model->shapes[e->shape_j];
     e->body[0] = i->body;
     e->body[1] = j->body;
-    e->law = model->contact.law;
     e->pair = *se3di_pair_of(model, e->shape_i, e->shape_j);
+    e->law = e->pair.law;
     e->radius = se3di_shapes_contact_radius(i, j);
     eval_velocity(e);
     eval_mass(e);

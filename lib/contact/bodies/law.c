@@ -41,8 +41,9 @@ static void hooke(const se3di_material *a, const se3di_material *b, const se3di_
 {
     double zeta = se3di_restitution_hooke_damping(e);
     double ratio = choose(o->tangential_ratio, sqrt(a->tangential_ratio * b->tangential_ratio));
-    pair->kn =
-        choose(o->stiffness, 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness));
+    pair->kn = o->stiffness < 0.0
+                   ? 2.0 * a->stiffness * b->stiffness / (a->stiffness + b->stiffness)
+                   : o->stiffness;
     pair->kt = ratio * pair->kn;
     pair->dn = 2.0 * zeta * sqrt(pair->kn);
     pair->dt = ratio; /* over dn; with 2/7: the same damping ratio as the normal direction */
@@ -110,6 +111,11 @@ static void roll(const se3di_material *a, const se3di_material *b, const se3di_o
     pair->dr *= sqrt(pair->kr);
 }
 
+se3di_contact_law se3di_pair_law(se3di_contact_law of_all, const se3di_override *over)
+{
+    return over->law < 0 || of_all == SE3DI_LAW_CALLBACK ? of_all : (se3di_contact_law)over->law;
+}
+
 static double restitution(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
                           const se3di_override *o)
 {
@@ -120,11 +126,12 @@ static double restitution(se3di_contact_law law, const se3di_material *a, const 
                                              se3di_material_restitution(law, b)));
 }
 
-void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_material *b,
+void se3di_pair_mix(se3di_contact_law of_all, const se3di_material *a, const se3di_material *b,
                     const se3di_override *over, se3di_pair *pair)
 {
     const se3di_override none = SE3DI_OVERRIDE_NONE;
     const se3di_override *o = over ? over : &none;
+    const se3di_contact_law law = se3di_pair_law(of_all, o);
     const double e = restitution(law, a, b, o);
     if (law == SE3DI_LAW_HOOKE) {
         hooke(a, b, o, e, pair);
@@ -133,6 +140,7 @@ void se3di_pair_mix(se3di_contact_law law, const se3di_material *a, const se3di_
     } else {
         hertz(a, b, o, e, pair);
     }
+    pair->law = (int32_t)law;
     pair->restitution = e;
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
     if (law == SE3DI_LAW_CALLBACK) {
@@ -170,14 +178,14 @@ const se3di_pair *se3di_pair_of(const se3di_model *model, uint32_t i, uint32_t j
     return &model->pairs[first * model->material_slots.count + (size_t)model->shapes[j].material];
 }
 
-double se3di_pair_step(se3di_contact_law law, const se3di_material *a, const se3di_override *over,
-                       const se3di_pair *pair, double radius, double mass, double reduced_mass)
+double se3di_pair_step(const se3di_material *a, const se3di_override *over, const se3di_pair *pair,
+                       double radius, double mass, double reduced_mass)
 {
-    if (law == SE3DI_LAW_CALLBACK) {
+    if (pair->law == SE3DI_LAW_CALLBACK) {
         return HUGE_VAL;
     }
     const double stiffest = fmax(pair->kt, pair->kr) / pair->kn;
-    if (law == SE3DI_LAW_HOOKE) {
+    if (pair->law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
         return 0.02 * PI / (rate + fmax(pair->dn / sqrt(reduced_mass), pair->rn));
     }

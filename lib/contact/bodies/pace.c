@@ -56,7 +56,7 @@ static double contact_time(const se3di_model *model, uint32_t i, uint32_t j, dou
                            double v)
 {
     const se3di_pair *pair = se3di_pair_of(model, i, j);
-    if (model->contact.law == SE3DI_LAW_HOOKE) {
+    if (pair->law == SE3DI_LAW_HOOKE) {
         return se3di_over(3.14159265358979324, sqrt(pair->kn * inverse_mass));
     }
     double R = se3di_shapes_contact_radius(&model->shapes[i], &model->shapes[j]);
@@ -121,7 +121,7 @@ static void touching(pace *p, const se3di_body_contact *c)
     se3di_sub(v[1], v[0], v[1]);
     double vn = se3di_dot(v[1], c->normal);
     double potential = 0.5 * pair->kn * c->overlap * c->overlap;
-    if (model->contact.law == SE3DI_LAW_HERTZ_MINDLIN) {
+    if (se3di_pair_is_hertz(pair)) {
         double R =
             se3di_shapes_contact_radius(&model->shapes[c->shape_i], &model->shapes[c->shape_j]);
         potential *= 0.8 * sqrt(R * c->overlap);

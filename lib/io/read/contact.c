@@ -60,6 +60,8 @@ const se3di_object se3di_object_contact = {
 static const se3di_key pair_keys[] = {
     {"material_1", SE3DI_KIND_MATERIAL, .required = true, .text = ""},
     {"material_2", SE3DI_KIND_MATERIAL, .required = true, .text = ""},
+    {"law", SE3DI_KIND_WORD, SE3DI_INTO(se3d_material_pair_def, law), .words = laws,
+     .standard = "that of contact", .text = "the force law of these two"},
     {"friction", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_pair_def, friction), .text = "coefficient of sliding"},
     {"restitution", SE3DI_KIND_NUMBER, SE3DI_RESTITUTION,

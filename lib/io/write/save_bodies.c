@@ -429,6 +429,9 @@ void se3di_save_materials(se3di_save *s)
     }
 }
 
+/* By se3d_contact_law. */
+static const char *const laws[] = {"hooke", "hertz_mindlin"};
+
 static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
 {
     se3d_material_pair_def def = se3d_material_pair_def_default();
@@ -451,7 +454,7 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
                   {"rolling_damping", def.rolling_damping},
                   {"young", def.young},
                   {"poisson", def.poisson}};
-    bool any = false;
+    bool any = def.law >= 0;
     for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
         any = any || values[k].value >= 0.0;
     }
@@ -463,6 +466,9 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
     s->indent = "       ";
     se3di_save_text(s, "material_1", s->materials.names[a.index1]);
     se3di_save_text(s, "material_2", s->materials.names[b.index1]);
+    if (def.law >= 0) {
+        se3di_save_text(s, "law", laws[def.law]);
+    }
     for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
         if (values[k].value >= 0.0) {
             se3di_save_number(s, values[k].key, values[k].value);
@@ -517,7 +523,6 @@ static void put_audit(se3di_save *s)
 
 void se3di_save_contact(se3di_save *s)
 {
-    static const char *const laws[] = {"hooke", "hertz_mindlin"};
     se3d_contact_settings settings = se3d_contact_settings_default();
     (void)se3d_system_get_contact(s->system, &settings);
     const se3di_node *given = s->model ? se3di_node_get(s->model->root, "contact") : NULL;
