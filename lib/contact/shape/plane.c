@@ -5,6 +5,7 @@
 #include "math/direction.h"
 #include "math/vec3.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +22,16 @@ static void frame_about(const double n[3], double A[9])
     }
 }
 
+/* Euler parameters leave rounding where the normal has no part. It would push the particles of a
+ * model in 2D out of their plane, where a bed that is pressed buckles. */
+static void round_normal(double A[9])
+{
+    const double rounding = 4.0 * DBL_EPSILON;
+    for (int a = 0; a < 3; ++a) {
+        A[3 * a + 2] = fabs(A[3 * a + 2]) < rounding ? 0.0 : A[3 * a + 2];
+    }
+}
+
 /* The normal of the definition is in the body frame, as is the shape's orientation. */
 static se3d_status define_plane(const se3d_shape_def *def, const se3d_allocator *allocator,
                                 se3di_shape *shape, se3di_error *error)
@@ -33,6 +44,7 @@ static se3d_status define_plane(const se3d_shape_def *def, const se3d_allocator 
         frame_about(normal, shape->A);
         memset(shape->p, 0, sizeof shape->p); /* the normal says it */
     }
+    round_normal(shape->A);
     return SE3D_OK;
 }
 
