@@ -14,11 +14,13 @@ typedef __m256d quad;
 #define load(p)             _mm256_loadu_pd(p)
 #define store(p, a)         _mm256_storeu_pd(p, a)
 #define SPREAD(x)           _mm256_set1_pd(x)
+#define FOUR(x, y, z, w)    _mm256_setr_pd(x, y, z, w)
 #define add_of(a, b)        _mm256_add_pd(a, b)
 #define mul_of(a, b)        _mm256_mul_pd(a, b)
 #define fma_of(a, b, c)     _mm256_fmadd_pd(a, b, c)
 #define fnma_of(a, b, c)    _mm256_fnmadd_pd(a, b, c)
 #define scalar_fma(a, b, c) __builtin_fma(a, b, c)
+#define CARRY_TEAM          se3di_loop_carry_team_avx2
 
 static inline void transpose(const quad a[4], quad o[4])
 {

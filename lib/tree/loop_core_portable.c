@@ -26,6 +26,11 @@ static inline quad SPREAD(double x)
     return (quad){{x, x, x, x}};
 }
 
+static inline quad FOUR(double x, double y, double z, double w)
+{
+    return (quad){{x, y, z, w}};
+}
+
 static inline quad add_of(quad a, quad b)
 {
     for (int k = 0; k < SE3DI_STRIP; ++k) {
@@ -68,6 +73,7 @@ static inline void transpose(const quad a[SE3DI_STRIP], quad o[SE3DI_STRIP])
 }
 
 #define scalar_fma(a, b, c) se3di_fma(a, b, c)
+#define CARRY_TEAM          NULL
 
 #include "tree/loop_core.inc"
 

@@ -97,7 +97,8 @@ static void take_loop(se3di_tree_loops *loops, uint32_t loop)
         se3di_tree_to_triad(&loops->tree->nodes[point->turns_with], turn->Q + 3 * k,
                             point->direction + 3 * k);
     }
-    if (turn->is_turned && point->turns_with < 0) { /* body i is fixed */
+    point->has_axes = !turn->is_turned && loops->kept_count[loop] == 3; /* which are in order */
+    if (turn->is_turned && point->turns_with < 0) {                     /* body i is fixed */
         for (size_t k = 0; k < 3; ++k) {
             se3di_mul(model->frames[term->body_i].A, turn->Q + 3 * k, point->direction + 3 * k);
         }
@@ -110,15 +111,15 @@ void se3di_tree_loops_take_points(se3di_tree_loops *loops)
     for (uint32_t k = 0; k < loops->count; ++k) {
         take_loop(loops, k);
     }
+    se3di_tree_loops_find_teams(loops);
 }
 
 /* ---- at a state ---- */
 
-void se3di_tree_loops_load_point(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
-                                 double *K, double *c, double *weight)
+static void load_along(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
+                       const se3di_loop_point *point, double *K, double *c, double *weight)
 {
     const se3di_tree *tree = loops->tree;
-    const se3di_loop_point *point = &loops->points[strip->loop];
     const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
     double directions[3 * SE3DI_STRIP] = {0.0};
     for (int32_t r = 0; r < strip->count; ++r) {
@@ -137,6 +138,23 @@ void se3di_tree_loops_load_point(const se3di_tree_loops *loops, const se3di_loop
         const se3di_loop_side *side = &point->side[k];
         if (side->node >= 0) {
             loops->system.core->load_side(tree, side, k == 0 ? -1.0 : 1.0, directions,
+                                          K + 6 * SE3DI_STRIP * (size_t)side->place, c, weight);
+        }
+    }
+}
+
+void se3di_tree_loops_load_point(const se3di_tree_loops *loops, const se3di_loop_strip *strip,
+                                 double *K, double *c, double *weight)
+{
+    const se3di_loop_point *point = &loops->points[strip->loop];
+    if (!point->has_axes) {
+        load_along(loops, strip, point, K, c, weight);
+        return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        const se3di_loop_side *side = &point->side[k];
+        if (side->node >= 0) {
+            loops->system.core->load_axes(loops->tree, side, k == 0 ? -1.0 : 1.0,
                                           K + 6 * SE3DI_STRIP * (size_t)side->place, c, weight);
         }
     }

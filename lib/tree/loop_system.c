@@ -21,7 +21,7 @@
 #define PASSES_MIN 4     /* strips that only pass a freedom, so that it pays to keep it */
 #define PAIRS_MAX  1000  /* of strips on one freedom, a strip: S is nearly full beyond */
 
-#define SYSTEM_STRIPS 12
+#define SYSTEM_STRIPS 13
 #define SYSTEM_BLOCKS 7
 
 static void list_strips(se3di_loop_system *s, se3di_array list[SYSTEM_STRIPS])
@@ -31,6 +31,7 @@ static void list_strips(se3di_loop_system *s, se3di_array list[SYSTEM_STRIPS])
         {(void **)&s->strips, n, sizeof *s->strips},
         {(void **)&s->is_passed, s->velocity_count, sizeof *s->is_passed},
         {(void **)&s->where, n, sizeof *s->where},
+        {(void **)&s->carried, n, sizeof *s->carried},
         {(void **)&s->pivot, lanes, size},
         {(void **)&s->weight, lanes, size},
         {(void **)&s->usual, lanes, size},

@@ -57,7 +57,9 @@ typedef struct se3di_loop_system {
     int32_t *row_entry, *row_column;
     int32_t *product_begin; /* [entries + 1] */
     se3di_loop_product *products;
-    int32_t *where; /* [strips]: scratch */
+    int32_t *where;   /* [strips]: scratch */
+    int32_t *carried; /* [row_strips]: their order on the way down, first by teams of four */
+    int32_t team_count, reserved;
     size_t entry_count, product_count, quad_count, velocity_count;
     double *X;            /* [entries][4][4]: columns of L D; of diagonal blocks L */
     double *pivot;        /* [strips][4]: inverse pivots */

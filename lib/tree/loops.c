@@ -469,10 +469,7 @@ static void carry_strip(se3di_tree_loops *loops, int32_t index)
     const uint32_t constraint = loops->constraints[strip->loop];
     const double *gamma = loops->gamma + tree->model->constraints[constraint].row_begin;
     const int32_t *kept = loops->kept + loops->row_begin[strip->loop] + strip->first;
-    const int32_t begin = loops->path_begin[strip->loop];
-    const se3di_loop_path path = {.count = loops->path_begin[strip->loop + 1] - begin,
-                                  .node = loops->path_node + begin,
-                                  .parent = loops->path_parent + begin};
+    const se3di_loop_path path = se3di_loop_path_of(loops, strip);
     const size_t at = SE3DI_STRIP * (size_t)index;
     memset(loops->K, 0, 6 * SE3DI_STRIP * (size_t)path.count * sizeof *loops->K);
     const int is_point = loops->points[strip->loop].is_there;
@@ -491,8 +488,17 @@ static void carry_strip(se3di_tree_loops *loops, int32_t index)
 
 void se3di_tree_loops_carry(se3di_tree_loops *loops)
 {
-    for (int32_t k = 0; k < loops->system.row_strips; ++k) {
-        carry_strip(loops, k);
+    const se3di_loop_system *system = &loops->system;
+    const int32_t in_teams = system->core->carry_team ? SE3DI_TEAM * system->team_count : 0;
+    for (int32_t k = 0; k < in_teams; k += SE3DI_TEAM) {
+        if (!se3di_tree_loops_carry_team(loops, k / SE3DI_TEAM)) {
+            for (int32_t m = 0; m < SE3DI_TEAM; ++m) {
+                carry_strip(loops, system->carried[k + m]);
+            }
+        }
+    }
+    for (int32_t k = in_teams; k < system->row_strips; ++k) {
+        carry_strip(loops, system->carried[k]);
     }
 }
 

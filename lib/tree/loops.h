@@ -37,7 +37,9 @@ typedef struct se3di_loop_side {
 
 typedef struct se3di_loop_point {
     int32_t is_there;
-    int32_t turns_with; /* the node whose triad has the directions, -1: the ground */
+    int32_t turns_with; /* the node whose triad has the directions, -1: the ground, */
+    int32_t has_axes;   /* whose axes they are, all three */
+    int32_t reserved;
     double direction[9];
     se3di_loop_side side[2]; /* of bodies i and j */
 } se3di_loop_point;
@@ -164,6 +166,20 @@ void se3di_tree_loops_keep_rows(se3di_tree_loops *loops);
 se3d_status se3di_tree_loops_count_freedoms(se3di_tree_loops *loops);
 /* Rows as evaluated into the strips of `system`. */
 void se3di_tree_loops_carry(se3di_tree_loops *loops);
+/* The points of loops are known: those whose rows are carried side by side (tree/loop_teams.c). */
+void se3di_tree_loops_find_teams(se3di_tree_loops *loops);
+/* The rows of the `index`-th team into their strips. @return 0: not now, a coordinate on the way is
+ * prescribed */
+int se3di_tree_loops_carry_team(const se3di_tree_loops *loops, int32_t index);
+/* The path of a strip's loop. */
+static inline se3di_loop_path se3di_loop_path_of(const se3di_tree_loops *loops,
+                                                 const se3di_loop_strip *strip)
+{
+    const int32_t begin = loops->path_begin[strip->loop];
+    return (se3di_loop_path){.count = loops->path_begin[strip->loop + 1] - begin,
+                             .node = loops->path_node + begin,
+                             .parent = loops->path_parent + begin};
+}
 /* G [rows of the loops x velocities], row-major: the Jacobian to the velocities of the tree. */
 void se3di_tree_loops_jacobian(const se3di_tree_loops *loops, double *G);
 
