@@ -28,19 +28,20 @@ double se3di_kinetic_energy(const se3di_model *model)
 
 se3d_status se3di_forces_potential(const se3di_model *model, double t, double *potential)
 {
-    double g[3];
+    double g[3], sum = 0.0;
     *potential = 0.0;
     SE3DI_TRY(se3di_gravity_eval(model, t, g, NULL));
     for (size_t b = 0; b < model->body_slots.count; ++b) {
         if (model->bodies[b].state == 0) {
-            *potential -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
+            sum -= model->bodies[b].mass * se3di_dot(g, model->frames[b].r);
         }
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         double own;
         SE3DI_TRY(se3di_force_potential(model, &model->forces[k], t, &own));
-        *potential += own;
+        sum += own;
     }
+    *potential = sum;
     return SE3D_OK;
 }
 
@@ -78,6 +79,7 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
 {
     double g[3];
     double g_t[3];
+    se3di_law_notes notes = {.count = 0};
     se3di_effect effect;
     effect.wants_derivative = 0;
     power[0] = power[1] = power[2] = 0.0;
@@ -91,7 +93,7 @@ static se3d_status eval_power(const se3di_model *model, double t, double power[3
         if (se3di_force_is_apart(model, &model->forces[k])) {
             continue;
         }
-        SE3DI_TRY(se3di_force_eval(model, &model->forces[k], t, &effect));
+        SE3DI_TRY(se3di_force_eval_with(model, &model->forces[k], t, &notes, &effect));
         power[0] += effect.power[0];
         power[1] += effect.power[1];
     }

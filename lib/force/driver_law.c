@@ -207,7 +207,8 @@ se3d_status se3di_driver_law_value(const se3di_model *model, const se3di_constra
                                    double *value)
 {
     double jet[3];
-    SE3DI_TRY(se3di_law_eval(model, &model->functions[constraint->law], &model->time, jet, NULL));
+    SE3DI_TRY(
+        se3di_law_eval(model, &model->functions[constraint->law], &model->time, NULL, jet, NULL));
     *value = jet[0];
     return SE3D_OK;
 }

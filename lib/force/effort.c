@@ -25,8 +25,8 @@ static se3d_status eval_effort(const se3di_model *model, const se3di_force *forc
         const double variables[3] = {t, measure.value, measure.rate};
         double jet[3] = {0.0, 0.0, 0.0};
         double gradient[SE3D_FUNCTION_VARIABLES_MAX] = {0.0};
-        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], variables, jet,
-                                 effect->wants_derivative ? gradient : NULL));
+        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], variables,
+                                 effect->notes, jet, effect->wants_derivative ? gradient : NULL));
         se3di_law_keep_own(&model->functions[force->function[0]], gradient);
         law = (se3di_law){-jet[0], -gradient[1], -gradient[2]};
     }

@@ -21,14 +21,21 @@ const se3di_force_class *se3di_force_class_of(const se3di_force *force)
     return classes[force->type];
 }
 
-se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
-                             se3di_effect *effect)
+se3d_status se3di_force_eval_with(const se3di_model *model, const se3di_force *force, double t,
+                                  se3di_law_notes *notes, se3di_effect *effect)
 {
     size_t size = effect->wants_derivative ? sizeof *effect : offsetof(se3di_effect, K);
     int32_t wants = effect->wants_derivative;
     memset(effect, 0, size);
     effect->wants_derivative = wants;
+    effect->notes = notes;
     return force->released ? SE3D_OK : classes[force->type]->eval(model, force, t, effect);
+}
+
+se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
+                             se3di_effect *effect)
+{
+    return se3di_force_eval_with(model, force, t, NULL, effect);
 }
 
 se3d_status se3di_force_fail(const se3di_model *model, uint32_t failed, se3d_status status,
@@ -128,8 +135,14 @@ static se3d_status sum_tyre(const se3di_model *model, uint32_t k, double t, se3d
     return SE3D_OK;
 }
 
-static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
-                               se3di_tyre_loads *loads, se3di_force_sums *sums)
+/* What elements at one state share. */
+typedef struct shared {
+    se3di_tyre_loads loads;
+    se3di_law_notes notes;
+} shared;
+
+static se3d_status sum_element(const se3di_model *model, uint32_t k, double t, shared *common,
+                               se3di_force_sums *sums)
 {
     const se3di_force *force = &model->forces[k];
     const int32_t along = sums->along ? sums->along[k] : -1;
@@ -141,25 +154,25 @@ static se3d_status sum_element(const se3di_model *model, uint32_t k, double t,
         return SE3D_OK;
     }
     if (force->type == SE3DI_FORCE_TYRE && !force->released) {
-        return sum_tyre(model, k, t, loads, sums);
+        return sum_tyre(model, k, t, &common->loads, sums);
     }
     se3di_effect effect;
     effect.wants_derivative = 0;
-    SE3DI_TRY(se3di_force_eval(model, force, t, &effect));
+    SE3DI_TRY(se3di_force_eval_with(model, force, t, &common->notes, &effect));
     add_wrench(force, effect.wrench, effect.power, sums);
     return SE3D_OK;
 }
 
 se3d_status se3di_forces_sum(const se3di_model *model, double t, se3di_force_sums *sums)
 {
-    se3di_tyre_loads loads;
-    loads.count = 0;
+    shared common;
+    common.loads.count = common.notes.count = 0;
     sums->power[0] = sums->power[1] = 0.0;
     sums->failed = (uint32_t)model->force_slots.count;
     SE3DI_TRY(sum_gravity(model, t, sums));
     for (uint32_t k = 0; k < model->force_slots.count; ++k) {
         sums->failed = k;
-        SE3DI_TRY(sum_element(model, k, t, &loads, sums));
+        SE3DI_TRY(sum_element(model, k, t, &common, sums));
     }
     return SE3D_OK;
 }

@@ -11,6 +11,17 @@
 
 #include "model/model.h"
 
+/* Outputs and inputs of states that laws have asked for at one state of the model and time, so that
+ * each is evaluated once however many laws ask; zero before. What has no room is evaluated again.
+ */
+#define SE3DI_LAW_NOTES 8
+
+typedef struct se3di_law_notes {
+    const se3di_function *function[SE3DI_LAW_NOTES];
+    double value[SE3DI_LAW_NOTES];
+    int32_t count, reserved;
+} se3di_law_notes;
+
 /* An element at the state of the model. */
 typedef struct se3di_effect {
     double wrench[12];
@@ -19,6 +30,7 @@ typedef struct se3di_effect {
     double coordinate, rate;  /* of springs, friction and stops */
     double value;             /* force against the coordinate: f [N] or n [N m] */
     double slope[2];          /* of n in wrench = -n g: to the coordinate, to its rate */
+    se3di_law_notes *notes;   /* of the evaluation; NULL: none */
     int32_t wants_derivative; /* set by the caller: K and D are computed */
     double K[144];            /* d wrench / d (dr, dtheta) */
     double D[144];            /* d wrench / d (v, w) */
@@ -28,6 +40,10 @@ typedef struct se3di_effect {
  * (the points of a tsda with a free length coincide), NOT_FINITE, CALLBACK */
 se3d_status se3di_force_eval(const se3di_model *model, const se3di_force *force, double t,
                              se3di_effect *effect);
+
+/* The same as one of several elements at a state, which share `notes`; NULL: none. */
+se3d_status se3di_force_eval_with(const se3di_model *model, const se3di_force *force, double t,
+                                  se3di_law_notes *notes, se3di_effect *effect);
 
 /* Say which element has failed with `status`; `failed`: its number, or that of elements: gravity.
  * @return status */

@@ -10,12 +10,13 @@
 #include "math/vec3.h"
 
 static se3d_status get_value(const se3di_model *model, const se3di_force *force, double t,
-                             double value[3])
+                             se3di_law_notes *notes, double value[3])
 {
     for (int c = 0; c < 3; ++c) {
         double jet[3] = {force->value[c], 0.0, 0.0};
         if (force->function[c] >= 0) {
-            SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[c]], &t, jet, NULL));
+            SE3DI_TRY(
+                se3di_law_eval(model, &model->functions[force->function[c]], &t, notes, jet, NULL));
         }
         value[c] = jet[0];
     }
@@ -43,7 +44,7 @@ static se3d_status eval_load(const se3di_model *model, const se3di_force *force,
 {
     const se3di_frame *frame = &model->frames[force->body_j];
     double value[3], local[3], T[9], S[9], M[9];
-    SE3DI_TRY(get_value(model, force, t, value));
+    SE3DI_TRY(get_value(model, force, t, effect->notes, value));
     if (force->in_body_frame) {
         se3di_mul(frame->A, value, effect->wrench + 6);
         se3di_cross(force->s_j, value, effect->wrench + 9);
@@ -73,7 +74,7 @@ static se3d_status eval_torque(const se3di_model *model, const se3di_force *forc
 {
     const se3di_frame *frame = &model->frames[force->body_j];
     double value[3], T[9];
-    SE3DI_TRY(get_value(model, force, t, value));
+    SE3DI_TRY(get_value(model, force, t, effect->notes, value));
     if (force->in_body_frame) {
         se3di_copy(value, effect->wrench + 9);
     } else {

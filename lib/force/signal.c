@@ -121,17 +121,39 @@ const se3di_function *se3di_signal_function(const se3di_model *model, const se3d
     return function >= 0 ? &model->functions[function] : NULL;
 }
 
+static const double *find_note(const se3di_law_notes *notes, const se3di_function *function)
+{
+    for (int32_t k = 0; notes && k < notes->count; ++k) {
+        if (notes->function[k] == function) {
+            return &notes->value[k];
+        }
+    }
+    return NULL;
+}
+
+static void take_note(se3di_law_notes *notes, const se3di_function *function, double value)
+{
+    if (notes && notes->count < SE3DI_LAW_NOTES) {
+        notes->function[notes->count] = function;
+        notes->value[notes->count++] = value;
+    }
+}
+
 /* The value of a state, or its output or input; without a function the output is the value, the
  * input 0. */
 static se3d_status state_value(const se3di_model *model, const se3di_signal *signal, double t,
-                               double *value)
+                               se3di_law_notes *notes, double *value)
 {
     const se3di_function *function = se3di_signal_function(model, signal);
+    const double *note = function ? find_note(notes, function) : NULL;
     double jet[3];
     *value = signal->component == SE3D_STATE_INPUT ? 0.0 : model->frames[signal->body].v[0];
-    if (function) {
-        SE3DI_TRY(se3di_law_eval(model, function, &t, jet, NULL));
+    if (note) {
+        *value = *note;
+    } else if (function) {
+        SE3DI_TRY(se3di_law_eval(model, function, &t, notes, jet, NULL));
         *value = jet[0];
+        take_note(notes, function, *value);
     }
     return SE3D_OK;
 }
@@ -142,12 +164,12 @@ static se3d_status eval_state(const se3di_model *model, const se3di_signal *sign
     const int is_own =
         signal->component != SE3D_STATE_INPUT && !se3di_signal_function(model, signal);
     out->u[6] = is_own ? 1.0 : 0.0;
-    return state_value(model, signal, t, &out->value);
+    return state_value(model, signal, t, NULL, &out->value);
 }
 
 /* The value alone. */
 static se3d_status find_value(const se3di_model *model, const se3di_signal *signal, double t,
-                              double *value)
+                              se3di_law_notes *notes, double *value)
 {
     const se3di_frame *frame = &model->frames[signal->body];
     if (is_of_joint(signal) || is_of_force(signal)) {
@@ -157,7 +179,7 @@ static se3d_status find_value(const se3di_model *model, const se3di_signal *sign
         return SE3D_OK;
     }
     if (signal->kind == SE3D_SIGNAL_STATE) {
-        return state_value(model, signal, t, value);
+        return state_value(model, signal, t, notes, value);
     }
     *value = signal->kind == SE3D_SIGNAL_ANGULAR_VELOCITY ? frame->w[signal->component]
              : signal->kind == SE3D_SIGNAL_ORIENTATION    ? frame->p[signal->component]
@@ -202,7 +224,8 @@ static se3d_status find_law(const se3di_function *function, const double *x, dou
 }
 
 se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *function,
-                           const double *own, double jet[3], double *gradient)
+                           const double *own, se3di_law_notes *notes, double jet[3],
+                           double *gradient)
 {
     double x[SE3D_FUNCTION_VARIABLES_MAX] = {0.0};
     const uint32_t first = function->variable_count - function->signal_count;
@@ -211,7 +234,7 @@ se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *funct
     }
     memcpy(x, own, first * sizeof *x);
     for (uint32_t k = 0; k < function->signal_count; ++k) {
-        SE3DI_TRY(find_value(model, &function->signals[k], own[0], &x[first + k]));
+        SE3DI_TRY(find_value(model, &function->signals[k], own[0], notes, &x[first + k]));
     }
     return gradient ? se3di_function_eval(function, x, jet, gradient) : find_law(function, x, jet);
 }
@@ -323,7 +346,7 @@ static se3d_status leaf_slope(const se3di_model *model, const se3di_function *fu
                               const double *own, uint32_t k, double *slope)
 {
     double jet[3], gradient[SE3D_FUNCTION_VARIABLES_MAX];
-    SE3DI_TRY(se3di_law_eval(model, function, own, jet, gradient));
+    SE3DI_TRY(se3di_law_eval(model, function, own, NULL, jet, gradient));
     for (uint32_t s = 0; s < function->signal_count; ++s) {
         const se3di_function *inner = se3di_signal_function(model, &function->signals[s]);
         const uint32_t count = inner ? se3di_law_count_leaves(model, inner) : 1;

@@ -29,9 +29,11 @@ const se3di_signal *se3di_law_get_leaf(const se3di_model *model, const se3di_fun
                                        uint32_t k);
 /* A function at `own`, the variables that its element gives, and at its signals; jet and gradient
  * [SE3D_FUNCTION_VARIABLES_MAX] (or NULL) as those of se3di_function_eval, own variables first.
- * Of a function of signals without a gradient: the value alone. */
+ * Of a function of signals without a gradient: the value alone. `notes`: of what is evaluated at
+ * this state, NULL: none. */
 se3d_status se3di_law_eval(const se3di_model *model, const se3di_function *function,
-                           const double *own, double jet[3], double *gradient);
+                           const double *own, se3di_law_notes *notes, double jet[3],
+                           double *gradient);
 /* Whether the law of an element is the user's code, or depends on such a function. */
 int se3di_law_has_callback(const se3di_model *model, const se3di_force *force);
 /* Slopes to the three own variables: those to signals, which may stand there, become zero. */

@@ -123,8 +123,8 @@ se3d_status se3di_spring_law(const se3di_model *model, const se3di_force *force,
         const double variables[3] = {t, measure->value, rate};
         double jet[3] = {0.0, 0.0, 0.0};
         double gradient[SE3D_FUNCTION_VARIABLES_MAX] = {0.0};
-        SE3DI_TRY(
-            se3di_law_eval(model, h, variables, jet, effect->wants_derivative ? gradient : NULL));
+        SE3DI_TRY(se3di_law_eval(model, h, variables, effect->notes, jet,
+                                 effect->wants_derivative ? gradient : NULL));
         se3di_law_keep_own(h, gradient);
         law->n += jet[0];
         law->n_x += gradient[1];

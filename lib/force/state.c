@@ -20,7 +20,8 @@ static se3d_status eval_state(const se3di_model *model, const se3di_force *force
         SE3DI_TRY(se3di_tyre_lag_eval(model, tyre, t, force->coordinate, &lag));
         jet[0] = lag.rate;
     } else if (force->function[0] >= 0) {
-        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
+        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, effect->notes,
+                                 jet, NULL));
     }
     effect->coordinate = se3di_state_value(model, force);
     effect->value = jet[0];
@@ -35,7 +36,8 @@ static se3d_status find_potential(const se3di_model *model, const se3di_force *f
     double jet[3];
     *potential = 0.0;
     if (force->tyre_index < 0 && se3di_law_has_callback(model, force)) {
-        SE3DI_TRY(se3di_law_eval(model, &model->functions[force->function[0]], &t, jet, NULL));
+        SE3DI_TRY(
+            se3di_law_eval(model, &model->functions[force->function[0]], &t, NULL, jet, NULL));
     }
     return SE3D_OK;
 }

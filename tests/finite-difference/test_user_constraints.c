@@ -376,7 +376,7 @@ static double eval_rate(world *w, uint32_t carrier, double t, double s, double *
         *second += se3di_dot(row, m->a) + se3di_dot(row + 3, m->wdot);
     }
     *x = se3di_driver_rate_coordinate(model, driver);
-    CHECK(!se3di_law_eval(model, &model->functions[driver->law], &time, jet, NULL));
+    CHECK(!se3di_law_eval(model, &model->functions[driver->law], &time, NULL, jet, NULL));
     *f = jet[0];
     *second -= values.gamma[0];
     return sum - values.nu[0];
