@@ -36,6 +36,10 @@ void se3di_glb_put(se3di_glb *glb, se3di_iobytes *bytes, const char *format, ...
 {
     char text[1024];
     va_list list;
+    if (!strchr(format, '%')) {
+        se3di_glb_put_bytes(glb, bytes, format, strlen(format));
+        return;
+    }
     va_start(list, format);
     const int length = vsnprintf(text, sizeof text, format, list);
     va_end(list);
