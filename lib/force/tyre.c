@@ -549,7 +549,7 @@ static se3d_status eval_tyre(const se3di_model *model, const se3di_force *force,
 }
 
 se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
-                                       double deflection[2])
+                                       double deflection[4])
 {
     const se3di_frame *const frames[2] = {&model->frames[force->body_i],
                                           &model->frames[force->body_j]};
@@ -557,6 +557,8 @@ se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_for
     SE3DI_TRY(take_patch(model, force, t, &c));
     deflection[0] = c.input[SE3DI_PATCH_DEFLECTION];
     deflection[1] = c.cosine < UPRIGHT ? 0.0 : find_rate_of_deflection(frames, &c);
+    deflection[2] = c.cosine < UPRIGHT ? 0.0 : c.input[SE3DI_PATCH_RATE];
+    deflection[3] = c.cosine;
     return SE3D_OK;
 }
 

@@ -124,10 +124,11 @@ typedef struct se3di_tyre_loads {
 void se3di_tyre_eval_alike(const se3di_model *model, uint32_t first, double t,
                            se3di_tyre_loads *loads);
 
-/* Its deflection [m] (< 0: it is above the road) and the rate [m/s] at the present state. @return
+/* Its deflection [m] (< 0: it is above the road), the rate, the one that its damper has, which on
+ * an uneven road is another [m/s], and the cosine of its inclination, at the present state. @return
  * as se3di_force_eval */
 se3d_status se3di_tyre_find_deflection(const se3di_model *model, const se3di_force *force, double t,
-                                       double deflection[2]);
+                                       double deflection[4]);
 
 /* In the order of se3d_tyre_value. */
 typedef double se3di_tyre_values[SE3D_TYRE_VALUES];

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* With the deflection d and its rate at both ends of a step, d within it is a cubic. A tyre touches
- * the road where d > 0, and carries load where k d + c d' > 0 besides. */
+ * the road where d > 0, and carries the load (k d + c (d' + e)) / cos g where that is > 0 besides:
+ * e is what the damper's rate is off d', 0 on a plane, and between both ends, as cos g, a straight
+ * line. The Magic Formula has kinks where the load is the least or the most that it is for. */
 #include "integrator/tyre_steps.h"
 
 #include "force/tyre.h"
@@ -55,15 +57,31 @@ static way way_of(const se3di_model *model, size_t k, double h, const double *be
                  .h = h};
 }
 
-/* 0: it is above the road; 1: it touches, 2: and carries load. */
+/* How many limits of its formula a load is beyond. */
+static int count_limits(const se3di_force *force, double load)
+{
+    if (!force->tyre || !se3di_tyre_is_magic(force)) {
+        return 0;
+    }
+    const double least = force->tyre->coefficients[SE3D_TYRE_FZMIN];
+    const double most = force->tyre->coefficients[SE3D_TYRE_FZMAX];
+    return (least > 0.0 && load > least) + (most > 0.0 && load > most);
+}
+
+/* 0: it is above the road; 1: it touches, 2: and carries load; more: beyond limits. */
 static int look(const way *w, double s)
 {
     const double rise = w->end[0] - w->begin[0], a = w->h * w->begin[1] - rise;
     const double b = rise - w->h * w->end[1], r = 1.0 - s;
     const double d = r * w->begin[0] + s * w->end[0] + s * r * (r * a + s * b);
     const double slope = rise + (r - s) * (r * a + s * b) + s * r * (b - a);
-    const int loaded = w->force->k * d + w->force->c * slope / w->h > 0.0;
-    return d > 0.0 ? 1 + loaded : 0;
+    const double off = r * (w->begin[2] - w->begin[1]) + s * (w->end[2] - w->end[1]);
+    const double radial = w->force->k * d + w->force->c * (slope / w->h + off);
+    const double cosine = r * w->begin[3] + s * w->end[3];
+    if (!(d > 0.0) || !(radial > 0.0)) {
+        return d > 0.0;
+    }
+    return 2 + count_limits(w->force, radial / cosine);
 }
 
 /* The place of its first change: between low, where it has not, and high; 0: nowhere. */

@@ -7,7 +7,7 @@
 #include "model/model.h"
 
 /* Numbers of a tyre at an end of a step. */
-#define SE3DI_TYRE_NOTES 2
+#define SE3DI_TYRE_NOTES 4
 
 int se3di_tyres_are_there(const se3di_model *model);
 /* At the present state: notes [elements * SE3DI_TYRE_NOTES]. @return as se3di_force_eval */

@@ -6,6 +6,7 @@
 #include "system/system_internal.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The deflection over a step from s = 0 to 1: a cubic, its zero and its turning points anywhere. */
 typedef struct cubic {
@@ -16,7 +17,8 @@ static void note(const cubic *p, double h, double s, double notes[SE3DI_TYRE_NOT
 {
     const double a = s - p->a, b = s - p->b, c = s - p->c;
     notes[0] = p->scale * a * b * c;
-    notes[1] = p->scale * (a * b + b * c + c * a) / h;
+    notes[1] = notes[2] = p->scale * (a * b + b * c + c * a) / h;
+    notes[3] = 1.0;
 }
 
 static double find(const cubic *ways, size_t count, double damper, double h)
@@ -80,6 +82,52 @@ static void a_damper_lets_go_before_the_tyre_leaves(void)
     CHECK_NEAR(find(&way, 1, 0.0, h), before(0.8), 1e-9);
 }
 
+/* On an uneven road: k d + c (d' + e), e straight from one end to the other. */
+static void what_the_damper_has_besides_moves_where_it_lets_go(void)
+{
+    const cubic way = {0.01, 0.8, 1.5, -2.0};
+    const double h = 1e-2, c = 500.0, off[2] = {-0.05, -0.35};
+    se3di_force tyre = {.type = SE3DI_FORCE_TYRE, .k = 2e5, .c = c};
+    const se3di_model model = {.forces = &tyre, .force_slots = {.count = 1}};
+    double begin[SE3DI_TYRE_NOTES], end[SE3DI_TYRE_NOTES], low = 0.0, high = 0.8;
+    for (int k = 0; k < 60; ++k) {
+        double at[SE3DI_TYRE_NOTES];
+        const double middle = 0.5 * (low + high);
+        note(&way, h, middle, at);
+        const double rate = at[1] + off[0] + middle * (off[1] - off[0]);
+        *(2e5 * at[0] + c * rate > 0.0 ? &low : &high) = middle;
+    }
+    note(&way, h, 0.0, begin);
+    note(&way, h, 1.0, end);
+    begin[2] += off[0];
+    end[2] += off[1];
+    CHECK(low > 0.01 && low < 0.7 && fabs(before(low) - find(&way, 1, c, h)) > 1e-3);
+    CHECK_NEAR(se3di_tyres_find_part(&model, h, begin, end), before(low), 1e-9);
+}
+
+/* The Magic Formula has a kink at FZMIN and at FZMAX; others have not. */
+static void limits_of_the_load_end_steps(void)
+{
+    const cubic way = {0.01, 0.9, 4.0, -2.0}; /* from 7.2 cm down */
+    se3di_tyre magic = {.law = SE3D_TYRE_MF52};
+    se3di_force tyre = {.type = SE3DI_FORCE_TYRE, .k = 2e5, .tyre = &magic};
+    const se3di_model model = {.forces = &tyre, .force_slots = {.count = 1}};
+    double begin[SE3DI_TYRE_NOTES], end[SE3DI_TYRE_NOTES];
+    const double load = 2e5 * 0.01 * (0.9 - 0.4) * (4.0 - 0.4) * (2.0 + 0.4), cosine = 0.8;
+    for (int most = 0; most < 2; ++most) {
+        note(&way, 0.01, 0.0, begin);
+        note(&way, 0.01, 1.0, end);
+        begin[3] = end[3] = cosine;
+        memset(magic.coefficients, 0, sizeof magic.coefficients);
+        CHECK_NEAR(se3di_tyres_find_part(&model, 0.01, begin, end), before(0.9), 1e-9);
+        magic.coefficients[most ? SE3D_TYRE_FZMAX : SE3D_TYRE_FZMIN] = load / cosine;
+        CHECK_NEAR(se3di_tyres_find_part(&model, 0.01, begin, end), before(0.4), 1e-9);
+        magic.law = SE3D_TYRE_BRUSH;
+        CHECK_NEAR(se3di_tyres_find_part(&model, 0.01, begin, end), before(0.9), 1e-9);
+        magic.law = SE3D_TYRE_MF52;
+    }
+}
+
 static void the_first_of_several_tyres_counts(void)
 {
     const cubic ways[3] = {{0.1, 0.62, 1.3, 2.1}, {-0.1, 0.41, -1.3, -2.1}, {0.1, 0.55, 1.3, 2.1}};
@@ -133,6 +181,8 @@ static void each_tyre_has_notes_of_its_own(void)
         const double *own = notes + SE3DI_TYRE_NOTES * 2 * k;
         CHECK_NEAR(own[0], 0.05 - 0.1 * (double)k, 1e-15);
         CHECK_NEAR(own[1], 0.2, 1e-15);
+        CHECK_NEAR(own[2], 0.2, 1e-15);
+        CHECK_NEAR(own[3], 1.0, 1e-15);
     }
     se3d_system_destroy(system);
 }
@@ -142,6 +192,8 @@ int main(void)
     RUN(steps_end_before_the_first_zero);
     RUN(what_stays_as_it_is_ends_no_step);
     RUN(a_damper_lets_go_before_the_tyre_leaves);
+    RUN(what_the_damper_has_besides_moves_where_it_lets_go);
+    RUN(limits_of_the_load_end_steps);
     RUN(the_first_of_several_tyres_counts);
     RUN(what_is_near_is_crossed);
     RUN(each_tyre_has_notes_of_its_own);
