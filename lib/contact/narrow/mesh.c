@@ -20,6 +20,7 @@
 #define COPLANAR SE3DI_MESH_COPLANAR
 #define SAME     SE3DI_MESH_SAME
 #define ACROSS   1e-10 /* cosine of a way from an edge that is perpendicular to it */
+#define PLANE    1e-9  /* of the size, rad: faces in one */
 
 typedef se3di_mesh_face face;
 typedef se3di_mesh_meeting meeting;
@@ -491,10 +492,31 @@ static void touch_ends(const meeting *m)
     }
 }
 
-/* The points of the rims that are lowest on a face, as on a plane. */
+/* What is known of the plane of a face; NULL: there are too many. */
+static se3di_mesh_plane *plane_of(meeting *m, const face *f)
+{
+    for (int k = 0; k < m->plane_count; ++k) {
+        se3di_mesh_plane *plane = &m->planes[k];
+        double turn[3];
+        se3di_sub(plane->face.n, f->n, turn);
+        if (se3di_dot(turn, turn) < PLANE * PLANE &&
+            fabs(se3di_mesh_height(f, plane->face.corner)) < PLANE * m->size) {
+            return plane;
+        }
+    }
+    if (m->plane_count == SE3DI_MESH_PLANES) {
+        return NULL;
+    }
+    se3di_mesh_plane *plane = &m->planes[m->plane_count++];
+    *plane = (se3di_mesh_plane){*f, 0};
+    return plane;
+}
+
+/* The points of the rims that are lowest on a face, as on a plane: those of other faces in it are
+ * the same. */
 static void meet_rims(void *ctx, uint32_t triangle)
 {
-    const meeting *m = ctx;
+    meeting *m = ctx;
     const double *corner[3];
     double normal[3], rim[8][3], low[3];
     face f;
@@ -507,14 +529,21 @@ static void meet_rims(void *ctx, uint32_t triangle)
     se3di_mul(m->mesh->at->R, f.n, normal);
     (void)se3di_mesh_lowest(m, f.n, low);
     (void)se3di_cylinder_rims(m->solid, normal, -se3di_mesh_height(&f, low), rim);
+    se3di_mesh_plane *plane = plane_of(m, &f);
     for (uint32_t k = 0; k < 8; ++k) {
         double x[3], at[3];
+        if (plane && plane->looked >> k & 1u) {
+            continue;
+        }
         se3di_solid_to_local(m->mesh, rim[k], x);
         double height = se3di_mesh_height(&f, x);
         se3di_add_scaled(-height, f.n, x);
         if (height < 0.0 && -height < m->size &&
             se3di_triangle_nearest(corner, x, at, NULL) < m->size * m->size) {
             touch_corner(m, rim[k], f.n, k);
+            if (plane) {
+                plane->looked |= UINT64_C(1) << k;
+            }
         }
     }
 }

@@ -11,6 +11,7 @@
 #define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
 #define SE3DI_MESH_WAYS     24
 #define SE3DI_MESH_TOUCHES  16 /* faces that one ball touches */
+#define SE3DI_MESH_PLANES   8  /* of faces, that are told apart */
 
 /* All in the frame of the mesh. */
 typedef struct se3di_mesh_face {
@@ -26,6 +27,12 @@ typedef struct se3di_mesh_way {
     uint32_t reserved;
 } se3di_mesh_way;
 
+/* Of a plane in which faces lie the points of rims that have been looked at: a bit for each. */
+typedef struct se3di_mesh_plane {
+    se3di_mesh_face face;
+    uint64_t looked;
+} se3di_mesh_plane;
+
 typedef struct se3di_mesh_meeting {
     const se3di_solid *solid, *mesh;
     double origin[3];       /* of the solid */
@@ -38,10 +45,11 @@ typedef struct se3di_mesh_meeting {
                   for itself */
     int way_count;
     int has_pieces; /* which tell the ways off it */
-    int reserved;
+    int plane_count;
     se3di_manifold *manifold;
     const struct se3di_mesh_filter *filter; /* NULL: all contacts are kept */
     se3di_mesh_way ways[SE3DI_MESH_WAYS];
+    se3di_mesh_plane planes[SE3DI_MESH_PLANES];
 } se3di_mesh_meeting;
 
 /* Which contacts are kept: there may be many others, which must not take their places. */
