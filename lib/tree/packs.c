@@ -46,10 +46,11 @@ static int may_wait(const se3di_tree *tree, const int32_t *key)
 
 static void swap(int32_t *a, int32_t *b)
 {
-    int32_t kept[KEYS];
-    memcpy(kept, a, sizeof kept);
-    memcpy(a, b, sizeof kept);
-    memcpy(b, kept, sizeof kept);
+    for (int c = 0; c < KEYS; ++c) {
+        const int32_t kept = a[c];
+        a[c] = b[c];
+        b[c] = kept;
+    }
 }
 
 /* Of the `count` nodes from `key` on, which are as deep, up to `most` leaves wait for those that
