@@ -335,11 +335,25 @@ static se3di_explicit *get_explicit(se3di_adaptive *step)
     return (se3di_explicit *)(void *)step;
 }
 
+/* Whether the sums of all that turns are so small that no turn limits the step: frames need not be
+ * made to know. */
+static int turns_little(const se3di_explicit *m, double h)
+{
+    const se3di_tree *tree = m->equations->tree;
+    const double spin = se3di_tree_sum_turns(tree, m->y1 + tree->q_count);
+    const double growth = se3di_tree_sum_turns(tree, m->f1 + tree->q_count) + spin * spin;
+    return h * (2.0 * spin + growth * h) < SE3DI_STATE_TURN;
+}
+
 static double pace(se3di_adaptive *step, double h)
 {
     const se3di_explicit *m = get_explicit(step);
     if (m->is_bare) {
-        return h;
+        if (turns_little(m, h)) {
+            return h;
+        }
+        m->motion->set(m->equations, m->y1);
+        se3di_state_set_rates(m->assembly, se3di_explicit_get_rates(m));
     }
     h = se3di_state_limit_turn(m->assembly->model, largest_growth(m), h);
     return se3di_contacts_pace(m->assembly->model, SE3DI_PACE_ADAPTIVE, h);
@@ -447,7 +461,7 @@ static se3d_status repeat(se3di_explicit *m)
  * not from an output. */
 static void stand_at_begin(se3di_explicit *m)
 {
-    if (m->is_bare) {
+    if (m->is_bare && !(m->past->unscaled > 0.0)) {
         return;
     }
     if (m->stands) {

@@ -340,7 +340,7 @@ void se3di_gauss_lanes_end(se3di_gauss_lanes *g, const se3di_explicit *m, double
 
 /* ---- the end of a step ---- */
 
-/* The coordinates are all the angles that are counted: turns need no limit. */
+/* The coordinates are all the angles that are counted. */
 static int has_its_angles(const se3di_tree *tree, const se3di_model *model)
 {
     uint32_t k = 0;

@@ -412,7 +412,7 @@ double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
         double rate =
             se3di_norm(model->frames[term->body_i].w) + se3di_norm(model->frames[term->body_j].w);
         const double pace = rate + sqrt(rate * rate + 4.0 * growth);
-        const double least = pace > 0.0 ? 4.0 / pace : h; /* 2 rad */
+        const double least = pace > 0.0 ? 2.0 * SE3DI_STATE_TURN / pace : h;
         h = h > least ? least : h;
     }
     return h;

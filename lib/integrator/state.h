@@ -90,8 +90,10 @@ se3d_status se3di_state_project_positions(se3di_equations *equations, double t,
 void se3di_state_split_force(const se3di_assembly *assembly, const se3di_frame *frame,
                              const double *generalised, double force[3], double torque[3]);
 
-/* A step of at most h in which no joint angle turns by as much as its counter cannot follow, if
- * rates grow by at most `growth` [rad/s^2]. */
+#define SE3DI_STATE_TURN 2.0 /* rad */
+
+/* A step of at most h in which no joint angle turns by more than SE3DI_STATE_TURN, which its
+ * counter can follow and stages see, if rates grow by at most `growth` [rad/s^2]. */
 double se3di_state_limit_turn(const se3di_model *model, double growth, double h);
 
 /* Length of the mechanism's parts. */

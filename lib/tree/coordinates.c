@@ -606,6 +606,24 @@ se3di_force_sums se3di_tree_sums_again(se3di_tree *tree)
         .along = tree->has_efforts ? tree->along : NULL, .effort = tree->effort, .has_efforts = 1};
 }
 
+double se3di_tree_sum_turns(const se3di_tree *tree, const double *rates)
+{
+    static const int8_t turning[SE3DI_TREE_JOINT_COUNT][2] = {
+        /* the first one, and behind the last */
+        [SE3DI_TREE_FREE] = {3, 6},      [SE3DI_TREE_REVOLUTE] = {0, 1},
+        [SE3DI_TREE_SCREW] = {0, 1},     [SE3DI_TREE_CYLINDRICAL] = {0, 1},
+        [SE3DI_TREE_UNIVERSAL] = {0, 2}, [SE3DI_TREE_SPHERICAL] = {0, 3},
+        [SE3DI_TREE_PLANAR] = {2, 3}};
+    double sum = 0.0;
+    for (uint32_t k = 0; k < tree->count; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k];
+        for (int c = turning[n->type][0]; c < turning[n->type][1]; ++c) {
+            sum += fabs(rates[n->v + (uint32_t)c]);
+        }
+    }
+    return sum;
+}
+
 int se3di_tree_falls(const se3di_tree *tree)
 {
     const se3di_model *model = tree->model;

@@ -248,6 +248,9 @@ void se3di_tree_take_wrenches(se3di_tree *tree, const se3di_frame *frames, const
 /* Nothing acts but gravity that does not change and efforts on coordinates of the tree, which are
  * numbers; contact there cannot be. */
 int se3di_tree_falls(const se3di_tree *tree);
+/* A bound of the angular velocity of any body, and of any to any other, from the rates of the
+ * coordinates; of what their second rates give of an acceleration. */
+double se3di_tree_sum_turns(const se3di_tree *tree, const double *rates);
 /* Their sums, to tree->effort, as se3di_tree_sums has them. */
 void se3di_tree_sum_efforts(se3di_tree *tree);
 /* Gravity g alone pulls at the links, as if the ground accelerated by -g. */
