@@ -52,8 +52,7 @@ static void shake_place(double far, double p[3])
     for (int k = 0; k < 3; ++k) {
         uint64_t bits;
         memcpy(&bits, &p[k], sizeof bits);
-        state ^= bits;
-        (void)se3di_random_draw(&state);
+        state = bits ^ se3di_random_mix(state);
     }
     for (int k = 0; k < 3; ++k) {
         p[k] += far * (2.0 * se3di_random_draw(&state) - 1.0);
@@ -525,13 +524,16 @@ static int search(polytope *P, const difference *D, const simplex *s, least_reac
     return expand(P, best);
 }
 
-/* Again, of polyhedra, with their corners moved a little. */
+/* Again with corners that are moved a little; once if they are round, as what they span does not
+ * close. */
 static void search_shaken(polytope *P, const difference *D, const simplex *s, least_reach *best)
 {
+    const int are_round = se3di_solid_has_rims(D->i) || se3di_solid_has_rims(D->j);
+    const int tries = are_round ? 1 : SHAKES;
     difference shaken = *D;
     int is_least = 0;
     shaken.shake = SHAKE * D->size;
-    for (int k = 0; k < SHAKES && !is_least; ++k, shaken.shake *= 10.0) {
+    for (int k = 0; k < tries && !is_least; ++k, shaken.shake *= 10.0) {
         simplex moved = *s;
         least_reach here;
         for (int c = 0; c < moved.count; ++c) {

@@ -30,10 +30,11 @@
 
 #include <math.h>
 
-#define TIE   1e-15 /* of the size: of equal directions the first */
-#define NEAR  1e-6  /* rad; directions that may be as good as equal where h is flat */
-#define SHORT 1e-4  /* sine; an edge seen along less is about a corner */
-#define SKEW  1e-9  /* sine; lines that are more nearly parallel have no product */
+#define TIE     1e-15 /* of the size: of equal directions the first */
+#define NEAR    1e-6  /* rad; directions that may be as good as equal where h is flat */
+#define SHORT   1e-4  /* sine; an edge seen along less is about a corner */
+#define SKEW    1e-9  /* sine; lines that are more nearly parallel have no product */
+#define NO_SKEW 1e-140
 
 /* What touches along a direction: the farthest place of the one, or two lines. */
 typedef enum touching { OF_BLOCK, OF_CYLINDER, OF_LINES } touching;
@@ -45,6 +46,7 @@ typedef struct search {
     double c[3], d[3];    /* axis and centre of the cylinder */
     double radius, along; /* of the cylinder: 0 of a line; half its length */
     double tie;
+    double skew; /* sine; lines that are more nearly parallel have no product */
     double least, n[3];
     touching what;
     int edge; /* of the block, of two lines */
@@ -147,7 +149,7 @@ static void try_edges(search *s)
         }
         se3di_cross(unit[k], s->c, product);
         const double square = se3di_dot(product, product);
-        if (square > SKEW * SKEW) {
+        if (square > s->skew * s->skew) {
             try_axis(s, product, OF_LINES, k);
         }
         if (s->radius > 0.0) {
@@ -344,6 +346,8 @@ static int is_least_of_line(const search *s)
 {
     search line = *s;
     line.radius = 0.0;
+    line.skew =
+        NO_SKEW; /* whatever its product is serves a line that is the same but for rounding */
     line.least = HUGE_VAL;
     if (!find_side(s, line.d)) {
         return 0;
@@ -404,6 +408,7 @@ double se3di_cylinder_overlap(const se3di_solid *block, const se3di_solid *cylin
                 .cylinder = cylinder->shape,
                 .along = cylinder->shape->half_length,
                 .tie = TIE * (block->shape->bound + cylinder->shape->bound),
+                .skew = SKEW,
                 .least = HUGE_VAL};
     double axis[3], arm[3], a[3], b[3];
     s.radius = cylinder->shape->radius - se3di_core_radius(cylinder->shape);
