@@ -66,6 +66,22 @@ static se3d_status check_ratio(se3d_system *system, int32_t law, double damping_
     return damping_ratio > 0.0 ? check_damping(system, law, &of_it) : SE3D_OK;
 }
 
+/* A rate of damping is in the unit of the system's law: a pair of the other law cannot take it. */
+static se3d_status check_rate(se3d_system *system, int32_t of_all, const se3di_override *over,
+                              const se3di_material *material)
+{
+    const int has_own =
+        over->damping_rate >= 0.0 || over->damping_ratio >= 0.0 || over->restitution >= 0.0;
+    const int is_other = (int32_t)se3di_pair_law((se3di_contact_law)of_all, over) != of_all;
+    return has_own || !is_other || !(material->damping_rate != 0.0)
+               ? SE3D_OK
+               : SE3DI_FAIL_OF(system, "damping_rate", SE3D_ERR_INVALID_ARGUMENT,
+                               " of a material, %g, is for the system's law: a pair with another "
+                               "law must have a damping_rate, damping_ratio or restitution of its "
+                               "own",
+                               fmax(material->damping_rate, 0.0));
+}
+
 /* What a pair with a law of its own, or else nobody, needs of its materials. */
 static se3d_status check_pair_law(se3d_system *system, const se3di_override *over,
                                   const se3di_material *a, const se3di_material *b)
@@ -75,6 +91,7 @@ static se3d_status check_pair_law(se3d_system *system, const se3di_override *ove
         SE3DI_TRY(check_law(system, over->law, fmax(over->stiffness, of[k]->stiffness),
                             fmax(over->young, of[k]->young)));
         SE3DI_TRY(check_damping(system, over->law, of[k]));
+        SE3DI_TRY(check_rate(system, system->model.contact.law, over, of[k]));
     }
     const se3di_contact_law of_all = (se3di_contact_law)system->model.contact.law;
     return check_ratio(system, (int32_t)se3di_pair_law(of_all, over), over->damping_ratio);
@@ -126,6 +143,8 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
             SE3DI_TRY(check_ratio(system,
                                   (int32_t)se3di_pair_law((se3di_contact_law)full.law, over),
                                   over->damping_ratio));
+            SE3DI_TRY(check_rate(system, full.law, over, &model->materials[k]));
+            SE3DI_TRY(check_rate(system, full.law, over, &model->materials[j]));
         }
     }
     const double before = se3di_audit_contacts(model);

@@ -44,7 +44,10 @@ typedef struct trial {
 static void set_law(const scene *s, se3d_material a, se3d_material b, int32_t law)
 {
     se3d_material_pair_def pair = se3d_material_pair_def_default();
+    se3d_material_def one = se3d_material_def_default();
+    CHECK(!se3d_material_get(s->system, a, &one));
     pair.law = law;
+    pair.damping_rate = one.damping_rate > 0.0 ? one.damping_rate : -1.0; /* as of both */
     CHECK(se3d_material_set_pair(s->system, a, b, &pair) == SE3D_OK);
 }
 
@@ -277,6 +280,34 @@ static void materials_must_have_what_the_law_of_a_pair_needs(void)
     scene_end(&s);
 }
 
+/* A rate is in 1/s with hooke, in 1/(m s) with hertz_mindlin. */
+static void a_rate_of_damping_is_not_taken_by_another_law(void)
+{
+    se3d_material_def def = scene_stuff(0.4, 0.5, 1e4);
+    se3d_material_pair_def pair = se3d_material_pair_def_default();
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    se3d_material rated;
+    scene s = scene_begin_with(NULL, HOOKE, &def);
+    def.damping_rate = 100.0;
+    CHECK(!se3d_material_create(s.system, &def, &rated));
+    pair.law = HERTZ;
+    REFUSED(se3d_material_set_pair(s.system, s.material, rated, &pair), "damping_rate");
+    REFUSED(se3d_material_set_pair(s.system, rated, rated, &pair), "damping_rate");
+    CHECK(!se3d_material_set_pair(s.system, s.material, s.material, &pair));
+    REFUSED(se3d_material_set(s.system, s.material, &def), "damping_rate");
+    pair.law = HOOKE;
+    CHECK(!se3d_material_set_pair(s.system, s.material, rated, &pair));
+    contact.law = HERTZ; /* which is another one then */
+    REFUSED(se3d_system_set_contact(s.system, &contact), "damping_rate");
+    pair.law = HERTZ;
+    pair.restitution = 0.5;
+    CHECK(!se3d_material_set_pair(s.system, s.material, rated, &pair));
+    pair.restitution = -1.0;
+    pair.damping_rate = 2e4;
+    CHECK(!se3d_material_set_pair(s.system, s.material, rated, &pair));
+    scene_end(&s);
+}
+
 /* hooke of a stiffness that only the pair has: nothing else is asked for it. */
 static void a_pair_may_say_all_that_its_law_needs(void)
 {
@@ -305,6 +336,7 @@ int main(void)
     RUN(bodies_move_by_the_law_of_their_pair);
     RUN(the_step_is_that_of_the_law_of_the_pair);
     RUN(materials_must_have_what_the_law_of_a_pair_needs);
+    RUN(a_rate_of_damping_is_not_taken_by_another_law);
     RUN(a_pair_may_say_all_that_its_law_needs);
     return check_finish();
 }

@@ -33,7 +33,7 @@ static void put_time(double seconds)
 }
 
 /* The longest step that is safe, as a part of what contacts take. */
-static void print_step(const preview *g, int is_hertz)
+static void print_step(const preview *g, int32_t law)
 {
     if (!(g->step > 0.0)) {
         puts("; its step follows from what comes");
@@ -42,11 +42,34 @@ static void print_step(const preview *g, int is_hertz)
     printf("; steps of %.3g s", g->step);
     if (!(g->automatic > 0.0)) {
         puts("");
-    } else if (is_hertz) {
+    } else if (law < 0) {
+        printf(", %.3g of the longest that is safe\n", g->step / g->automatic);
+    } else if (law == SE3D_CONTACT_LAW_HERTZ_MINDLIN) {
         printf(", %.3g %% of the time of a Rayleigh wave\n", 2.5 * g->step / g->automatic);
     } else {
         printf(", 1/%.3g of the time of a contact\n", 50.0 * g->automatic / g->step);
     }
+}
+
+/* The law of all contacts, -1: pairs of materials have others. */
+static int32_t law_of_all(const se3d_system *system)
+{
+    se3d_contact_settings contact = se3d_contact_settings_default();
+    (void)se3d_system_get_contact(system, &contact);
+    const size_t count = se3d_system_count_materials(system);
+    for (size_t k = 0; k < count; ++k) {
+        for (size_t j = 0; j <= k; ++j) {
+            se3d_material a, b;
+            se3d_material_pair_def pair = se3d_material_pair_def_default();
+            (void)se3d_system_get_material(system, k, &a);
+            (void)se3d_system_get_material(system, j, &b);
+            if (se3d_material_get_pair(system, a, b, &pair) == SE3D_OK && pair.law >= 0 &&
+                pair.law != contact.law) {
+                return -1;
+            }
+        }
+    }
+    return contact.law;
 }
 
 /* How fast particles may hit. */
@@ -64,10 +87,9 @@ static void print_held(const preview *g)
 
 static void print_particles(const se3d_model *model)
 {
-    se3d_system *system = se3d_model_get_system(model);
-    se3d_contact_settings contact = se3d_contact_settings_default();
+    const se3d_system *system = se3d_model_get_system(model);
     const size_t count = se3d_system_count_particles(system);
-    (void)se3d_system_get_contact(system, &contact);
+    const int32_t law = law_of_all(system);
     for (size_t k = 0; k < count; ++k) {
         preview g;
         if (!preview_look(model, k, &g)) {
@@ -89,7 +111,7 @@ static void print_particles(const se3d_model *model)
         if (g.count > 0) {
             put_bytes(g.bytes);
         }
-        print_step(&g, contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN);
+        print_step(&g, law);
         print_held(&g);
     }
     if (count > 0) {
