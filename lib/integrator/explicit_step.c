@@ -20,6 +20,7 @@
 _Static_assert(2 * SE3DI_TYRE_NOTES <= SE3DI_FORCE_STATES,
                "memory has room for notes of both ends");
 
+#define CLEARLY    0.999 /* less than a limit, whatever rounding does */
 #define FORCED_MAX 3
 #define TYRE_TRIES 4     /* of a step that look for changes of tyres, */
 #define CROSSING   4.0   /* and how many of the least steps lead across one */
@@ -119,8 +120,11 @@ static se3d_status attempt(se3di_explicit *m, double h, double *error)
 /* The scale, and the accelerations that the next step of a run begins with. */
 static void grow_scale(se3di_explicit *m)
 {
+    m->knows_turns = m->is_bare;
     if (m->is_bare) {
         se3di_explicit_grow_bare_scale(m);
+        m->turns[0] = sqrt(m->squares[1]);
+        m->turns[1] = sqrt(m->squares[3]);
         m->has_rates = 1; /* nobody looks at them */
         return;
     }
@@ -335,14 +339,19 @@ static se3di_explicit *get_explicit(se3di_adaptive *step)
     return (se3di_explicit *)(void *)step;
 }
 
-/* Whether the sums of all that turns are so small that no turn limits the step: frames need not be
- * made to know. */
+static int is_little(double spin, double growth, double h)
+{
+    return h * (2.0 * spin + growth * h) < CLEARLY * SE3DI_STATE_TURN;
+}
+
+/* Whether no turn limits the step, as the fastest body turns too little, or all that turns if it
+ * were added up: frames need not be made to know. */
 static int turns_little(const se3di_explicit *m, double h)
 {
     const se3di_tree *tree = m->equations->tree;
     const double spin = se3di_tree_sum_turns(tree, m->y1 + tree->q_count);
     const double growth = se3di_tree_sum_turns(tree, m->f1 + tree->q_count) + spin * spin;
-    return h * (2.0 * spin + growth * h) < SE3DI_STATE_TURN;
+    return (m->knows_turns && is_little(m->turns[0], m->turns[1], h)) || is_little(spin, growth, h);
 }
 
 static double pace(se3di_adaptive *step, double h)
@@ -507,6 +516,7 @@ static se3d_status advance(se3di_explicit *m, double t_end)
 /* The forward state is the model's own; its derivative remains to be found. `stands`: y_1 is it. */
 static void take_state(se3di_explicit *m, int stands)
 {
+    m->knows_turns = 0;
     se3di_forces_stay(m->assembly->model);
     m->past->at.time = m->past->at.begin = m->assembly->model->time;
     m->past->dense = 0.0;

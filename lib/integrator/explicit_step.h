@@ -105,12 +105,14 @@ struct se3di_explicit {
     double h;           /* of the step that is tried; 0: none yet */
     double contraction; /* gauss: of the iterations of this step; 0: unknown */
     double squares[4];  /* of a bare step: as of se3di_state_scale_take */
+    double turns[2];    /* the largest angular velocity and acceleration of a body at y_1 */
     double remembered;  /* the least error that the choice of the next step counts with */
     int stages;         /* gauss: of this step */
     int laid_out;       /* gauss: the stages that lanes are laid out for; 0: none yet */
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
     int is_bare;        /* no frames are made between steps */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
+    int knows_turns;    /* `turns`: y_1 is the end of a bare step of this call */
     int stands;         /* the frames are at y_1: a step of this call has ended there */
     int has_rates;      /* the accelerations of the model are those at y_1 */
     int has_stages;     /* K is that of the last step: it was made in this call */
