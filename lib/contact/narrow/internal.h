@@ -107,6 +107,9 @@ void se3di_plane_mesh(const se3di_solid *mesh, const se3di_solid *plane, se3di_m
  * turned (se3di_cap_lean). Returns the sine of the tilt. */
 double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double deep,
                            double rim[8][3]);
+/* How the surface bends at the lowest point of each (0 and 4), which wanders along the rim as the
+ * cylinder rolls; 0: it stands on its cap. */
+int se3di_rim_bend(const se3di_solid *i, const double normal[3], double tilt, se3di_bend *bend);
 /* Contact of the face `reference` (of i; `flip`: of j) with what of the other looks at it, with
  * overlaps along the unit `along`, outward from the face. The two are `depth` deep. */
 void se3di_narrow_clip(const se3di_face *reference, const se3di_face *incident,

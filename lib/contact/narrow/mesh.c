@@ -64,8 +64,8 @@ uint32_t se3di_mesh_way_of(const double n[3])
     return 2 * a + (n[a] < 0.0);
 }
 
-void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], double overlap,
-                    double radius, uint32_t feature)
+se3di_contact_point *se3di_mesh_add(const meeting *m, const double at[3], const double n[3],
+                                    double overlap, double radius, uint32_t feature)
 {
     double point[3], normal[3], d[3];
     se3di_solid_to_ground(m->mesh, at, point);
@@ -81,14 +81,15 @@ void se3di_mesh_add(const meeting *m, const double at[3], const double n[3], dou
             se3di_copy(normal, p->normal);
             p->overlap = overlap;
         }
-        return;
+        return NULL;
     }
     if (m->filter && !m->filter->keeps(m->filter->ctx, point, normal, overlap)) {
-        return;
+        return NULL;
     }
     se3di_contact_point *p = se3di_manifold_add(m->manifold, point, normal, overlap, feature);
     p->share = 1.0;
     p->bend_i.r[0] = p->bend_i.r[1] = radius;
+    return p;
 }
 
 typedef struct corner_faces {
@@ -242,8 +243,10 @@ static int is_met(const corner_faces *c, int k)
     return here.found;
 }
 
-/* A corner of the solid, ground frame; `only`: on faces of this normal (mesh frame), or NULL. */
-static void touch_corner(const meeting *m, const double x[3], const double *only, uint32_t feature)
+/* A corner of the solid, ground frame, or a place where its surface bends; `only`: on faces of this
+ * normal (mesh frame), or NULL. */
+static void touch_corner(const meeting *m, const double x[3], const se3di_bend *bend,
+                         const double *only, uint32_t feature)
 {
     corner_faces c = {.m = m};
     se3di_solid_to_local(m->mesh, x, c.x);
@@ -261,8 +264,11 @@ static void touch_corner(const meeting *m, const double x[3], const double *only
         }
         se3di_copy(c.x, at);
         se3di_add_scaled(c.depth[k], c.list[k].n, at);
-        se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0,
-                       8 * feature + se3di_mesh_way_of(c.list[k].n));
+        se3di_contact_point *p = se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0,
+                                                8 * feature + se3di_mesh_way_of(c.list[k].n));
+        if (p && bend) {
+            p->bend_i = *bend;
+        }
     }
 }
 
@@ -475,7 +481,7 @@ static void touch_corners(const meeting *m)
     double local[3], x[3];
     for (uint32_t k = 0; kind->corner && kind->corner(s, k, local); ++k) {
         se3di_solid_to_ground(m->solid, local, x);
-        touch_corner(m, x, NULL, k);
+        touch_corner(m, x, NULL, NULL, k);
     }
 }
 
@@ -528,7 +534,9 @@ static void meet_rims(void *ctx, uint32_t triangle)
     }
     se3di_mul(m->mesh->at->R, f.n, normal);
     (void)se3di_mesh_lowest(m, f.n, low);
-    (void)se3di_cylinder_rims(m->solid, normal, -se3di_mesh_height(&f, low), rim);
+    se3di_bend bend;
+    const double tilt = se3di_cylinder_rims(m->solid, normal, -se3di_mesh_height(&f, low), rim);
+    const int bends = se3di_rim_bend(m->solid, normal, tilt, &bend);
     se3di_mesh_plane *plane = plane_of(m, &f);
     for (uint32_t k = 0; k < 8; ++k) {
         double x[3], at[3];
@@ -540,7 +548,7 @@ static void meet_rims(void *ctx, uint32_t triangle)
         se3di_add_scaled(-height, f.n, x);
         if (height < 0.0 && -height < m->size &&
             se3di_triangle_nearest(corner, x, at, NULL) < m->size * m->size) {
-            touch_corner(m, rim[k], f.n, k);
+            touch_corner(m, rim[k], bends && k % 4 == 0 ? &bend : NULL, f.n, k);
             if (plane) {
                 plane->looked |= UINT64_C(1) << k;
             }
@@ -553,7 +561,8 @@ static void meet_lowest(void *ctx, uint32_t triangle)
 {
     const meeting *m = ctx;
     const double *corner[3];
-    double low[3], foot[3], at[3], x[3];
+    double low[3], foot[3], at[3], x[3], local[3];
+    se3di_bend bend;
     face f;
     if (!se3di_mesh_face_of(m, triangle, &f)) {
         return;
@@ -568,7 +577,9 @@ static void meet_lowest(void *ctx, uint32_t triangle)
     if (height < 0.0 && -height < m->size &&
         se3di_triangle_nearest(corner, foot, at, NULL) < least * least) {
         se3di_solid_to_ground(m->mesh, low, x);
-        touch_corner(m, x, f.n, 0);
+        se3di_solid_to_local(m->solid, x, local);
+        se3di_solid_bend(m->solid, local, &bend);
+        touch_corner(m, x, &bend, f.n, 0);
     }
 }
 

@@ -87,9 +87,10 @@ int se3di_mesh_overlaps(const se3di_mesh_meeting *m, uint32_t triangle);
 int se3di_mesh_leads_out(const se3di_mesh_edge *e, const double n[3]);
 /* The same at a corner of the mesh; n in its frame. */
 int se3di_mesh_leads_off(const se3di_mesh_meeting *m, const double x[3], const double n[3]);
-/* A contact at a place of the surface, if there is none yet. */
-void se3di_mesh_add(const se3di_mesh_meeting *m, const double at[3], const double n[3],
-                    double overlap, double radius, uint32_t feature);
+/* A contact at a place of the surface, if there is none yet: NULL if there is. */
+se3di_contact_point *se3di_mesh_add(const se3di_mesh_meeting *m, const double at[3],
+                                    const double n[3], double overlap, double radius,
+                                    uint32_t feature);
 
 /* Keep a way if it is among the least deep. */
 void se3di_mesh_note(se3di_mesh_meeting *m, const se3di_mesh_way *way);

@@ -107,20 +107,32 @@ double se3di_cylinder_rims(const se3di_solid *i, const double normal[3], double 
     return se3di_hypot(down[0], down[1]);
 }
 
+int se3di_rim_bend(const se3di_solid *i, const double normal[3], double tilt, se3di_bend *bend)
+{
+    double axis[3], side[3];
+    if (!(tilt > RIM_TILT)) {
+        return 0;
+    }
+    se3di_solid_axis(i, 2, axis);
+    se3di_cross(normal, axis, side);
+    se3di_scale(1.0 / se3di_norm(side), side, side);
+    se3di_bend_set(bend, side, i->shape->radius / tilt, 0.0);
+    return 1;
+}
+
 void se3di_plane_cylinder(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold)
 {
     const half_space plane = half_space_of(j);
-    double rim[8][3], axis[3], side[3], down[3], lowest[3];
+    double rim[8][3], down[3], lowest[3];
+    se3di_bend bend;
     se3di_scale(-1.0, plane.n, down);
     se3di_core_support(i, down, lowest);
     const double tilt = se3di_cylinder_rims(i, plane.n, -height_of(&plane, lowest), rim);
-    se3di_solid_axis(i, 2, axis);
-    se3di_cross(plane.n, axis, side);
+    const int bends = se3di_rim_bend(i, plane.n, tilt, &bend);
     for (uint32_t k = 0; k < 8; ++k) {
         se3di_contact_point *p = touch_plane(&plane, rim[k], 0.0, k, manifold);
-        if (p && k % 4 == 0 && tilt > RIM_TILT) {
-            se3di_scale(1.0 / se3di_norm(side), side, side);
-            se3di_bend_set(&p->bend_i, side, i->shape->radius / tilt, 0.0);
+        if (p && k % 4 == 0 && bends) {
+            p->bend_i = bend;
         }
     }
 }
