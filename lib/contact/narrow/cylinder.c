@@ -30,11 +30,11 @@
 
 #include <math.h>
 
-#define TIE     1e-15 /* of the size: of equal directions the first */
-#define NEAR    1e-6  /* rad; directions that may be as good as equal where h is flat */
-#define SHORT   1e-4  /* sine; an edge seen along less is about a corner */
-#define SKEW    1e-9  /* sine; lines that are more nearly parallel have no product */
-#define NO_SKEW 1e-140
+#define TIE     1e-15  /* of the size: of equal directions the first */
+#define NEAR    1e-6   /* rad; directions that may be as good as equal where h is flat */
+#define SHORT   1e-4   /* sine; an edge seen along less is about a corner */
+#define SKEW    1e-9   /* sine; lines that are more nearly parallel have no product */
+#define NO_SKEW 1e-140 /* all lines have one */
 
 /* What touches along a direction: the farthest place of the one, or two lines. */
 typedef enum touching { OF_BLOCK, OF_CYLINDER, OF_LINES } touching;
@@ -341,13 +341,13 @@ static int find_side(const search *s, double q[3])
 
 /* Whether no direction has a lesser overlap because none has one of the line on the side of the
  * cylinder that is deepest, whose directions are faces and products alone: what lies on a face or
- * across an edge. */
+ * across an edge. A product of nearly parallel lines is that of a line that is the same but for
+ * rounding. */
 static int is_least_of_line(const search *s)
 {
     search line = *s;
     line.radius = 0.0;
-    line.skew =
-        NO_SKEW; /* whatever its product is serves a line that is the same but for rounding */
+    line.skew = NO_SKEW;
     line.least = HUGE_VAL;
     if (!find_side(s, line.d)) {
         return 0;
