@@ -641,8 +641,25 @@ static void a_callback_is_named_or_left_out(void)
     se3d_system_destroy(m.system);
 }
 
+/* No key of a file says corners of a shape. */
+static void a_plate_that_touches_is_not_written_without_its_corners(void)
+{
+    static const char text[] =
+        "se3d: 1\nmaterials: [{name: m, density: 1000, stiffness: 1e5}]\ncontact: {}\n"
+        "bodies: [{name: p, plate: [[0, 0, 0], [1, 0, 0], [0, 0, 1]], thickness: 0.1, "
+        "material: m}]\n";
+    se3d_model_error error;
+    se3d_model *model = read_again(text, "m.yaml");
+    CHECK(model != NULL);
+    CHECK(se3d_model_write_text(model, NULL, NULL, 0, &(size_t){0}, &error) ==
+          SE3D_ERR_UNSUPPORTED);
+    CHECK_CONTAINS(error.message, "a plate that touches has no file");
+    se3d_model_destroy(model);
+}
+
 int main(void)
 {
+    RUN(a_plate_that_touches_is_not_written_without_its_corners);
     RUN(every_example_is_written_and_read_as_the_same_system);
     RUN(sections_of_a_file_with_units_are_written_if_they_stay_the_same);
     RUN(sections_that_cannot_be_written_are_named_or_left_out);

@@ -110,6 +110,8 @@ static void save_file(se3di_save *s, const se3di_shape_entry *entry)
 {
     if (entry->part && entry->part->place.mirror >= 0) {
         se3di_save_refuse(s, "a mesh that is mirrored has no file");
+    } else if (!entry->shape.file || !entry->shape.file[0]) {
+        se3di_save_refuse(s, "a plate that touches has no file");
     }
     se3di_save_text(s, "file", se3di_save_get_file(s, entry->part, entry->shape.file));
     se3di_save_number_but(s, "scale", entry->shape.scale, 1.0);
