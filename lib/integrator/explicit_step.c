@@ -349,9 +349,12 @@ static int is_little(double spin, double growth, double h)
 static int turns_little(const se3di_explicit *m, double h)
 {
     const se3di_tree *tree = m->equations->tree;
+    if (m->knows_turns && is_little(m->turns[0], m->turns[1], h)) {
+        return 1;
+    }
     const double spin = se3di_tree_sum_turns(tree, m->y1 + tree->q_count);
     const double growth = se3di_tree_sum_turns(tree, m->f1 + tree->q_count) + spin * spin;
-    return (m->knows_turns && is_little(m->turns[0], m->turns[1], h)) || is_little(spin, growth, h);
+    return is_little(spin, growth, h);
 }
 
 static double pace(se3di_adaptive *step, double h)
