@@ -82,8 +82,9 @@ static se3d_status check_rate(se3d_system *system, int32_t of_all, const se3di_o
                                fmax(material->damping_rate, 0.0));
 }
 
-/* What a pair with a law of its own, or else nobody, needs of its materials. */
-static se3d_status check_pair_law(se3d_system *system, const se3di_override *over,
+/* What a pair with a law of its own, or else nobody, needs of its materials, where `of_all` is the
+ * system's. */
+static se3d_status check_pair_law(se3d_system *system, int32_t of_all, const se3di_override *over,
                                   const se3di_material *a, const se3di_material *b)
 {
     const se3di_material *const of[2] = {a, b};
@@ -91,10 +92,10 @@ static se3d_status check_pair_law(se3d_system *system, const se3di_override *ove
         SE3DI_TRY(check_law(system, over->law, fmax(over->stiffness, of[k]->stiffness),
                             fmax(over->young, of[k]->young)));
         SE3DI_TRY(check_damping(system, over->law, of[k]));
-        SE3DI_TRY(check_rate(system, system->model.contact.law, over, of[k]));
+        SE3DI_TRY(check_rate(system, of_all, over, of[k]));
     }
-    const se3di_contact_law of_all = (se3di_contact_law)system->model.contact.law;
-    return check_ratio(system, (int32_t)se3di_pair_law(of_all, over), over->damping_ratio);
+    const se3di_contact_law law = se3di_pair_law((se3di_contact_law)of_all, over);
+    return check_ratio(system, (int32_t)law, over->damping_ratio);
 }
 
 /* The same of a material that becomes `data`. */
@@ -103,7 +104,7 @@ static se3d_status check_pair_laws(se3d_system *system, uint32_t index, const se
     const se3di_model *model = &system->model;
     const size_t n = model->material_slots.count;
     for (size_t k = 0; k < n; ++k) {
-        SE3DI_TRY(check_pair_law(system, &model->overrides[index * n + k], data,
+        SE3DI_TRY(check_pair_law(system, model->contact.law, &model->overrides[index * n + k], data,
                                  k == index ? data : &model->materials[k]));
     }
     return SE3D_OK;
@@ -140,11 +141,8 @@ se3d_status se3d_system_set_contact(se3d_system *system, const se3d_contact_sett
         SE3DI_TRY(check_damping(system, full.law, &model->materials[k]));
         for (size_t j = 0; j <= k; ++j) {
             const se3di_override *over = &model->overrides[k * model->material_slots.count + j];
-            SE3DI_TRY(check_ratio(system,
-                                  (int32_t)se3di_pair_law((se3di_contact_law)full.law, over),
-                                  over->damping_ratio));
-            SE3DI_TRY(check_rate(system, full.law, over, &model->materials[k]));
-            SE3DI_TRY(check_rate(system, full.law, over, &model->materials[j]));
+            SE3DI_TRY(
+                check_pair_law(system, full.law, over, &model->materials[k], &model->materials[j]));
         }
     }
     const double before = se3di_audit_contacts(model);
@@ -386,8 +384,8 @@ se3d_status se3d_material_set_pair(se3d_system *system, se3d_material a, se3d_ma
 #define TAKE(name, least, most) .name = full.name,
     const se3di_override over = {SE3DI_OVERRIDE_LIST(TAKE).law = full.law};
 #undef TAKE
-    SE3DI_TRY(check_pair_law(system, &over, &system->model.materials[index_a],
-                             &system->model.materials[index_b]));
+    SE3DI_TRY(check_pair_law(system, system->model.contact.law, &over,
+                             &system->model.materials[index_a], &system->model.materials[index_b]));
     const double before = se3di_audit_contacts(&system->model);
     se3di_model_set_override(&system->model, index_a, index_b, &over);
     se3di_pair_mix_all(&system->model);
