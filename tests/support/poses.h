@@ -77,6 +77,18 @@ typedef struct poses_solid {
     double planes[4 * 2 * POSES_CORNERS];
 } poses_solid;
 
+/* A hull's arrays become those of a solid; the hull is gone then. */
+static inline void poses_take_hull(poses_solid *s, se3di_shape *hull)
+{
+    const se3d_allocator allocator = se3di_alloc_default();
+    memcpy(s->vertices, hull->vertices, 3 * hull->vertex_count * sizeof(double));
+    memcpy(s->triangles, hull->triangles, 3 * hull->triangle_count * sizeof(uint32_t));
+    memcpy(s->planes, hull->planes, 4 * hull->triangle_count * sizeof(double));
+    s->shape.vertex_count = hull->vertex_count;
+    s->shape.triangle_count = hull->triangle_count;
+    se3di_shape_release(&allocator, hull);
+}
+
 /* Corners on a sphere, so that all count. */
 static inline void poses_hull(poses_solid *s, uint64_t *seed)
 {
@@ -93,14 +105,7 @@ static inline void poses_hull(poses_solid *s, uint64_t *seed)
             se3di_scale(0.25 / se3di_norm(x), x, x);
         }
     } while (se3di_hull_build(&allocator, points, (size_t)count, &hull) < 0);
-    memcpy(s->vertices, hull.vertices, 3 * hull.vertex_count * sizeof(double));
-    memcpy(s->triangles, hull.triangles, 3 * hull.triangle_count * sizeof(uint32_t));
-    memcpy(s->planes, hull.planes, 4 * hull.triangle_count * sizeof(double));
-    s->shape.vertex_count = hull.vertex_count;
-    s->shape.triangle_count = hull.triangle_count;
-    se3di_free(&allocator, hull.vertices, 3 * hull.vertex_count, sizeof(double));
-    se3di_free(&allocator, hull.triangles, 3 * hull.triangle_count, sizeof(uint32_t));
-    se3di_free(&allocator, hull.planes, 4 * hull.triangle_count, sizeof(double));
+    poses_take_hull(s, &hull);
 }
 
 /* The arrays of a hull, which are within the solid, after it was copied, too. */

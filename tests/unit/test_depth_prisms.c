@@ -34,12 +34,7 @@ static void random_prism(uint64_t *seed, double half_length, poses_solid *s)
             }
         }
     } while (se3di_hull_build(&allocator, points, 2 * (size_t)sides, &hull) < 0);
-    memcpy(s->vertices, hull.vertices, 3 * hull.vertex_count * sizeof(double));
-    memcpy(s->triangles, hull.triangles, 3 * hull.triangle_count * sizeof(uint32_t));
-    memcpy(s->planes, hull.planes, 4 * hull.triangle_count * sizeof(double));
-    s->shape.vertex_count = hull.vertex_count;
-    s->shape.triangle_count = hull.triangle_count;
-    se3di_shape_release(&allocator, &hull);
+    poses_take_hull(s, &hull);
     poses_link(s);
     s->shape.bound = se3di_shape_bound(&s->shape);
 }
