@@ -98,15 +98,25 @@ typedef struct corner_faces {
     double depth[TOUCHES];
     face list[TOUCHES];
     int count;
+    int hollow; /* faces that it is beyond the end of count, too */
+    int beyond; /* there are such faces */
 } corner_faces;
 
-/* Keep a face unless it is one with another, or behind the bulge that both are part of. */
+/* Whether two unit normals are those of one plane. */
+static int are_same(const double a[3], const double b[3])
+{
+    double turn[3];
+    se3di_sub(a, b, turn);
+    return se3di_norm(turn) < SAME;
+}
+
+/* Keep a face unless it is in one plane with another, or behind the bulge that both are part of. */
 static void keep_face(corner_faces *c, const face *f, double depth)
 {
     int at = c->count;
     for (int k = 0; k < c->count; ++k) {
         const face *other = &c->list[k];
-        int one = se3di_dot(other->n, f->n) > COPLANAR;
+        int one = are_same(other->n, f->n);
         int bulge =
             se3di_mesh_height(f, other->middle) < 0.0 && se3di_mesh_height(other, f->middle) < 0.0;
         if (one || bulge) {
@@ -201,6 +211,10 @@ static void meet_corner(void *ctx, uint32_t triangle)
     se3di_copy(c->x, foot);
     se3di_add_scaled(-height, f.n, foot);
     if (se3di_triangle_nearest(corner, foot, at, NULL) > SAME * SAME * m->size * m->size) {
+        c->beyond = 1;
+        if (!c->hollow) {
+            return;
+        }
         hollow h = {m, &f, c->x, 0};
         se3di_mesh_visit(m->mesh->shape, at, SAME * m->size, meet_wall, &h);
         if (!h.found || !se3di_mesh_overlaps(m, triangle)) {
@@ -208,6 +222,21 @@ static void meet_corner(void *ctx, uint32_t triangle)
         }
     }
     keep_face(c, &f, -height);
+}
+
+/* Whether the place of a face that a corner is over is seen from the solid's centre: that is where
+ * the corner went in. */
+static int has_way_in(const corner_faces *c)
+{
+    for (int k = 0; k < c->count; ++k) {
+        double at[3];
+        se3di_copy(c->x, at);
+        se3di_add_scaled(c->depth[k] + SAME * c->m->size, c->list[k].n, at);
+        if (!se3di_mesh_crosses(c->m->mesh->shape, c->m->center, at)) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 /* Whether the solid overlaps a triangle in the plane of a face near a corner of it. */
@@ -243,6 +272,53 @@ static int is_met(const corner_faces *c, int k)
     return here.found;
 }
 
+/* Of the places where a surface bends each face that is about has its own: of faces that are nearly
+ * in one plane the deepest counts. */
+static int is_deepest(const meeting *m, const double n[3], double depth, uint32_t feature)
+{
+    se3di_manifold *manifold = m->manifold;
+    double normal[3];
+    se3di_mul(m->mesh->at->R, n, normal);
+    for (uint32_t k = 0; k < manifold->count; ++k) {
+        const se3di_contact_point *p = &manifold->points[k];
+        if (p->feature / 8 == feature && -se3di_dot(p->normal, normal) > COPLANAR) {
+            if (!(depth > p->overlap)) {
+                return 0;
+            }
+            manifold->points[k] = manifold->points[--manifold->count];
+            --k;
+        }
+    }
+    return 1;
+}
+
+/* Of faces that are nearly in the plane of another that which a place is deepest in; -1: none. */
+static int find_nearly(double (*n)[3], int count, const double *depth, const double plane[3])
+{
+    int found = -1;
+    for (int k = 0; k < count; ++k) {
+        if (depth[k] > 0.0 && se3di_dot(n[k], plane) > COPLANAR &&
+            (found < 0 || depth[k] > depth[found])) {
+            found = k;
+        }
+    }
+    return found;
+}
+
+static void add_corner(const meeting *m, const corner_faces *c, int k, double depth,
+                       const se3di_bend *bend, uint32_t feature)
+{
+    const double *n = c->list[k].n;
+    double at[3];
+    se3di_copy(c->x, at);
+    se3di_add_scaled(c->depth[k], n, at);
+    se3di_contact_point *p =
+        se3di_mesh_add(m, at, n, depth, 0.0, 8 * feature + se3di_mesh_way_of(n));
+    if (p && bend) {
+        p->bend_i = *bend;
+    }
+}
+
 /* A corner of the solid, ground frame, or a place where its surface bends; `only`: on faces of this
  * normal (mesh frame), or NULL. */
 static void touch_corner(const meeting *m, const double x[3], const se3di_bend *bend,
@@ -251,24 +327,32 @@ static void touch_corner(const meeting *m, const double x[3], const se3di_bend *
     corner_faces c = {.m = m};
     se3di_solid_to_local(m->mesh, x, c.x);
     se3di_mesh_visit(m->mesh->shape, c.x, m->size, meet_corner, &c);
+    if (c.beyond && !has_way_in(&c)) {
+        c.hollow = 1;
+        c.count = 0;
+        se3di_mesh_visit(m->mesh->shape, c.x, m->size, meet_corner, &c);
+    }
     if (c.count > 0 && !se3di_mesh_crosses(m->mesh->shape, m->center, c.x)) {
         return; /* behind planes of faces, but not behind the surface */
     }
+    int met[TOUCHES], count = 0;
+    double n[TOUCHES][3], depth[TOUCHES];
     for (int k = 0; k < c.count; ++k) {
-        double at[3];
-        if (!(c.depth[k] > 0.0) || (only && se3di_dot(c.list[k].n, only) < COPLANAR)) {
-            continue; /* it only keeps others from counting */
+        if (c.depth[k] > 0.0 && is_met(&c, k)) { /* else it only keeps others from counting */
+            se3di_copy(c.list[k].n, n[count]);
+            depth[count] = c.depth[k];
+            met[count++] = k;
         }
-        if (!is_met(&c, k)) {
-            continue;
+    }
+    se3di_mesh_share_corner((const double(*)[3])n, (uint32_t)count, depth);
+    for (int k = 0; k < count; ++k) {
+        if (!only && depth[k] > 0.0) {
+            add_corner(m, &c, met[k], depth[k], NULL, feature);
         }
-        se3di_copy(c.x, at);
-        se3di_add_scaled(c.depth[k], c.list[k].n, at);
-        se3di_contact_point *p = se3di_mesh_add(m, at, c.list[k].n, c.depth[k], 0.0,
-                                                8 * feature + se3di_mesh_way_of(c.list[k].n));
-        if (p && bend) {
-            p->bend_i = *bend;
-        }
+    }
+    const int one = only ? find_nearly(n, count, depth, only) : -1;
+    if (one >= 0 && is_deepest(m, n[one], c.depth[met[one]], feature)) {
+        add_corner(m, &c, met[one], c.depth[met[one]], bend, feature);
     }
 }
 
@@ -556,7 +640,7 @@ static void meet_rims(void *ctx, uint32_t triangle)
     }
 }
 
-/* The point of what is smooth that is lowest on a face, over it. */
+/* The point of what is smooth that is lowest on a face, over it or one nearly in its plane. */
 static void meet_lowest(void *ctx, uint32_t triangle)
 {
     const meeting *m = ctx;
@@ -568,14 +652,14 @@ static void meet_lowest(void *ctx, uint32_t triangle)
         return;
     }
     (void)se3di_mesh_lowest(m, f.n, low);
-    const double height = se3di_mesh_height(&f, low), least = SAME * m->size;
+    const double height = se3di_mesh_height(&f, low);
     for (uint32_t k = 0; k < 3; ++k) {
         corner[k] = se3di_mesh_corner(m->mesh->shape, triangle, k);
     }
     se3di_copy(low, foot);
     se3di_add_scaled(-height, f.n, foot);
     if (height < 0.0 && -height < m->size &&
-        se3di_triangle_nearest(corner, foot, at, NULL) < least * least) {
+        se3di_triangle_nearest(corner, foot, at, NULL) < m->size * m->size) {
         se3di_solid_to_ground(m->mesh, low, x);
         se3di_solid_to_local(m->solid, x, local);
         se3di_solid_bend(m->solid, local, &bend);

@@ -72,6 +72,9 @@ typedef struct se3di_mesh_edge {
  * depth of each grows from zero as the ball turns into a valley. May be negative: not at all. */
 void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double radius,
                              double *depth);
+/* The same of a corner that is behind `count` faces, at most 4, by `depth`: of the least way off
+ * all of them what is along each normal. */
+void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth);
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);

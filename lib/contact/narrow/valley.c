@@ -85,3 +85,84 @@ void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double ra
         }
     }
 }
+
+#define SIDES    4
+#define ROUNDING 1e-14
+
+/* ---- a corner: min |e|^2/2 with n_k . e >= depth_k, whose multipliers are the overlaps ---- */
+
+/* Those of some sides if they alone count: G x = depth, G_ij = n_i . n_j, by elimination. Returns
+ * whether all are positive. */
+static int solve_sides(const double (*n)[3], const double *depth, const uint32_t *side,
+                       uint32_t count, double x[SIDES])
+{
+    double G[SIDES][SIDES];
+    for (uint32_t i = 0; i < count; ++i) {
+        x[i] = depth[side[i]];
+        for (uint32_t j = 0; j < count; ++j) {
+            G[i][j] = fmax(0.0, se3di_dot(n[side[i]], n[side[j]]));
+        }
+    }
+    for (uint32_t k = 0; k < count; ++k) {
+        if (!(G[k][k] > ROUNDING)) {
+            return 0; /* normals in one plane, of which two will do */
+        }
+        for (uint32_t i = k + 1; i < count; ++i) {
+            const double f = G[i][k] / G[k][k];
+            for (uint32_t j = k; j < count; ++j) {
+                G[i][j] -= f * G[k][j];
+            }
+            x[i] -= f * x[k];
+        }
+    }
+    int positive = 1;
+    for (uint32_t k = count; k-- > 0;) {
+        for (uint32_t j = k + 1; j < count; ++j) {
+            x[k] -= G[k][j] * x[j];
+        }
+        x[k] /= G[k][k];
+        positive = positive && x[k] > 0.0;
+    }
+    return positive;
+}
+
+/* Whether the way off these sides leads off all others, too. */
+static int leads_off(const double (*n)[3], const double *depth, uint32_t count, uint32_t set,
+                     const double way[SIDES])
+{
+    for (uint32_t k = 0; k < count; ++k) {
+        double left = depth[k];
+        for (uint32_t j = 0; j < count; ++j) {
+            left -= way[j] * fmax(0.0, se3di_dot(n[k], n[j]));
+        }
+        if (!(set >> k & 1u) && left > 0.0) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth)
+{
+    for (uint32_t set = (1u << count) - 1u; set > 0 && count > 1; --set) {
+        uint32_t side[SIDES], sides = 0;
+        double x[SIDES], way[SIDES] = {0.0, 0.0, 0.0, 0.0};
+        for (uint32_t k = 0; k < count; ++k) {
+            if (set >> k & 1u) {
+                side[sides++] = k;
+            }
+        }
+        if (!solve_sides(n, depth, side, sides, x)) {
+            continue;
+        }
+        for (uint32_t k = 0; k < sides; ++k) {
+            way[side[k]] = x[k];
+        }
+        if (leads_off(n, depth, count, set, way)) {
+            for (uint32_t k = 0; k < count; ++k) {
+                depth[k] = way[k];
+            }
+            return;
+        }
+    }
+}

@@ -349,13 +349,34 @@ static int is_least(const se3di_mesh_meeting *m, int k)
     return 1;
 }
 
-/* A contact that is this way but for rounding becomes it; points of a rim are less deep by their
+static int is_round(const se3di_mesh_meeting *m)
+{
+    return se3di_shape_is(m->solid->shape, SE3DI_SHAPE_HAS_RIMS) ||
+           se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_SMOOTH);
+}
+
+/* Whether a contact is at the place of a way, or on a round side, and as deep, off a face that is
+ * all but in one plane with that of the way. */
+static int is_beside(const se3di_mesh_meeting *m, const se3di_mesh_way *way, double depth,
+                     const se3di_contact_point *p, double turn)
+{
+    double place[3], d[3];
+    se3di_solid_to_local(m->mesh, p->point, place);
+    se3di_sub(place, way->at, d);
+    const double slack = SE3DI_MESH_SAME * m->size + 2.0 * turn * depth;
+    return turn * turn < 2.0 * (1.0 - SE3DI_MESH_COPLANAR) &&
+           (is_round(m) || se3di_norm(d) < slack) && p->overlap > depth - slack;
+}
+
+/* A contact that is this way but for rounding becomes it, and so does that of a round side whose
+ * lowest place on a face nearly in one plane was taken; points of a rim are less deep by their
  * bulge. */
 static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
     const double slack = EQUAL * m->size;
     se3di_contact_point *deepest = NULL;
     double ground[3];
+    int beside = 0;
     se3di_mul(m->mesh->at->R, way->n, ground);
     se3di_scale(-1.0, ground, ground);
     const double depth = way->depth - se3di_cap_bulge(m->solid, ground, way->depth);
@@ -363,12 +384,14 @@ static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
         se3di_contact_point *p = &m->manifold->points[k];
         double turn[3];
         se3di_sub(p->normal, ground, turn);
+        beside = beside || is_beside(m, way, depth, p, se3di_norm(turn));
         if (se3di_norm(turn) < SE3DI_MESH_SAME && (!deepest || p->overlap > deepest->overlap)) {
             deepest = p;
         }
     }
-    if (!deepest || !(deepest->overlap > depth - slack)) {
-        return 0;
+    const double less = is_round(m) ? (1.0 - SE3DI_MESH_COPLANAR) * m->size : slack;
+    if (!deepest || !(deepest->overlap > depth - less)) {
+        return beside;
     }
     if (deepest->overlap < depth + slack) {
         se3di_copy(ground, deepest->normal);
