@@ -36,6 +36,9 @@ typedef struct se3d_material_def {
     /* Of particles, in place of a restitution: hooke [1/s], damping over m*; hertz_mindlin
      * [1/(m s)], over m* sqrt(R* overlap). Of two the mean, or of the one that has it. */
     double damping_rate;
+    /* [N/m], kt in place of tangential_ratio; of hertz_mindlin at any overlap. Of two in series, or
+     * of the one that has it. @since 0.1 */
+    double tangential_stiffness;
 } se3d_material_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */
@@ -114,6 +117,7 @@ typedef struct se3d_material_pair_def {
      * of the system's law; not in place of a law of the user's own. @since 0.1 */
     int32_t law;
     int32_t reserved;
+    double tangential_stiffness; /* [N/m], in place of tangential_ratio. @since 0.1 */
 } se3d_material_pair_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_pair_def_default. @since 0.1 */

@@ -266,7 +266,8 @@ typedef struct springs {
  * how many times the step is longer. */
 static double outlast(const springs *s, const se3di_encounter *e)
 {
-    return fmax(1.0, s->h * sqrt(e->pair.kt * e->s * e->inverse_mass));
+    return fmax(1.0,
+                s->h * sqrt(e->pair.kt * se3di_pair_tangent(&e->pair, e->s) * e->inverse_mass));
 }
 
 static void add_wrench(const springs *s, const se3di_encounter *e, double scale,
@@ -283,7 +284,8 @@ static void add_noise(springs *s, const se3di_encounter *e)
 {
     const double arm = fmax(se3di_norm(e->arm[0]), se3di_norm(e->arm[1]));
     const double size = se3di_norm(e->at->point) + arm;
-    const double force = SPRING_ROUNDING * size * e->pair.kt * e->s / outlast(s, e);
+    const double force =
+        SPRING_ROUNDING * size * e->pair.kt * se3di_pair_tangent(&e->pair, e->s) / outlast(s, e);
     const double least = fmin(s->scale->speed, arm * s->scale->spin);
     if (least > 0.0) {
         s->noise = fmax(s->noise, s->h * force * e->alone / least);
@@ -326,7 +328,7 @@ static void add_overshoot(const springs *s, const se3di_encounter *e)
         return;
     }
     const double way = 0.5 * s->h * se3di_norm(e->vt);
-    const double lost = fmin(e->pair.kt * e->s * way, e->give * pull);
+    const double lost = fmin(e->pair.kt * se3di_pair_tangent(&e->pair, e->s) * way, e->give * pull);
     se3di_encounter part = *e;
     double wrench[12];
     se3di_scale(lost / pull, e->pull, part.force);

@@ -24,14 +24,15 @@ typedef struct se3di_material {
     double damping_ratio; /* 0: by restitution; these: 0 by the law, < 0 none */
     double damping_rate;  /* of particles; 0: by restitution, < 0 none */
     double tangential_ratio_hertz, tangential_damping, rolling_ratio, rolling_damping;
-    uint32_t users; /* shapes and sets of particles */
+    double tangential_stiffness; /* [N/m], at any overlap; 0: by the ratio, < 0 none */
+    uint32_t users;              /* shapes and sets of particles */
     uint32_t reserved;
 } se3di_material;
 
 #define SE3DI_RESTITUTION_MIN 0.01 /* below, the damping grows without bound */
 
 /* What a user may say of a pair of materials, from the least to the most; negative: by the mixing
- * rules. In the order of se3d_material_pair_def. */
+ * rules. */
 #define SE3DI_OVERRIDE_LIST(X)                                                                     \
     X(friction, 0.0, 1e30)                                                                         \
     X(restitution, SE3DI_RESTITUTION_MIN, 1.0)                                                     \
@@ -47,7 +48,8 @@ typedef struct se3di_material {
     X(rolling_ratio, 0.0, 100.0)                                                                   \
     X(rolling_damping, 0.0, 10.0)                                                                  \
     X(young, 1e-30, 1e30)                                                                          \
-    X(poisson, 0.0, 0.5)
+    X(poisson, 0.0, 0.5)                                                                           \
+    X(tangential_stiffness, 0.0, 1e30)
 
 typedef struct se3di_override {
 #define SE3DI_MEMBER(name, least, most) double name;
@@ -67,6 +69,8 @@ typedef struct se3di_override {
  *
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
  *
+ * with Ft = -kt xi - ... if kt is constant.
+ *
  * Of particles rn m* s and rt m* s stand in place of the two dampings, if rn is not below 0.
  *
  * kr, dr: of rolling and torsion, like kt and dt. Attraction, taken from Fn after friction has seen
@@ -79,13 +83,25 @@ typedef struct se3di_pair {
     double cohesion, pull_off, kr;
     double restitution;
     double rn, rt;
-    int32_t law; /* se3di_contact_law, not MIXED */
-    int32_t reserved;
+    int32_t law;         /* se3di_contact_law, not MIXED */
+    int32_t kt_constant; /* of hertz_mindlin: at any overlap */
 } se3di_pair;
 
 static inline int se3di_pair_is_hertz(const se3di_pair *pair)
 {
     return pair->law == SE3DI_LAW_HERTZ_MINDLIN;
+}
+
+/* The law of lanes with such pairs: what is apart from the two laws is mixed. */
+static inline int32_t se3di_pair_lanes(const se3di_pair *pair)
+{
+    return pair->kt_constant ? (int32_t)SE3DI_LAW_MIXED : pair->law;
+}
+
+/* What kt is multiplied by: s of the law, or nothing. */
+static inline double se3di_pair_tangent(const se3di_pair *pair, double s)
+{
+    return pair->kt_constant ? 1.0 : s;
 }
 
 #define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need, but rn and rt */

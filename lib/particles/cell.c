@@ -204,15 +204,21 @@ typedef struct answer {
     double springs, dampers;
 } answer;
 
-/* The stiffest and the most damped of what a material's contacts of a law may be. */
-static se3di_pair hardest(const se3di_particles *set, size_t material, int is_hertz)
+/* The stiffest and the most damped of what a material's contacts of a law may be; held: of the kt
+ * that are constant. */
+typedef struct extremes {
+    double kn, kt, dn, rn, held;
+} extremes;
+
+static extremes hardest(const se3di_particles *set, size_t material, int is_hertz)
 {
-    se3di_pair out = {.kn = 0.0};
+    extremes out = {.kn = 0.0};
     for (size_t b = 0; b < set->stuff_count; ++b) {
         const se3di_pair *pair = &set->pairs[material * set->stuff_count + b];
         if (set->stuffs[b].held && se3di_pair_is_hertz(pair) == is_hertz) {
             out.kn = fmax(out.kn, pair->kn);
-            out.kt = fmax(out.kt, pair->kt);
+            out.kt = fmax(out.kt, pair->kt_constant ? 0.0 : pair->kt);
+            out.held = fmax(out.held, pair->kt_constant ? pair->kt : 0.0);
             out.dn = fmax(out.dn, fmax(pair->dn, pair->dt));
             out.rn = fmax(out.rn, fmax(pair->rn, pair->rt));
         }
@@ -226,7 +232,7 @@ static answer contact_answer(const se3di_particles *set, const se3di_particle *p
                              double load, int is_hertz)
 {
     const size_t material = set->spins[particle - set->particles].material;
-    const se3di_pair pair = hardest(set, material, is_hertz);
+    const extremes pair = hardest(set, material, is_hertz);
     double s = 1.0, normal = pair.kn;
     if (!(pair.kn > 0.0)) { /* a user-defined law, or no contact of this one */
         return (answer){0.0, 0.0};
@@ -236,7 +242,7 @@ static answer contact_answer(const se3di_particles *set, const se3di_particle *p
         normal *= 1.5;
     }
     const double damping = pair.dn * sqrt(0.5 * s / particle->inverse_mass);
-    return (answer){s * fmax(normal, pair.kt),
+    return (answer){fmax(s * fmax(normal, pair.kt), pair.held),
                     damping + pair.rn * 0.5 * s / particle->inverse_mass};
 }
 

@@ -83,7 +83,7 @@ static se3d_status mix(se3di_particles *set, const se3di_model *model)
             set->rolling |= set->pairs[k].rolling > 0.0 || set->pairs[k].torsion > 0.0;
             set->cohesive |= set->pairs[k].cohesion > 0.0 || set->pairs[k].pull_off > 0.0;
             set->rated |= set->pairs[k].rn > 0.0;
-            const int32_t of_pair = set->pairs[k].law;
+            const int32_t of_pair = se3di_pair_lanes(&set->pairs[k]);
             law = law < 0 || law == of_pair ? of_pair : (int32_t)SE3DI_LAW_MIXED;
         } else {
             set->pairs[k] = (se3di_pair){.kn = 0.0}; /* nobody is made of it any more */

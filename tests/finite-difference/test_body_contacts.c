@@ -113,6 +113,7 @@ static trial begin(const meeting *m, double mu, double rolling, int law, uint64_
     def.torsional_friction = 0.5 * rolling;
     def.rolling_ratio = 0.6;
     def.tangential_damping = 0.7;
+    def.tangential_stiffness = rolling > 0.0 ? 400.0 : 0.0;
     def.cohesion = rolling > 0.0 && rolling < 1.0 ? 3e3 : 0.0;
     def.adhesion = rolling > 0.0 && rolling < 1.0 ? 20.0 : 0.0;
     CHECK(se3d_material_create(t.system, &def, &material) == SE3D_OK);

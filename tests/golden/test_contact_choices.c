@@ -112,6 +112,46 @@ static void the_tangential_stiffness_of_hertz_is_that_given(void)
     }
 }
 
+/* Then the slip swings with w_t = sqrt(7/2 kt/m) for as long as Hertz lets them touch. */
+static void a_tangential_stiffness_is_the_same_at_any_overlap(void)
+{
+    static const double given[4][2] = {{1.5, 1.5}, {2.5, 0.0}, {2.0, 6.0}, {-1.0, 3.0}};
+    static const double is[4] = {1.5, 2.5, 3.0, 0.0};
+    const double mass = 1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0), into = 1e-3;
+    for (int k = 0; k < 4 * EVERYONE; ++k) {
+        se3d_material_def of = stuff(), plane = stuff();
+        double slip;
+        const double modulus = of.young / (2.0 * (1.0 - of.poisson * of.poisson));
+        const double depth = pow(15.0 * mass * into * into / (16.0 * sqrt(RADIUS) * modulus), 0.4);
+        const double time = 0.8 * sqrt(PI) * tgamma(0.4) / tgamma(0.9) * depth / into;
+        const double unit = mass / (time * time); /* of stiffness */
+        of.tangential_stiffness = given[k / EVERYONE][0] * unit;
+        plane.tangential_stiffness = given[k / EVERYONE][1] * unit;
+        of.rolling_ratio = 0.3; /* which is over that of the law */
+        CHECK_NEAR(
+            impact(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HERTZ_MINDLIN, &of, &plane, &slip), 1.0,
+            1e-4);
+        CHECK_NEAR(slip, cos(sqrt(3.5 * is[k / EVERYONE])), 5e-3);
+    }
+}
+
+/* Of hooke it is what a ratio to the stiffness makes of it. */
+static void a_tangential_stiffness_of_hooke_stands_for_a_ratio(void)
+{
+    for (int k = 0; k < EVERYONE; ++k) {
+        se3d_material_def of = stuff(), ratio = of;
+        double slip[2], left[2];
+        of.restitution = ratio.restitution = 0.8;
+        of.tangential_damping = ratio.tangential_damping = 0.3;
+        ratio.tangential_ratio = 0.5;
+        of.tangential_stiffness = 0.5 * of.stiffness;
+        left[0] = impact(everyone[k], SE3D_CONTACT_LAW_HOOKE, &of, &of, &slip[0]);
+        left[1] = impact(everyone[k], SE3D_CONTACT_LAW_HOOKE, &ratio, &ratio, &slip[1]);
+        CHECK_NEAR(left[0], left[1], 1e-12);
+        CHECK_NEAR(slip[0], slip[1], 1e-9);
+    }
+}
+
 /* With hooke the slip swings with w_t = sqrt(7/2 kt/m) and the damping ratio 7/2 x zeta wn/w_t for
  * as long as the normal force pushes. */
 static void tangential_damping_is_that_given(void)
@@ -299,6 +339,44 @@ static void model_files_say_so_too(void)
     }
 }
 
+/* Of a material and of a pair; 0 is none. */
+static void model_files_say_a_tangential_stiffness(void)
+{
+    const char *const texts[4] = {
+        "law: hertz_mindlin, pairs: [{material_1: m, material_2: m, tangential_stiffness: 0}]",
+        "law: hooke, pairs: [{material_1: m, material_2: m, tangential_stiffness: 4}]",
+        "law: hertz_mindlin", "law: hooke"};
+    char text[600], written[4000];
+    size_t length;
+    se3d_model_error error;
+    for (int k = 0; k < 8; ++k) {
+        se3d_material_pair_def pair = se3d_material_pair_def_default();
+        se3d_material material;
+        snprintf(text, sizeof text,
+                 "se3d: 1\ncontact: {%s}\nmaterials: [{name: m, density: 1, young: 1, stiffness: "
+                 "1, tangential_stiffness: %d}]\nparticles: [{material: m, radius: 1, lower: [0, "
+                 "0, 0], upper: [9, 9, 9]}]\n",
+                 texts[k / 2], k / 2 % 2 ? 7 : 0);
+        se3d_model *model = read_model(k % 2 ? written : text, &error);
+        CHECK(model != NULL);
+        if (model) {
+            se3d_system *system = se3d_model_get_system(model);
+            CHECK_NEAR(get_material(model).tangential_stiffness, k / 2 % 2 ? 7.0 : -1.0, 0.0);
+            CHECK(se3d_system_get_material(system, 0, &material) == SE3D_OK);
+            CHECK(se3d_material_get_pair(system, material, material, &pair) == SE3D_OK);
+            CHECK_NEAR(pair.tangential_stiffness, k / 2 == 0 ? 0.0 : k / 2 == 1 ? 4.0 : -1.0, 0.0);
+            CHECK(se3d_model_write_text(model, NULL, written, sizeof written, &length, &error) ==
+                  SE3D_OK);
+        }
+        se3d_model_destroy(model);
+    }
+    CHECK(!read_model("se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1, tangential_ratio: "
+                      "0.5, tangential_stiffness: 1}]\nparticles: [{material: m, radius: 1, lower: "
+                      "[0, 0, 0], upper: [9, 9, 9]}]\n",
+                      &error));
+    CHECK_CONTAINS(error.message, "tangential_stiffness: stands beside `tangential_ratio`");
+}
+
 static void model_files_say_one_damping(void)
 {
     se3d_model_error error;
@@ -343,6 +421,7 @@ static void a_pair_may_say_what_both_could(void)
                 {AT(tangential_ratio, tangential_ratio), 0.5, 0.0},
                 {AT(tangential_ratio_hertz, tangential_ratio), 0.0, 0.5},
                 {AT(tangential_damping, tangential_damping), 0.3, 0.3},
+                {AT(tangential_stiffness, tangential_stiffness), 30.0, 30.0},
                 {AT(rolling_ratio, rolling_ratio), 0.2, 0.2},
                 {AT(rolling_damping, rolling_damping), 0.1, 0.1},
                 {AT(young, young), 0.0, 3e5},
@@ -405,6 +484,11 @@ static void pairs_of_model_files_say_so_too(void)
         CHECK_NEAR(pair.poisson, 0.2, 0.0);
         CHECK(se3d_model_write_text(model, NULL, written, sizeof written, &length, &error) ==
               SE3D_OK);
+        pair.tangential_stiffness = 9.0;
+        CHECK(se3d_material_set_pair(system, material, material, &pair) ==
+              SE3D_ERR_INVALID_ARGUMENT);
+        CHECK_CONTAINS(se3d_system_get_error(system), "tangential_stiffness = 9, in place of");
+        pair.tangential_stiffness = -1.0;
         pair.damping_ratio = 0.1;
         pair.restitution = 0.5;
         CHECK(se3d_material_set_pair(system, material, material, &pair) ==
@@ -454,11 +538,14 @@ int main(void)
 {
     RUN(steps_follow_the_pair);
     RUN(the_tangential_stiffness_of_hertz_is_that_given);
+    RUN(a_tangential_stiffness_is_the_same_at_any_overlap);
+    RUN(a_tangential_stiffness_of_hooke_stands_for_a_ratio);
     RUN(tangential_damping_is_that_given);
     RUN(a_damping_ratio_stands_for_a_restitution);
     RUN(a_damping_rate_holds_for_the_pair);
     RUN(torsion_swings_as_given);
     RUN(model_files_say_so_too);
+    RUN(model_files_say_a_tangential_stiffness);
     RUN(model_files_say_one_damping);
     RUN(a_pair_may_say_what_both_could);
     RUN(pairs_of_model_files_say_so_too);

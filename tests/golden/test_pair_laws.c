@@ -149,6 +149,70 @@ static void particles_move_by_the_law_of_their_pair(void)
     }
 }
 
+static void hold(const trial *g, se3d_material a, se3d_material b)
+{
+    se3d_material_pair_def pair = se3d_material_pair_def_default();
+    pair.tangential_stiffness = 3e4;
+    CHECK(!se3d_material_set_pair(g->s.system, a, b, &pair));
+}
+
+/* The same of pairs of hertz_mindlin whose tangential stiffness is constant. */
+static void a_tangential_stiffness_is_that_of_the_pair(void)
+{
+    double last[2][PLACES][9];
+    for (size_t k = 0; k < KINDS; ++k) {
+        const kind *of = &kinds[k];
+        trial g[3] = {begin(of, HERTZ), begin(of, HERTZ), begin(of, HERTZ)};
+        int differ = 0;
+        hold(&g[0], g[0].s.material, g[0].other);
+        hold(&g[2], g[2].s.material, g[2].other);
+        hold(&g[2], g[2].s.material, g[2].s.material);
+        hold(&g[2], g[2].other, g[2].other);
+        for (int part = 0; part < 6; ++part) {
+            for (int n = 0; n < 3; ++n) {
+                CHECK(se3d_particles_run(g[n].set, 4e-4) == SE3D_OK);
+            }
+            for (int place = 0; place < PLACES; ++place) {
+                double a[9], b[9], c[9];
+                look(&g[0], place, a);
+                look(&g[is_other(place) ? 2 : 1], place, b);
+                look(&g[is_other(place) ? 1 : 2], place, c);
+                CHECK(memcmp(a, b, sizeof a) == 0);
+                differ += memcmp(a, c, sizeof a) != 0;
+                memcpy(last[k % 2][place], a, sizeof a);
+            }
+        }
+        CHECK(differ > 3 * PLACES);
+        CHECK(k != 1 || memcmp(last[0], last[1], sizeof last[0]) == 0); /* portable or not */
+        for (int n = 0; n < 3; ++n) {
+            end(&g[n]);
+        }
+    }
+}
+
+/* Of a set whose springs are constant, as it slides and rolls. */
+static void energy_of_constant_springs_is_kept(void)
+{
+    const kind of = {0, 1, 1, 1, 0, 0, 0};
+    trial g = begin(&of, HERTZ);
+    double first = 0.0, most = 0.0;
+    hold(&g, g.s.material, g.other);
+    hold(&g, g.s.material, g.s.material);
+    for (int part = 0; part < 20; ++part) {
+        se3d_particles_dissipation d;
+        se3d_particles_energy e;
+        CHECK(!se3d_particles_run(g.set, 1e-4));
+        CHECK(!se3d_particles_get_dissipation(g.set, &d));
+        CHECK(!se3d_particles_get_energy(g.set, &e));
+        const double all = e.translation + e.rotation + d.elastic + d.normal + d.tangential +
+                           d.rolling + d.torsion - d.wall_work;
+        first = part == 0 ? all : first;
+        most = fmax(most, fabs(all / first - 1.0));
+    }
+    CHECK_NEAR(most, 0.0, 2e-3);
+    end(&g);
+}
+
 /* What a contact tells of itself, and what all of them hold. */
 static void energy_and_forces_are_those_of_the_law_of_the_pair(void)
 {
@@ -332,6 +396,8 @@ static void a_pair_may_say_all_that_its_law_needs(void)
 int main(void)
 {
     RUN(particles_move_by_the_law_of_their_pair);
+    RUN(a_tangential_stiffness_is_that_of_the_pair);
+    RUN(energy_of_constant_springs_is_kept);
     RUN(energy_and_forces_are_those_of_the_law_of_the_pair);
     RUN(bodies_move_by_the_law_of_their_pair);
     RUN(the_step_is_that_of_the_law_of_the_pair);

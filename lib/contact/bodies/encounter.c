@@ -276,11 +276,12 @@ void se3di_encounter_eval(se3di_encounter *e)
         return;
     }
     e->elastic = e->pair.kn * e->s * delta;
+    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s);
     e->normal = fmax(0.0, e->elastic - e->onset * e->pair.dn * e->root_mass * e->root * e->vn);
     e->stick = 2.0 * sqrt(e->pair.pull_off * e->radius * e->elastic);
     e->attraction = e->pair.cohesion * e->radius * delta + e->stick;
     for (int a = 0; a < 3; ++a) {
-        e->pull[a] = -e->pair.kt * e->s * e->xi[a] - e->pair.dt * e->root_mass * e->root * e->vt[a];
+        e->pull[a] = -kt * e->xi[a] - e->pair.dt * e->root_mass * e->root * e->vt[a];
     }
     e->give = cap_factor(se3di_norm(e->pull), e->pair.friction * e->normal);
     se3di_scale(e->give, e->pull, e->force);
@@ -322,8 +323,8 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
         se3di_copy(e->spring, xi);
         return;
     }
-    se3di_encounter_settle(e->pair.kt * e->s, e->pair.friction * e->normal, e->give, e->pull, e->xi,
-                           xi);
+    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s);
+    se3di_encounter_settle(kt, e->pair.friction * e->normal, e->give, e->pull, e->xi, xi);
 }
 
 /* Rolling and torsion as the caps leave them. */
@@ -340,7 +341,7 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 
 void se3di_encounter_spring(const se3di_encounter *e, double wrench[12])
 {
-    const double kt = e->pair.kt * e->s, kr = e->pair.kr * e->s;
+    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s), kr = e->pair.kr * e->s;
     se3di_encounter kept = *e;
     double xi[3], rho[3], twist;
     settled_xi(e, xi);
@@ -365,11 +366,13 @@ double se3di_encounter_energy(const se3di_encounter *e)
     settled_roll(e, rho, &twist);
     double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
     const double rolled = se3di_dot(rho, rho) + twist * twist;
-    const double springs = e->pair.kt * se3di_dot(xi, xi) + e->pair.kr * rolled;
+    const double slid = e->pair.kt * se3di_dot(xi, xi);
+    const double springs = (e->pair.kt_constant ? 0.0 : slid) + e->pair.kr * rolled;
+    const double constant = e->pair.kt_constant ? 0.5 * slid : 0.0;
     /* the integrals of the attractions over the overlap */
     double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
     double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;
-    return share * e->elastic * e->at->overlap + 0.5 * e->s * springs - stuck;
+    return share * e->elastic * e->at->overlap + 0.5 * e->s * springs + constant - stuck;
 }
 
 double se3di_encounter_power(const se3di_encounter *e)

@@ -298,6 +298,7 @@ static void move_force(const se3di_encounter *e, rates *d)
     double ddamping = pair->dn * (d->root_mass * e->root + e->root_mass * d->root);
     double drag = pair->dt * e->root_mass * e->root;
     double ddrag = pair->dt * (d->root_mass * e->root + e->root_mass * d->root);
+    const double s = se3di_pair_tangent(pair, e->s), ds = pair->kt_constant ? 0.0 : d->s;
     double dpull[3];
     double delastic = pair->kn * (d->s * delta + e->s * d->delta);
     d->normal = 0.0;
@@ -306,8 +307,7 @@ static void move_force(const se3di_encounter *e, rates *d)
                     (d->onset * damping + e->onset * ddamping) * e->vn;
     }
     for (int a = 0; a < 3; ++a) {
-        dpull[a] =
-            -pair->kt * (d->s * e->xi[a] + e->s * d->xi[a]) - ddrag * e->vt[a] - drag * d->vt[a];
+        dpull[a] = -pair->kt * (ds * e->xi[a] + s * d->xi[a]) - ddrag * e->vt[a] - drag * d->vt[a];
     }
     cap_rate(e->give, pair->friction * e->normal, pair->friction * d->normal, e->pull, dpull,
              d->force);

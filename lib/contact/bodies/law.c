@@ -83,6 +83,22 @@ static double mean_rate(double a, double b)
     return sqrt(own(one, 0.0) * own(other, 0.0));
 }
 
+/* A tangential stiffness in place of what the law makes of its ratio. Of two in series. */
+static void hold(const se3di_material *a, const se3di_material *b, const se3di_override *o,
+                 se3di_pair *pair)
+{
+    const double one = a->tangential_stiffness, other = b->tangential_stiffness;
+    const int is_ours = o->tangential_stiffness >= 0.0;
+    if (!is_ours && (o->tangential_ratio >= 0.0 || !is_given(one, other))) {
+        return;
+    }
+    const double k = own(is_given(one, 0.0) ? one : other, 0.0);
+    const double l = own(is_given(other, 0.0) ? other : one, 0.0);
+    const double both = k > 0.0 && l > 0.0 ? 2.0 * k * l / (k + l) : 0.0;
+    pair->kt = choose(o->tangential_stiffness, both);
+    pair->kt_constant = pair->law == SE3DI_LAW_HERTZ_MINDLIN;
+}
+
 /* Damping along the tangent, from what it is over that along the normal. */
 static void drag(const se3di_material *a, const se3di_material *b, const se3di_override *o,
                  se3di_pair *pair)
@@ -141,6 +157,7 @@ void se3di_pair_mix(se3di_contact_law of_all, const se3di_material *a, const se3
         hertz(a, b, o, e, pair);
     }
     pair->law = (int32_t)law;
+    pair->kt_constant = 0;
     pair->restitution = e;
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
     if (law == SE3DI_LAW_CALLBACK) {
@@ -157,6 +174,7 @@ void se3di_pair_mix(se3di_contact_law of_all, const se3di_material *a, const se3
                    : -1.0;
     drag(a, b, o, pair);
     roll(a, b, o, pair);
+    hold(a, b, o, pair); /* rolling is over the stiffness of the law */
 }
 
 void se3di_pair_mix_all(se3di_model *model)
@@ -184,7 +202,8 @@ double se3di_pair_step(const se3di_material *a, const se3di_override *over, cons
     if (pair->law == SE3DI_LAW_CALLBACK) {
         return HUGE_VAL;
     }
-    const double stiffest = fmax(pair->kt, pair->kr) / pair->kn;
+    const double tangent = pair->kt_constant ? 0.0 : pair->kt;
+    const double stiffest = fmax(tangent, pair->kr) / pair->kn;
     if (pair->law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
         return 0.02 * PI / (rate + fmax(pair->dn / sqrt(reduced_mass), pair->rn));
@@ -197,5 +216,8 @@ double se3di_pair_step(const se3di_material *a, const se3di_override *over, cons
     const double step = 0.025 * rayleigh * sqrt(2.0 * reduced_mass / mass) /
                         (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);
     const double circle = 0.3 * radius; /* of contact, at a tenth of the radius on a wall */
-    return step / (1.0 + step * fmax(pair->rn, 0.0) * circle / (0.02 * PI));
+    const double alone = step / (1.0 + step * fmax(pair->rn, 0.0) * circle / (0.02 * PI));
+    return pair->kt_constant && pair->kt > 0.0
+               ? fmin(alone, 0.02 * PI * sqrt(reduced_mass / pair->kt)) /* as of hooke */
+               : alone;
 }

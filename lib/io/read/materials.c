@@ -40,6 +40,9 @@ static const se3di_key material_keys[] = {
      SE3DI_INTO(se3d_material_def, tangential_ratio),
      .standard = "2/7; hertz_mindlin: Mindlin's",
      .text = "tangential over normal stiffness, at most 10"},
+    {"tangential_stiffness", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, tangential_stiffness),
+     .text = "in place of tangential_ratio, also of hertz_mindlin the same at any overlap [N/m]"},
     {"tangential_damping", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, tangential_damping), .standard = "of the law",
      .text = "over that along the normal, at most 10"},
@@ -104,6 +107,13 @@ static bool read_choices(se3di_reader *reader, const se3di_node *entry, se3d_mat
     choose(entry, "tangential_damping", &def->tangential_damping);
     choose(entry, "rolling_ratio", &def->rolling_ratio);
     choose(entry, "rolling_damping", &def->rolling_damping);
+    choose(entry, "tangential_stiffness", &def->tangential_stiffness);
+    if (se3di_node_get(entry, "tangential_stiffness") &&
+        se3di_node_get(entry, "tangential_ratio")) {
+        return se3di_reader_fail_key(reader, entry, "tangential_stiffness",
+                                     "stands beside `tangential_ratio`: one follows from the "
+                                     "other");
+    }
     return !(se3di_node_get(entry, "damping_ratio") && se3di_node_get(entry, "restitution")) ||
            se3di_reader_fail_key(reader, entry, "damping_ratio",
                                  "stands beside `restitution`: one follows from the other");

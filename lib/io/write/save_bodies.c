@@ -404,7 +404,7 @@ static void save_material(se3di_save *s, se3d_material material)
     se3di_save_number_but(s, "stiffness", def.stiffness, 0.0);
     if (contact.law == SE3D_CONTACT_LAW_HERTZ_MINDLIN) {
         save_choice(s, "tangential_ratio", def.tangential_ratio_hertz);
-    } else {
+    } else if (!(def.tangential_stiffness > 0.0 || def.tangential_stiffness < 0.0)) {
         se3di_save_number_but(s, "tangential_ratio", def.tangential_ratio,
                               standard.tangential_ratio);
     }
@@ -417,6 +417,7 @@ static void save_material(se3di_save *s, se3d_material material)
     save_choice(s, "tangential_damping", def.tangential_damping);
     save_choice(s, "rolling_ratio", def.rolling_ratio);
     save_choice(s, "rolling_damping", def.rolling_damping);
+    save_choice(s, "tangential_stiffness", def.tangential_stiffness);
 }
 
 void se3di_save_materials(se3di_save *s)
@@ -455,7 +456,8 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
                   {"rolling_ratio", def.rolling_ratio},
                   {"rolling_damping", def.rolling_damping},
                   {"young", def.young},
-                  {"poisson", def.poisson}};
+                  {"poisson", def.poisson},
+                  {"tangential_stiffness", def.tangential_stiffness}};
     bool any = def.law >= 0;
     for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
         any = any || values[k].value >= 0.0;
