@@ -218,6 +218,19 @@ static double atan2_special(double y, double x)
     return copysign(out, y);
 }
 
+/* y/x less a third of its cube, 2^-54 x <= y < 2^-30 x, as it is of joints at rest but for
+ * rounding, whose quotients are often next to a tie: how far from it, exactly, decides. 0 if not
+ * even that does. */
+static int small_angle(double y, double x, double *out)
+{
+    const double q = y / x, cube = q * q * q / 3.0;
+    const double before = q * (1.0 - 0x1p-53);                     /* the double before q */
+    const double beyond = -fma(-q, x, y) - 0.5 * (q - before) * x; /* the tie, times x */
+    const double past = beyond / x + cube;
+    *out = past > 0.0 ? before : q;
+    return fabs(past) > 0x1p-40 * cube;
+}
+
 double se3di_atan2(double y, double x)
 {
     double out, u = fabs(y), v = fabs(x);
@@ -227,10 +240,11 @@ double se3di_atan2(double y, double x)
     if (x > 0.0 && u < 0x1p-54 * v && fabs(y / x) > 0x1p-1000) {
         return y / x; /* no quotient is as near to a tie as the cube is small: 2^-107 of it */
     }
-    if (u > 0x1p-400 && v > 0x1p-400 && u < 0x1p400 && v < 0x1p400 && fast()->atan2(y, x, &out)) {
-        return out;
+    const int is_usual = u > 0x1p-400 && v > 0x1p-400 && u < 0x1p400 && v < 0x1p400;
+    if (is_usual && x > 0.0 && u < 0x1p-30 * v && u > 0x1p-55 * v && small_angle(u, v, &out)) {
+        return copysign(out, y);
     }
-    return se3di_big_atan2(y, x);
+    return is_usual && fast()->atan2(y, x, &out) ? out : se3di_big_atan2(y, x);
 }
 
 double se3di_atan(double x)

@@ -293,6 +293,10 @@ static void both_phases_round_alike(void)
         const double one = 1.0 + (n % 5 - 2) * 0x1p-53; /* noise about an angle of 0 */
         check_same("atan2", few, one, se3di_atan2(few, one),
                    few == 0.0 ? few : se3di_big_atan2(few, one));
+        const double small = se3di_pow(2.0, -31.0 - n % 26) * (1.0 + (n / 26) * 0.5);
+        check_same("atan2", small, one, se3di_atan2(small, one), se3di_big_atan2(small, one));
+        const double any = y * se3di_pow(2.0, -31.0 - n % 26), by = between(&seed, 0.5, 1e6);
+        check_same("atan2", any, by, se3di_atan2(any, by), se3di_big_atan2(any, by));
         check_same("hypot", x, y, se3di_hypot(x, y), se3di_big_hypot(x, y));
         check_same("pow", fabs(x), y, se3di_pow(fabs(x), y), se3di_big_pow(fabs(x), y));
     }
