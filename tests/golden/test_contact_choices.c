@@ -223,6 +223,26 @@ static void a_damping_rate_holds_for_the_pair(void)
     }
 }
 
+/* Of two that meet with the damping that they have, not with that of a restitution. */
+static void steps_follow_a_damping_rate(void)
+{
+    static const double rates[3] = {1e-6, 200.0, 1000.0};
+    const double mass = 1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0);
+    for (int k = 0; k < 3; ++k) {
+        const double zero[3] = {0.0, 0.0, 0.0};
+        se3d_material_def of = stuff();
+        se3d_contact_settings contact = se3d_contact_settings_default();
+        double step;
+        of.restitution = 0.2; /* not looked at */
+        of.damping_rate = rates[k];
+        ball b = begin(PARTICLE, SE3D_CONTACT_LAW_HOOKE, &of, &of, 2.0 * RADIUS, zero, zero);
+        CHECK(se3d_system_set_contact(b.s.system, &contact) == SE3D_OK); /* the automatic step */
+        CHECK(se3d_particles_get_step(b.set, &step) == SE3D_OK);
+        CHECK_NEAR(0.02 * PI / step, sqrt(2.0 * 1e4 / mass) + rates[k], 1e-9 / step);
+        end(&b);
+    }
+}
+
 /* A ball that is pressed on the plane and spins about the vertical: R^2 (kr theta + dr sqrt(m) w) =
  * -I w'. */
 static void torsion_swings_as_given(void)
@@ -543,6 +563,7 @@ int main(void)
     RUN(tangential_damping_is_that_given);
     RUN(a_damping_ratio_stands_for_a_restitution);
     RUN(a_damping_rate_holds_for_the_pair);
+    RUN(steps_follow_a_damping_rate);
     RUN(torsion_swings_as_given);
     RUN(model_files_say_so_too);
     RUN(model_files_say_a_tangential_stiffness);

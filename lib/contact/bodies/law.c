@@ -206,7 +206,8 @@ double se3di_pair_step(const se3di_material *a, const se3di_override *over, cons
     const double stiffest = fmax(tangent, pair->kr) / pair->kn;
     if (pair->law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
-        return 0.02 * PI / (rate + fmax(pair->dn / sqrt(reduced_mass), pair->rn));
+        const double damping = pair->rn < 0.0 ? pair->dn / sqrt(reduced_mass) : pair->rn;
+        return 0.02 * PI / (rate + damping);
     }
     double density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
     const double young = choose(over->young, a->young), nu = choose(over->poisson, a->poisson);
