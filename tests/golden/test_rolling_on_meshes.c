@@ -9,6 +9,7 @@
 #define FACES   (2 * (COLUMNS - 1) * (ROWS - 1))
 
 enum { PLANE, MESH, HEIGHTS, SUPPORTS };
+enum { SIDE, ELLIPSOID, CAP, BOX, DISC, CAPSULE, SOLIDS };
 
 /* 2.4 x 1.2 m, with inner points anywhere. */
 static void add_mesh(scene *s)
@@ -59,28 +60,54 @@ static void add_support(scene *s, int kind)
     }
 }
 
-/* A cylinder on its side or an ellipsoid, thrown along x: position and steps after 0.3 s. */
-static double throw(int is_ellipsoid, int support, double place[3])
+/* 5 cm high around its middle, that of a disc 1 cm. */
+static void add_solid(scene *s, se3d_body body, int solid)
 {
-    const double r[3] = {0.0, 0.01, 0.05}, v[3] = {1.2, 0.1, 0.0}, x[3] = {1.0, 0.0, 0.0};
+    const double x[3] = {1.0, 0.0, 0.0}, quarter = 0.5 * 3.14159265358979324;
+    se3d_shape_def def = scene_shape(s, body);
+    se3d_shape shape;
+    def.radius = 0.05;
+    def.length = solid == CAP ? 0.1 : 0.2;
+    switch (solid) {
+    case ELLIPSOID:
+        def.semi_axes[0] = 0.08;
+        def.semi_axes[1] = 0.06;
+        def.semi_axes[2] = 0.05;
+        CHECK(se3d_shape_create_ellipsoid(s->system, &def, &shape) == SE3D_OK);
+        break;
+    case BOX:
+        def.size[0] = def.size[2] = 0.1;
+        def.size[1] = 0.12;
+        CHECK(se3d_shape_create_box(s->system, &def, &shape) == SE3D_OK);
+        break;
+    case CAPSULE:
+        CHECK(se3d_shape_create_capsule(s->system, &def, &shape) == SE3D_OK);
+        scene_turn(s, body, x, quarter);
+        break;
+    case DISC:
+        def.radius = 0.1;
+        def.length = 0.02;
+        CHECK(se3d_shape_create_cylinder(s->system, &def, &shape) == SE3D_OK);
+        break;
+    default:
+        CHECK(se3d_shape_create_cylinder(s->system, &def, &shape) == SE3D_OK);
+        if (solid == SIDE) {
+            scene_turn(s, body, x, quarter);
+        }
+        break;
+    }
+}
+
+/* Thrown along x: position and steps after 0.3 s. */
+static double throw(int solid, int support, double place[3])
+{
+    const double r[3] = {0.0, 0.01, solid == DISC ? 0.01 : 0.05}, v[3] = {1.2, 0.1, 0.0};
     const double J[3] = {0.002, 0.003, 0.003};
     scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.3, 0.2, 1e5);
     se3d_solver_stats stats = {0};
     add_support(&s, support);
     const se3d_body body = scene_body(&s, 1.0, J, r, v);
-    se3d_shape_def def = scene_shape(&s, body);
-    se3d_shape shape;
-    if (is_ellipsoid) {
-        def.semi_axes[0] = 0.08;
-        def.semi_axes[1] = 0.06;
-        def.semi_axes[2] = 0.05;
-        CHECK(se3d_shape_create_ellipsoid(s.system, &def, &shape) == SE3D_OK);
-    } else {
-        def.radius = 0.05;
-        def.length = 0.2;
-        CHECK(se3d_shape_create_cylinder(s.system, &def, &shape) == SE3D_OK);
-        scene_turn(&s, body, x, 0.5 * 3.14159265358979324);
-    }
+    add_solid(&s, body, solid);
     scene_solve(&s, SE3D_METHOD_DOP853, SE3D_FORMULATION_ROMEGA, 0.0, 1e-6);
     CHECK(scene_run(&s, 0.3));
     CHECK(!se3d_solver_get_stats(s.solver, &stats));
@@ -91,12 +118,12 @@ static double throw(int is_ellipsoid, int support, double place[3])
 
 static void rolling_on_flat_meshes_is_rolling_on_the_plane(void)
 {
-    for (int is_ellipsoid = 0; is_ellipsoid < 2; ++is_ellipsoid) {
+    for (int solid = 0; solid < SOLIDS; ++solid) {
         double plane[3], place[3];
-        const double steps = throw(is_ellipsoid, PLANE, plane);
+        const double steps = throw(solid, PLANE, plane);
         CHECK(plane[0] > 0.15);
         for (int support = MESH; support < SUPPORTS; ++support) {
-            const double own = throw(is_ellipsoid, support, place);
+            const double own = throw(solid, support, place);
             CHECK(fabs(own - steps) < 0.05 * steps);
             for (int k = 0; k < 3; ++k) {
                 CHECK_NEAR(place[k], plane[k], 1e-8);

@@ -57,13 +57,6 @@ double se3di_mesh_height(const face *f, const double x[3])
     return se3di_dot(d, f->n);
 }
 
-uint32_t se3di_mesh_way_of(const double n[3])
-{
-    uint32_t a = fabs(n[0]) > fabs(n[1]) ? 0 : 1;
-    a = fabs(n[2]) > fabs(n[a]) ? 2 : a;
-    return 2 * a + (n[a] < 0.0);
-}
-
 se3di_contact_point *se3di_mesh_add(const meeting *m, const double at[3], const double n[3],
                                     double overlap, double radius, uint32_t feature)
 {
@@ -879,15 +872,13 @@ void se3di_narrow_mesh(const se3di_solid *i, const se3di_solid *mesh, se3di_mani
 {
     meeting m;
     begin(&m, i, mesh, manifold);
-    const int has_tree = mesh->shape->rows == 0; /* a heightfield has none */
-    if (has_tree) {
-        find_box(&m);
-        if (is_clear(&m)) {
-            return;
-        }
+    const int has_facets = mesh->shape->rows == 0; /* a heightfield has none */
+    find_box(&m);
+    if (se3di_narrow_level(&m) || (has_facets && is_clear(&m))) {
+        return;
     }
     find_side(&m);
-    if (has_tree && se3di_narrow_flush(&m)) {
+    if (has_facets && se3di_narrow_flush(&m)) {
         return;
     }
     if (!m.has_pieces) {

@@ -6,6 +6,8 @@
 #include "contact/narrow/internal.h"
 #include "contact/shape/mesh.h"
 
+#include <math.h>
+
 #define SE3DI_MESH_COPLANAR 0.999 /* cosine of the angle of faces that are one */
 #define SE3DI_MESH_SAME     1e-6  /* of the solid's size: points that are one */
 #define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
@@ -80,7 +82,13 @@ const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);
 double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
 /* Which way a normal looks: the same while it turns little. */
-uint32_t se3di_mesh_way_of(const double n[3]);
+static inline uint32_t se3di_mesh_way_of(const double n[3])
+{
+    uint32_t a = fabs(n[0]) > fabs(n[1]) ? 0 : 1;
+    a = fabs(n[2]) > fabs(n[a]) ? 2 : a;
+    return 2 * a + (n[a] < 0.0);
+}
+
 /* The lowest point of the solid's core along the unit n; returns how far its surface is below. */
 double se3di_mesh_lowest(const se3di_mesh_meeting *m, const double n[3], double at[3]);
 /* A triangle as a solid of its own, with room for its corners; whether the solid overlaps it. */
@@ -127,6 +135,10 @@ void se3di_step_aside(int way, double length, double by[2]);
 /* A solid of which a flat side, a cap or a face, lies on a flat part of a closed mesh that nothing
  * about it rises above, or over it. Returns 0 if none does. */
 int se3di_narrow_flush(const se3di_mesh_meeting *m);
+/* Any solid but a ball, of whose surroundings `low` and `high` are known, where all triangles in
+ * them are in one plane and none ends there: what touches is found as on that plane. Returns 0 if
+ * they are not. */
+int se3di_narrow_level(const se3di_mesh_meeting *m);
 /* Two closed meshes that touch only where flat parts of them lie on each other, or do not touch
  * there. Returns 0 if they may touch elsewhere. */
 int se3di_narrow_outlines(const se3di_solid *i, const se3di_solid *j, se3di_manifold *manifold);

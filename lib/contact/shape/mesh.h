@@ -49,8 +49,7 @@ int se3di_mesh_is_clear(const se3di_shape *shape, const double local[3], double 
 void se3di_mesh_visit(const se3di_shape *shape, const double local[3], double radius,
                       void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
 
-/* Visit all triangles of a mesh (not of a heightfield) that reach into a box along the axes, and
- * some beside it. */
+/* Visit all triangles that reach into a box along the axes, and some beside it. */
 void se3di_mesh_visit_box(const se3di_shape *shape, const double low[3], const double high[3],
                           void (*visitor)(void *ctx, uint32_t triangle), void *ctx);
 
