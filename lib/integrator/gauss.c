@@ -409,9 +409,11 @@ static void accept(se3di_explicit *m, double h)
     double *forms = m->forms, *half = forms + (size_t)m->stages * m->count, *skew = half + m->count;
     memcpy(m->y0, m->y1, m->count * sizeof *m->y0);
     memcpy(forms, get_form(m, 0), (size_t)m->stages * m->count * sizeof *forms);
-    find_defects(m, half, skew);
+    if (!m->is_bare) { /* else they still are where the error was estimated from */
+        find_defects(m, m->sum, m->sum3);
+    }
     for (size_t c = 0; c < m->count; ++c) {
-        const double begin = half[c], end = skew[c];
+        const double begin = m->sum[c], end = m->sum3[c];
         half[c] = 0.5 * (begin + end);
         skew[c] = 0.5 * (end - begin);
     }
@@ -438,12 +440,21 @@ static double contract(double rate)
     return rate > 0.0 ? sqrt(CONTRACTION_AIM / rate) : HUGE_VAL;
 }
 
+/* By what the step may change as the error allows, but no more than `most`. */
+static double follow_error(const se3di_explicit *m, double error, double most)
+{
+    const int order = m->stages + 2;
+    double power = error;
+    for (int k = 0; k < order; ++k) {
+        power *= most * (1.0 / SAFETY);
+    }
+    return power < 1.0 ? most : fmin(most, fmax(0.2, SAFETY * se3di_pow(error, -1.0 / order)));
+}
+
 static double next_step(const se3di_explicit *m, double h, double error)
 {
-    const double exponent = 1.0 / (m->stages + 2);
-    const double factor = SAFETY * se3di_pow(fmax(error, 1e-10), -exponent);
     const double largest = m->past->at.rejected != 0.0 ? 1.0 : GROWTH;
-    h *= fmin(fmin(largest, fmax(0.2, factor)), fmax(0.3, contract(m->contraction)));
+    h *= follow_error(m, error, fmin(largest, fmax(0.3, contract(m->contraction))));
     return se3di_adaptive_limit(m->step.integration, h);
 }
 

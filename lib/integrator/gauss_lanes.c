@@ -169,6 +169,9 @@ se3di_gauss_lanes *se3di_gauss_lanes_find(se3di_explicit *m, const se3di_gauss_r
 {
     double *work = m->step.integration->work + se3di_explicit_work_count(m->assembly);
     se3di_gauss_lanes *g = (se3di_gauss_lanes *)(void *)work;
+    if (m->is_bare && m->laid_out == rule->stages) {
+        return g;
+    }
     const se3di_lane_core *core = find_core(rule->stages);
     const int has_loops = se3di_gauss_lanes_take_loops(m);
     if (!has_loops && !is_bare_tree(m)) {
@@ -217,11 +220,22 @@ static void combine(const se3di_gauss_lanes *g, const double *y, size_t first, s
     }
 }
 
+/* Rates of positions are velocities, and are where the lanes find them. */
+static int is_direct(const se3di_gauss_lanes *g)
+{
+    return !g->has_loops && g->positions == g->velocities && g->stages == g->width;
+}
+
 /* Velocities, and rates of positions from them; those of quaternions need the quaternions, by the
  * derivatives as they are. */
 static void renew(const se3di_gauss_lanes *g, const double *y)
 {
     const size_t s = g->stages, w = g->width, at = g->positions * w;
+    if (is_direct(g)) {
+        g->core->combine(g->velocities, y + g->positions, s, g->groups[0].weights,
+                         g->K + g->positions * s, g->K);
+        return;
+    }
     combine(g, y, g->positions, g->velocities);
     if (g->positions > g->velocities) {
         combine(g, y, 0, g->positions);
@@ -250,10 +264,11 @@ static double size_of(const se3di_gauss_lanes *g, const se3di_gauss_rule *rule)
     return sqrt(sum);
 }
 
-static int is_finite(const se3di_gauss_lanes *g, const se3di_gauss_group *own)
+static int are_finite(const se3di_gauss_lanes *g, const se3di_gauss_group *own, size_t count,
+                      const double *next)
 {
     int fine = 1;
-    g->core->check(g->positions + g->velocities, own->next, own->verdict);
+    g->core->check(count, next, own->verdict);
     for (size_t lane = 0; lane < g->width; ++lane) {
         fine &= own->verdict[lane] == 1.0;
     }
@@ -284,7 +299,7 @@ static const double *place(const se3di_gauss_lanes *g, const se3di_gauss_group *
 {
     const size_t at = g->positions * g->width;
     g->core->normalise(&own->lanes, own->Y);
-    g->core->place(&own->lanes, own->Y, own->Y + at);
+    g->core->place(&own->lanes, own->Y, is_direct(g) ? g->K : own->Y + at);
     if (!g->has_loops) {
         return own->Y;
     }
@@ -298,22 +313,48 @@ static const double *place(const se3di_gauss_lanes *g, const se3di_gauss_group *
     return own->closed;
 }
 
+/* Of links that are placed: derivatives, what they change by, and its size. */
+static int find_change(se3di_gauss_lanes *g, size_t group, const double *placed, double h)
+{
+    const se3di_gauss_group *own = &g->groups[group];
+    const size_t state = g->positions + g->velocities, at = g->positions * g->width;
+    g->core->find_rates(&own->lanes, own->Y, own->Y + at, own->next);
+    if (!are_finite(g, own, state, own->next)) {
+        return 0;
+    }
+    g->core->replace(state, h, own->next, g->stages, g->K + group * g->width, own->change);
+    g->core->measure(&own->lanes, placed, own->change, g->scale, own->sizes);
+    return 1;
+}
+
+/* The same without quaternions: rates of positions are the velocities, as renew() has left them. */
+static int find_plain_change(se3di_gauss_lanes *g, size_t group, double h)
+{
+    const se3di_gauss_group *own = &g->groups[group];
+    const size_t at = g->positions * g->width;
+    if (!are_finite(g, own, g->velocities, own->next + at)) {
+        return 0;
+    }
+    g->core->replace(g->velocities, h, own->next + at, g->stages,
+                     g->K + g->positions * g->stages + group * g->width, own->change + at);
+    g->core->measure_rates(&own->lanes, own->change, g->scale, own->sizes);
+    return 1;
+}
+
 int se3di_gauss_lanes_sweep(se3di_gauss_lanes *g, se3di_explicit *m, const se3di_gauss_rule *rule,
                             int k, double h, double *change)
 {
-    const size_t state = g->positions + g->velocities, at = g->positions * g->width;
     renew(g, m->y1);
     combine(g, m->y1, 0, g->positions);
     for (size_t i = 0; i < g->stages / g->width; ++i) {
         const se3di_gauss_group *own = &g->groups[i];
         const double *placed = place(g, own, k);
-        se3di_lanes_accelerate(&own->lanes, NULL, own->next + at);
-        g->core->find_rates(&own->lanes, own->Y, own->Y + at, own->next);
-        if (!is_finite(g, own)) {
+        se3di_lanes_accelerate(&own->lanes, NULL, own->next + g->positions * g->width);
+        const int is_fine = g->positions == g->velocities ? find_plain_change(g, i, h)
+                                                          : find_change(g, i, placed, h);
+        if (!is_fine) {
             return 0;
         }
-        g->core->replace(state, h, own->next, g->stages, g->K + i * g->width, own->change);
-        g->core->measure(&own->lanes, placed, own->change, g->scale, own->sizes);
     }
     *change = size_of(g, rule);
     m->equations->counters.evaluations += (uint64_t)rule->stages;
@@ -367,11 +408,7 @@ int se3di_gauss_lanes_differentiate(se3di_gauss_lanes *g, se3di_explicit *m, dou
     const size_t w = g->width, state = g->positions + g->velocities, at = g->positions * w;
     se3di_lanes lanes = own->lanes;
     lanes.wants_points = 1;
-    for (size_t c = 0; c < state; ++c) {
-        for (size_t lane = 0; lane < w; ++lane) {
-            own->Y[c * w + lane] = m->y[c];
-        }
-    }
+    g->core->extend(state, m->y, 0, own->weights, m->y, 0, own->Y, w);
     g->core->normalise(&lanes, own->Y);
     g->core->place(&lanes, own->Y, own->Y + at);
     se3di_lanes_accelerate(&lanes, NULL, own->next + at);
@@ -386,7 +423,7 @@ int se3di_gauss_lanes_differentiate(se3di_gauss_lanes *g, se3di_explicit *m, dou
     for (size_t k = 0; k < 4; ++k) {
         squares[k] = own->squares[k * w];
     }
-    return is_finite(g, own);
+    return are_finite(g, own, state, own->next);
 }
 
 void se3di_gauss_lanes_sizes(const se3di_gauss_lanes *g, const double *const change[2],
@@ -395,12 +432,9 @@ void se3di_gauss_lanes_sizes(const se3di_gauss_lanes *g, const double *const cha
     const se3di_gauss_group *own = &g->groups[0];
     const size_t w = g->width, state = g->positions + g->velocities;
     for (size_t first = 0; first < 2; first += w) {
-        const double *one = change[first > 0], *others = change[1];
-        for (size_t c = 0; c < state; ++c) {
-            own->change[c * w] = one[c];
-            for (size_t lane = 1; lane < w; ++lane) {
-                own->change[c * w + lane] = others[c];
-            }
+        g->core->extend(state, change[1], 0, own->weights, change[1], 0, own->change, w);
+        for (size_t c = 0; first == 0 && c < state; ++c) {
+            own->change[c * w] = change[0][c];
         }
         g->core->measure(&own->lanes, own->Y, own->change, g->scale, own->sizes);
         for (size_t lane = 0; lane < w && first + lane < 2; ++lane) {

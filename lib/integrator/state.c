@@ -418,20 +418,27 @@ double se3di_state_limit_turn(const se3di_model *model, double growth, double h)
     return h;
 }
 
+/* The square of how far a point of a body is from its origin, if it is the larger one. */
+static double farther(double square, uint32_t body, const double point[3])
+{
+    return body > 0 ? se3di_raised(square, se3di_dot(point, point)) : square;
+}
+
 /* Between points that belong to one body. */
 double se3di_state_length(const se3di_model *model)
 {
-    double length = 0.0;
+    double square = 0.0;
     for (size_t k = 0; k < model->term_count; ++k) {
         const se3di_term *term = &model->terms[k];
-        length = fmax(length, term->body_i > 0 ? se3di_norm(term->s_i) : 0.0);
-        length = fmax(length, term->body_j > 0 ? se3di_norm(term->s_j) : 0.0);
+        square = farther(square, term->body_i, term->s_i);
+        square = farther(square, term->body_j, term->s_j);
     }
     for (size_t k = 0; k < model->force_slots.count; ++k) {
         const se3di_force *force = &model->forces[k];
-        length = fmax(length, force->body_i > 0 ? se3di_norm(force->s_i) : 0.0);
-        length = fmax(length, force->body_j > 0 ? se3di_norm(force->s_j) : 0.0);
+        square = farther(square, force->body_i, force->s_i);
+        square = farther(square, force->body_j, force->s_j);
     }
+    double length = sqrt(square);
     for (size_t k = 0; k < model->body_slots.count && length == 0.0; ++k) {
         length = model->bodies[k].state == 0 ? se3di_norm(model->frames[k].r) : 0.0;
     }

@@ -113,6 +113,9 @@ typedef struct se3di_lane_core {
      * bodies, relative to a length, a speed and a spin. */
     void (*measure)(const se3di_lanes *lanes, const double *q, const double *change,
                     const double scale[3], double *sizes);
+    /* The same where q does not change. */
+    void (*measure_rates)(const se3di_lanes *lanes, const double *change, const double scale[3],
+                          double *sizes);
     /* change = factor (next - x), x = next: [count] numbers each, those of x `stride` doubles
      * apart. */
     void (*replace)(size_t count, double factor, const double *next, size_t stride, double *x,

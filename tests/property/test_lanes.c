@@ -365,6 +365,7 @@ static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_pla
 {
     static const double scale[3] = {0.7, 1.3, 0.9};
     _Alignas(SE3DI_LANES_ALIGN) double gravity[3 * SE3DI_LANES_MAX], change[LANE_NUMBERS];
+    _Alignas(SE3DI_LANES_ALIGN) double of_all[SE3DI_LANES_MAX], of_rates[SE3DI_LANES_MAX];
     const size_t w = (size_t)core->width, count = tree->v_count * w;
     se3di_lanes lanes;
     CHECK(!se3di_lanes_init(&lanes, tree, core, 0));
@@ -383,6 +384,10 @@ static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_pla
     memcpy(change, qdot, count * sizeof *change);
     memcpy(change + count, qddot, count * sizeof *change);
     core->measure(&lanes, q, change, scale, sizes);
+    memset(change, 0, count * sizeof *change);
+    core->measure(&lanes, q, change, scale, of_all);
+    core->measure_rates(&lanes, change, scale, of_rates);
+    CHECK(memcmp(of_all, of_rates, w * sizeof *of_all) == 0 && of_all[0] > 0.0);
     se3di_lanes_destroy(&lanes);
 }
 
