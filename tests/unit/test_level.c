@@ -143,7 +143,7 @@ static void compare(const se3di_manifold *own, const se3di_manifold *plane)
         double distance, turn[3];
         const se3di_contact_point *q = &own->points[find_nearest(own, p->point, &distance)];
         se3di_sub(p->normal, q->normal, turn);
-        CHECK(distance < 1e-9 && se3di_norm(turn) < 1e-12);
+        CHECK(distance < 1e-7 && se3di_norm(turn) < 1e-12);
         CHECK_NEAR(q->overlap, p->overlap, 1e-12);
         CHECK_NEAR(q->bend_i.r[0], p->bend_i.r[0], 1e-9 * fabs(p->bend_i.r[0]));
         CHECK(fabs(q->share - p->share) <= 0.0);
