@@ -249,6 +249,9 @@ int se3di_convex_is_short(double k, double inverse_mass, double h);
  * of what lasts n steps costs the part (lead/h) pi^2/2n of the speed. What nothing moves is at the
  * end of the step. */
 double se3di_convex_lead_of(double k, double inverse_mass, double h);
+/* The part of a damper that the velocity of half a step before has, where it is that of the start:
+ * half of it, or so much as does not turn this velocity round. */
+double se3di_convex_before(double damper, double inverse_mass, double h);
 /* What an impulse along j does to the velocity along i, which have the same bodies, if nothing else
  * holds these. */
 double se3di_convex_move_alone(const se3di_convex *c, const se3di_convex_contact *i,

@@ -180,6 +180,27 @@ double se3di_convex_lead_of(double k, double inverse_mass, double h)
     return LOSS < h * rate ? LOSS / rate : h;
 }
 
+double se3di_convex_before(double damper, double inverse_mass, double h)
+{
+    const double most = h * inverse_mass * damper;
+    return (most > 1.0 ? 1.0 / most : 1.0) * 0.5 * damper;
+}
+
+/* The damper of a linear spring is that of the start of the step, as this is: it has a part of the
+ * velocities of half a step before and after. It does not begin from nothing: in the step after the
+ * one in which shapes have met, at the speed u, it acts from there to half a step on. */
+static void set_damper(se3di_convex_contact *c, const damping *law, double inverse_mass, double h,
+                       double u)
+{
+    double along = law->along, before = 0.0;
+    if (!(c->power > 1.0)) {
+        along *= c->overlap < h * u ? 0.5 + c->overlap / (h * u) : 1.0;
+        before = se3di_convex_before(along, inverse_mass, h);
+    }
+    c->damping = se3di_convex_ease(along - before, c->lead * law->stiffness);
+    c->overlap += before > 0.0 ? before * u / c->stiffness : 0.0;
+}
+
 /* What joints make heavy along the normal alone is light across it, where a spring that is that of
  * the end of the step is stable. */
 void se3di_convex_follow_law(se3di_convex_contact *c, const se3di_model *model, double h, double u,
@@ -193,7 +214,7 @@ void se3di_convex_follow_law(se3di_convex_contact *c, const se3di_model *model, 
                                    inverse_mass, h);
     se3di_convex_set_attraction(c, model, h, u);
     const double yields = (may_follow ? c->lead : h) * c->tangential;
-    c->damping = se3di_convex_ease(law.along, c->lead * law.stiffness);
+    set_damper(c, &law, inverse_mass, h, u);
     c->drag = h * (yields + se3di_convex_ease(law.across, yields));
 }
 

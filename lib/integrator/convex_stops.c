@@ -110,6 +110,19 @@ int se3di_convex_stop_is_near(const se3di_convex_contact *stop, double h)
     return stop->overlap > 0.0 || -stop->overlap < h * (fabs(speed) + h * fabs(stop->towards));
 }
 
+/* The spring and the damper are those of the start of the step, to which velocities of half a step
+ * before and after belong: the damper has a part of each. */
+static void follow_law(se3di_convex_contact *stop, double delta, double speed, double h,
+                       double inverse_mass)
+{
+    const se3di_force *force = stop->element;
+    const double damper = se3di_stop_get_damper(force, delta);
+    const double before = se3di_convex_before(damper, inverse_mass, h);
+    stop->lead = se3di_convex_lead_of(force->k, inverse_mass, h);
+    stop->damping = se3di_convex_ease(damper - before, stop->lead * force->k);
+    stop->overlap += before * speed / force->k;
+}
+
 void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
                               double inverse_mass)
 {
@@ -119,9 +132,7 @@ void se3di_convex_choose_stop(const se3di_convex *c, se3di_convex_contact *stop,
     const double change = h * fabs(stop->towards);
     const int meets = gap > -h * speed && gap < h * (speed + change);
     if (!se3di_convex_is_short(force->k, inverse_mass, h)) {
-        stop->lead = se3di_convex_lead_of(force->k, inverse_mass, h);
-        const double damper = se3di_stop_get_damper(force, fmax(0.0, h * speed - gap));
-        stop->damping = se3di_convex_ease(damper, stop->lead * force->k);
+        follow_law(stop, fmax(0.0, -gap), speed, h, inverse_mass);
         return;
     }
     stop->damping = gap < 0.0 ? SETTLING * h * force->k : 0.0;

@@ -190,13 +190,14 @@ static void impacts_have_the_restitution_typed(void)
  */
 static void what_lasts_a_dozen_steps_is_followed(void)
 {
-    static const double steps[] = {13.0, 20.0, 31.0, 60.0};
-    const double mass = 0.5, u = 0.2, gap = 0.0102;
-    for (int k = 0; k < 4; ++k) {
-        const double time = steps[k] * STEP, rate = 3.14159265358979324 / time;
+    static const double steps[] = {13.0, 20.0, 31.0, 60.0}, given[] = {1.0, 0.5, 0.3};
+    const double mass = 0.5, u = 0.2;
+    for (int k = 0; k < 60; ++k) {
+        const double e = given[k / 4 % 3], gap = 0.0102 + 4e-5 * (k / 12);
+        const double time = steps[k % 4] * STEP, rate = 3.14159265358979324 / time;
         const double start[3] = {0.0, 0.0, 0.05 + gap}, v0[3] = {0.0, 0.0, -u};
         double r[3], v[3];
-        se3d_material_def stuff = scene_stuff(0.3, 1.0, mass * rate * rate);
+        se3d_material_def stuff = scene_stuff(0.3, e, mass * rate * rate);
         scene s = scene_begin_with(NULL, SE3D_CONTACT_LAW_HOOKE, &stuff);
         CHECK(se3d_system_set_gravity(s.system, scene_zero) == SE3D_OK);
         const se3d_body ball = scene_ball(&s, 0.05, mass, start, v0);
@@ -204,8 +205,10 @@ static void what_lasts_a_dozen_steps_is_followed(void)
         scene_solve(&s, SE3D_METHOD_CONVEX, SE3D_FORMULATION_ROMEGA, STEP, 0.0);
         scene_run(&s, 0.3);
         get(&s, ball, r, v);
-        CHECK_NEAR(v[2] / u, 1.0, 0.015);
-        CHECK_NEAR(r[2], 0.05 + u * (0.3 - gap / u - time), 0.015 * 0.05);
+        CHECK_NEAR(v[2] / u, e, 0.025 * e);
+        if (k / 4 % 3 == 0) {
+            CHECK_NEAR(r[2], 0.05 + u * (0.3 - gap / u - time), 0.015 * 0.05);
+        }
         scene_end(&s);
     }
 }
