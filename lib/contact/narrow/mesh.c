@@ -285,12 +285,12 @@ static int is_deepest(const meeting *m, const double n[3], double depth, uint32_
     return 1;
 }
 
-/* Of faces that are nearly in the plane of another that which a place is deepest in; -1: none. */
-static int find_nearly(double (*n)[3], int count, const double *depth, const double plane[3])
+/* The face, nearly in a plane or any (NULL), that a place is deepest in; -1: none. */
+static int find_deepest(double (*n)[3], int count, const double *depth, const double plane[3])
 {
     int found = -1;
     for (int k = 0; k < count; ++k) {
-        if (depth[k] > 0.0 && se3di_dot(n[k], plane) > COPLANAR &&
+        if (depth[k] > 0.0 && (!plane || se3di_dot(n[k], plane) > COPLANAR) &&
             (found < 0 || depth[k] > depth[found])) {
             found = k;
         }
@@ -338,12 +338,10 @@ static void touch_corner(const meeting *m, const double x[3], const se3di_bend *
         }
     }
     se3di_mesh_share_corner((const double(*)[3])n, (uint32_t)count, depth);
-    for (int k = 0; k < count; ++k) {
-        if (!only && depth[k] > 0.0) {
-            add_corner(m, &c, met[k], depth[k], NULL, feature);
-        }
+    for (int k = 0; !only && (k = find_deepest(n, count, depth, NULL)) >= 0; depth[k] = 0.0) {
+        add_corner(m, &c, met[k], depth[k], NULL, feature); /* the deepest keeps its name */
     }
-    const int one = only ? find_nearly(n, count, depth, only) : -1;
+    const int one = only ? find_deepest(n, count, depth, only) : -1;
     if (one >= 0 && is_deepest(m, n[one], c.depth[met[one]], feature)) {
         add_corner(m, &c, met[one], c.depth[met[one]], bend, feature);
     }
