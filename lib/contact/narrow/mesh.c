@@ -15,7 +15,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#define TOUCHES  4   /* faces that one corner touches */
+#define TOUCHES  SE3DI_MESH_SIDES
 #define BESIDE   0.2 /* of the solid's size: an edge that a solid is past may be what it rests on */
 #define COPLANAR SE3DI_MESH_COPLANAR
 #define SAME     SE3DI_MESH_SAME

@@ -13,6 +13,7 @@
 #define SE3DI_MESH_OUT      1e-12 /* a direction that leads into a face by less leads out */
 #define SE3DI_MESH_WAYS     24
 #define SE3DI_MESH_TOUCHES  16 /* faces that one ball touches */
+#define SE3DI_MESH_SIDES    4  /* faces that one corner touches */
 #define SE3DI_MESH_PLANES   8  /* of faces, that are told apart */
 
 /* All in the frame of the mesh. */
@@ -74,8 +75,8 @@ typedef struct se3di_mesh_edge {
  * depth of each grows from zero as the ball turns into a valley. May be negative: not at all. */
 void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double radius,
                              double *depth);
-/* The same of a corner that is behind `count` faces, at most 4, by `depth`: of the least way off
- * all of them what is along each normal. */
+/* The same of a corner that is behind `count` <= SE3DI_MESH_SIDES faces by `depth`: of the least
+ * way off all of them what is along each normal. */
 void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth);
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */

@@ -86,8 +86,9 @@ void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double ra
     }
 }
 
-#define SIDES    4
-#define ROUNDING 1e-14
+#define SIDES    SE3DI_MESH_SIDES
+#define SINGULAR 1e-14
+#define ROUNDING 1e-12
 
 /* ---- a corner: min |e|^2/2 with n_k . e >= depth_k, whose multipliers are the overlaps ---- */
 
@@ -104,7 +105,7 @@ static int solve_sides(const double (*n)[3], const double *depth, const uint32_t
         }
     }
     for (uint32_t k = 0; k < count; ++k) {
-        if (!(G[k][k] > ROUNDING)) {
+        if (!(G[k][k] > SINGULAR)) {
             return 0; /* normals in one plane, of which two will do */
         }
         for (uint32_t i = k + 1; i < count; ++i) {
@@ -135,7 +136,7 @@ static int leads_off(const double (*n)[3], const double *depth, uint32_t count, 
         for (uint32_t j = 0; j < count; ++j) {
             left -= way[j] * fmax(0.0, se3di_dot(n[k], n[j]));
         }
-        if (!(set >> k & 1u) && left > 0.0) {
+        if (!(set >> k & 1u) && left > ROUNDING * depth[k]) {
             return 0;
         }
     }

@@ -355,17 +355,24 @@ static int is_round(const se3di_mesh_meeting *m)
            se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_SMOOTH);
 }
 
-/* Whether a contact is at the place of a way, or on a round side, and as deep, off a face that is
- * all but in one plane with that of the way. */
-static int is_beside(const se3di_mesh_meeting *m, const se3di_mesh_way *way, double depth,
-                     const se3di_contact_point *p, double turn)
+/* How far a contact is from the place of a way. */
+static double apart(const se3di_mesh_meeting *m, const se3di_mesh_way *way,
+                    const se3di_contact_point *p)
 {
     double place[3], d[3];
     se3di_solid_to_local(m->mesh, p->point, place);
     se3di_sub(place, way->at, d);
+    return se3di_norm(d);
+}
+
+/* Whether a contact is at the place of a way, or near it on a round side, and as deep, off a face
+ * that is all but in one plane with that of the way. */
+static int is_beside(const se3di_mesh_meeting *m, const se3di_mesh_way *way, double depth,
+                     const se3di_contact_point *p, double turn)
+{
     const double slack = SE3DI_MESH_SAME * m->size + 2.0 * turn * depth;
-    return turn * turn < 2.0 * (1.0 - SE3DI_MESH_COPLANAR) &&
-           (is_round(m) || se3di_norm(d) < slack) && p->overlap > depth - slack;
+    return turn * turn < 2.0 * (1.0 - SE3DI_MESH_COPLANAR) && p->overlap > depth - slack &&
+           apart(m, way, p) < (is_round(m) ? m->size : slack);
 }
 
 /* A contact that is this way but for rounding becomes it, and so does that of a round side whose
@@ -374,7 +381,8 @@ static int is_beside(const se3di_mesh_meeting *m, const se3di_mesh_way *way, dou
 static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
 {
     const double slack = EQUAL * m->size;
-    se3di_contact_point *deepest = NULL;
+    const double less = (1.0 - SE3DI_MESH_COPLANAR) * m->size; /* of a round side */
+    se3di_contact_point *deepest = NULL, *near = NULL;
     double ground[3];
     int beside = 0;
     se3di_mul(m->mesh->at->R, way->n, ground);
@@ -385,13 +393,19 @@ static int is_shown(const se3di_mesh_meeting *m, const se3di_mesh_way *way)
         double turn[3];
         se3di_sub(p->normal, ground, turn);
         beside = beside || is_beside(m, way, depth, p, se3di_norm(turn));
-        if (se3di_norm(turn) < SE3DI_MESH_SAME && (!deepest || p->overlap > deepest->overlap)) {
-            deepest = p;
+        if (!(se3di_norm(turn) < SE3DI_MESH_SAME)) {
+            continue;
+        }
+        deepest = !deepest || p->overlap > deepest->overlap ? p : deepest;
+        if (is_round(m) && apart(m, way, p) < m->size) {
+            near = !near || p->overlap > near->overlap ? p : near;
         }
     }
-    const double less = is_round(m) ? (1.0 - SE3DI_MESH_COPLANAR) * m->size : slack;
-    if (!deepest || !(deepest->overlap > depth - less)) {
-        return beside;
+    if (!deepest || !(deepest->overlap > depth - slack)) {
+        if (!near || !(near->overlap > depth - less)) {
+            return beside;
+        }
+        deepest = near;
     }
     if (deepest->overlap < depth + slack) {
         se3di_copy(ground, deepest->normal);

@@ -32,7 +32,7 @@ static const se3di_key material_keys[] = {
      .text = "hooke [N/m] > 0"},
     {"rolling_ratio", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, rolling_ratio), .standard = "1",
-     .text = "stiffness of rolling and torsion over the tangential one, at most 100"},
+     .text = "stiffness of rolling and torsion over that of `tangential_ratio`, at most 100"},
     {"rolling_damping", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, rolling_damping), .standard = "1.2",
      .text = "over the root of mass and stiffness of rolling, at most 10"},
