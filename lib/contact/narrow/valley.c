@@ -92,16 +92,19 @@ void se3di_mesh_share_valley(const se3di_touch *touch, uint32_t count, double ra
 
 /* ---- a corner: min |e|^2/2 with n_k . e >= depth_k, whose multipliers are the overlaps ---- */
 
-/* Those of some sides if they alone count: G x = depth, G_ij = n_i . n_j, by elimination. Returns
- * whether all are positive. */
-static int solve_sides(const double (*n)[3], const double *depth, const uint32_t *side,
-                       uint32_t count, double x[SIDES])
+/* n_i . n_j, 0 for faces that enclose less than a right angle. */
+typedef double products[SIDES][SIDES];
+
+/* Those of some sides if they alone count: G x = depth, by elimination. Returns whether all are
+ * positive. */
+static int solve_sides(products all, const double *depth, const uint32_t *side, uint32_t count,
+                       double x[SIDES])
 {
-    double G[SIDES][SIDES];
+    products G;
     for (uint32_t i = 0; i < count; ++i) {
         x[i] = depth[side[i]];
         for (uint32_t j = 0; j < count; ++j) {
-            G[i][j] = fmax(0.0, se3di_dot(n[side[i]], n[side[j]]));
+            G[i][j] = all[side[i]][side[j]];
         }
     }
     for (uint32_t k = 0; k < count; ++k) {
@@ -128,13 +131,13 @@ static int solve_sides(const double (*n)[3], const double *depth, const uint32_t
 }
 
 /* Whether the way off these sides leads off all others, too. */
-static int leads_off(const double (*n)[3], const double *depth, uint32_t count, uint32_t set,
+static int leads_off(products G, const double *depth, uint32_t count, uint32_t set,
                      const double way[SIDES])
 {
     for (uint32_t k = 0; k < count; ++k) {
         double left = depth[k];
         for (uint32_t j = 0; j < count; ++j) {
-            left -= way[j] * fmax(0.0, se3di_dot(n[k], n[j]));
+            left -= way[j] * G[k][j];
         }
         if (!(set >> k & 1u) && left > ROUNDING * depth[k]) {
             return 0;
@@ -145,6 +148,11 @@ static int leads_off(const double (*n)[3], const double *depth, uint32_t count, 
 
 void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth)
 {
+    products G;
+    for (uint32_t k = 0; k < count * count; ++k) {
+        const uint32_t i = k / count, j = k % count;
+        G[i][j] = fmax(0.0, se3di_dot(n[i], n[j]));
+    }
     for (uint32_t set = (1u << count) - 1u; set > 0 && count > 1; --set) {
         uint32_t side[SIDES], sides = 0;
         double x[SIDES], way[SIDES] = {0.0, 0.0, 0.0, 0.0};
@@ -153,13 +161,13 @@ void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth
                 side[sides++] = k;
             }
         }
-        if (!solve_sides(n, depth, side, sides, x)) {
+        if (!solve_sides(G, depth, side, sides, x)) {
             continue;
         }
         for (uint32_t k = 0; k < sides; ++k) {
             way[side[k]] = x[k];
         }
-        if (leads_off(n, depth, count, set, way)) {
+        if (leads_off(G, depth, count, set, way)) {
             for (uint32_t k = 0; k < count; ++k) {
                 depth[k] = way[k];
             }
