@@ -351,8 +351,7 @@ static int is_least(const se3di_mesh_meeting *m, int k)
 
 static int is_round(const se3di_mesh_meeting *m)
 {
-    return se3di_shape_is(m->solid->shape, SE3DI_SHAPE_HAS_RIMS) ||
-           se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_SMOOTH);
+    return se3di_shape_is(m->solid->shape, SE3DI_SHAPE_IS_ROUND);
 }
 
 /* How far a contact is from the place of a way. */
