@@ -296,7 +296,7 @@ void se3di_convex_set_law(se3di_convex_contact *c, const se3di_model *model)
     c->overlap = r->overlap;
     c->power = hertz ? 1.5 : 1.0;
     c->stiffness = pair->kn * (hertz ? sqrt(radius) : 1.0);
-    c->tangential = pair->kt * se3di_pair_tangent(pair, hertz ? sqrt(radius * r->overlap) : 1.0);
+    c->tangential = se3di_pair_kt(pair, hertz ? sqrt(radius * r->overlap) : 1.0);
     c->friction = pair->friction;
     c->rebound = pair->restitution;
 }

@@ -67,7 +67,7 @@ static double step_of(const tracing *t)
         const double s = hertz ? sqrt(p->radius * se3di_convex_hertz_depth(kn * sqrt(p->radius),
                                                                            t->alone[at][at], speed))
                                : 1.0;
-        const double kt = p->pair->kt * se3di_pair_tangent(p->pair, s);
+        const double kt = se3di_pair_kt(p->pair, s);
         const double stiffest =
             p->presser ? p->pair->kr * s : fmax(kn * (hertz ? 1.5 : 1.0) * s, kt);
         rate2 += stiffest * (W[0] + W[4] + W[8]);
@@ -110,7 +110,7 @@ static int press_by_law(point *p, double xi[3], double force[3])
     }
     const double *n = p->contact->normal, vn = se3di_dot(p->v, n);
     const double s = se3di_pair_is_hertz(p->pair) ? sqrt(p->radius * fmax(0.0, p->delta)) : 1.0;
-    const double root = p->root_mass * sqrt(s), kt = p->pair->kt * se3di_pair_tangent(p->pair, s);
+    const double root = p->root_mass * sqrt(s), kt = se3di_pair_kt(p->pair, s);
     const double normal = p->pair->kn * s * p->delta - p->pair->dn * root * vn;
     double pull[3];
     memset(force, 0, 3 * sizeof *force);

@@ -266,8 +266,7 @@ typedef struct springs {
  * how many times the step is longer. */
 static double outlast(const springs *s, const se3di_encounter *e)
 {
-    return fmax(1.0,
-                s->h * sqrt(e->pair.kt * se3di_pair_tangent(&e->pair, e->s) * e->inverse_mass));
+    return fmax(1.0, s->h * sqrt(se3di_pair_kt(&e->pair, e->s) * e->inverse_mass));
 }
 
 static void add_wrench(const springs *s, const se3di_encounter *e, double scale,
@@ -328,7 +327,7 @@ static void add_overshoot(const springs *s, const se3di_encounter *e)
         return;
     }
     const double way = 0.5 * s->h * se3di_norm(e->vt);
-    const double lost = fmin(e->pair.kt * se3di_pair_tangent(&e->pair, e->s) * way, e->give * pull);
+    const double lost = fmin(se3di_pair_kt(&e->pair, e->s) * way, e->give * pull);
     se3di_encounter part = *e;
     double wrench[12];
     se3di_scale(lost / pull, e->pull, part.force);

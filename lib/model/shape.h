@@ -104,6 +104,12 @@ static inline double se3di_pair_tangent(const se3di_pair *pair, double s)
     return pair->kt_constant ? 1.0 : s;
 }
 
+/* The tangential stiffness where that of the law is kt s. */
+static inline double se3di_pair_kt(const se3di_pair *pair, double s)
+{
+    return pair->kt * se3di_pair_tangent(pair, s);
+}
+
 #define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need, but rn and rt */
 
 typedef struct se3di_contact_settings {

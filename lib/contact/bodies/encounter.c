@@ -276,7 +276,7 @@ void se3di_encounter_eval(se3di_encounter *e)
         return;
     }
     e->elastic = e->pair.kn * e->s * delta;
-    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s);
+    const double kt = se3di_pair_kt(&e->pair, e->s);
     e->normal = fmax(0.0, e->elastic - e->onset * e->pair.dn * e->root_mass * e->root * e->vn);
     e->stick = 2.0 * sqrt(e->pair.pull_off * e->radius * e->elastic);
     e->attraction = e->pair.cohesion * e->radius * delta + e->stick;
@@ -323,7 +323,7 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
         se3di_copy(e->spring, xi);
         return;
     }
-    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s);
+    const double kt = se3di_pair_kt(&e->pair, e->s);
     se3di_encounter_settle(kt, e->pair.friction * e->normal, e->give, e->pull, e->xi, xi);
 }
 
@@ -341,7 +341,7 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 
 void se3di_encounter_spring(const se3di_encounter *e, double wrench[12])
 {
-    const double kt = e->pair.kt * se3di_pair_tangent(&e->pair, e->s), kr = e->pair.kr * e->s;
+    const double kt = se3di_pair_kt(&e->pair, e->s), kr = e->pair.kr * e->s;
     se3di_encounter kept = *e;
     double xi[3], rho[3], twist;
     settled_xi(e, xi);
