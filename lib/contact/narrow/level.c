@@ -21,10 +21,10 @@ typedef void (*plane_finder)(const se3di_solid *i, const se3di_solid *plane,
 /* All in the frame of the mesh. */
 typedef struct level {
     const se3di_mesh_meeting *m;
-    double n[3], on[3]; /* of the plane, towards the solid's centre; a corner in it */
-    double sense;       /* of the triangles seen from there: 1 counter-clockwise, else -1 */
-    double below;       /* how deep the solid is */
-    double way[3];      /* where it passes the plane between its lowest point and its centre */
+    se3di_mesh_face face; /* whose plane it is; its middle is not known */
+    double sense;         /* of the triangles seen from there: 1 counter-clockwise, else -1 */
+    double below;         /* how deep the solid is */
+    double way[3];        /* where it passes the plane between its lowest point and its centre */
     int count;
     int is_over; /* a triangle is there */
     int is_none; /* they are no such floor */
@@ -37,13 +37,6 @@ static plane_finder finder_of(const se3di_solid *solid)
            : se3di_solid_is_smooth(solid)                       ? se3di_plane_smooth
            : se3di_solid_is_line(solid)                         ? se3di_plane_capsule
                                                                 : NULL;
-}
-
-static double height_of(const level *l, const double x[3])
-{
-    double d[3];
-    se3di_sub(x, l->on, d);
-    return se3di_dot(d, l->n);
 }
 
 /* All corners are below the box, or all above it, along an axis. */
@@ -68,23 +61,23 @@ static void set_plane(level *l, const double *const corner[3])
     const se3di_mesh_meeting *m = l->m;
     const double radius = se3di_core_radius(m->solid->shape);
     double down[3], point[3], low[3];
-    se3di_triangle_span(corner, l->n);
-    const double size = se3di_norm(l->n);
+    se3di_triangle_span(corner, l->face.n);
+    const double size = se3di_norm(l->face.n);
     for (int k = 0; k < 3; ++k) { /* not times 1/size: along an axis it is that to the bit */
-        l->n[k] = size > 0.0 ? l->n[k] / size : 0.0;
+        l->face.n[k] = size > 0.0 ? l->face.n[k] / size : 0.0;
     }
-    se3di_copy(corner[0], l->on);
-    const int is_back =
-        m->mesh->shape->closed ? m->mesh->shape->closed < 0 : height_of(l, m->center) < 0.0;
+    se3di_copy(corner[0], l->face.corner);
+    const int is_back = m->mesh->shape->closed ? m->mesh->shape->closed < 0
+                                               : se3di_mesh_height(&l->face, m->center) < 0.0;
     l->sense = is_back ? -1.0 : 1.0;
-    se3di_scale(l->sense, l->n, l->n);
-    se3di_mul(m->mesh->at->R, l->n, down);
+    se3di_scale(l->sense, l->face.n, l->face.n);
+    se3di_mul(m->mesh->at->R, l->face.n, down);
     se3di_scale(-1.0, down, down);
     se3di_core_support(m->solid, down, point);
     se3di_solid_to_local(m->mesh, point, low);
-    se3di_add_scaled(-radius, l->n, low);
-    l->below = -height_of(l, low);
-    const double above = height_of(l, m->center);
+    se3di_add_scaled(-radius, l->face.n, low);
+    l->below = -se3di_mesh_height(&l->face, low);
+    const double above = se3di_mesh_height(&l->face, m->center);
     l->is_none = !(above > 0.0 && l->below < DEEP * m->size);
     if (!l->is_none && l->below > 0.0) {
         double up[3];
@@ -121,11 +114,11 @@ static void meet_level(void *ctx, uint32_t triangle)
     }
     const double least = FLAT * l->m->size;
     for (int k = 0; k < 3; ++k) {
-        l->is_none = l->is_none || !(fabs(height_of(l, corner[k])) < least);
+        l->is_none = l->is_none || !(fabs(se3di_mesh_height(&l->face, corner[k])) < least);
     }
     se3di_triangle_span(corner, span);
     l->is_none =
-        l->is_none || !(l->sense * se3di_dot(span, l->n) > 0.0) || ends(l, triangle, corner);
+        l->is_none || !(l->sense * se3di_dot(span, l->face.n) > 0.0) || ends(l, triangle, corner);
     l->is_over = l->is_over || (!l->is_none && l->below > 0.0 &&
                                 se3di_triangle_nearest(corner, l->way, at, NULL) < least * least);
 }
@@ -143,7 +136,7 @@ static int is_within_grid(const se3di_mesh_meeting *m)
 static int name_points(const level *l)
 {
     se3di_manifold *manifold = l->m->manifold;
-    const uint32_t way = se3di_mesh_way_of(l->n);
+    const uint32_t way = se3di_mesh_way_of(l->face.n);
     for (uint32_t k = 0; k < manifold->count; ++k) {
         se3di_contact_point *p = &manifold->points[k];
         double at[3];
@@ -174,15 +167,15 @@ int se3di_narrow_level(const se3di_mesh_meeting *m)
     if (!(l.below > 0.0)) {
         return 1;
     }
-    se3di_mul(m->mesh->at->R, l.n, n);
-    se3di_perpendicular(n, u);
-    se3di_cross(n, u, w);
-    se3di_shape_pose at = {.R = {u[0], w[0], n[0], u[1], w[1], n[1], u[2], w[2], n[2]}};
-    se3di_solid_to_ground(m->mesh, l.on, at.x);
-    const se3di_solid plane = {&half_space, &at};
     if (!l.is_over) {
         return 0;
     }
+    se3di_mul(m->mesh->at->R, l.face.n, n);
+    se3di_perpendicular(n, u);
+    se3di_cross(n, u, w);
+    se3di_shape_pose at = {.R = {u[0], w[0], n[0], u[1], w[1], n[1], u[2], w[2], n[2]}};
+    se3di_solid_to_ground(m->mesh, l.face.corner, at.x);
+    const se3di_solid plane = {&half_space, &at};
     find(m->solid, &plane, m->manifold);
     return name_points(&l);
 }

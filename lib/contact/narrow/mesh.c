@@ -50,13 +50,6 @@ int se3di_mesh_face_of(const meeting *m, uint32_t triangle, face *f)
     return !(se3di_dot(u, f->n) < 0.0);
 }
 
-double se3di_mesh_height(const face *f, const double x[3])
-{
-    double d[3];
-    se3di_sub(x, f->corner, d);
-    return se3di_dot(d, f->n);
-}
-
 se3di_contact_point *se3di_mesh_add(const meeting *m, const double at[3], const double n[3],
                                     double overlap, double radius, uint32_t feature)
 {

@@ -5,6 +5,7 @@
 
 #include "contact/narrow/internal.h"
 #include "contact/shape/mesh.h"
+#include "math/vec3.h"
 
 #include <math.h>
 
@@ -81,7 +82,13 @@ void se3di_mesh_share_corner(const double (*n)[3], uint32_t count, double *depth
 const double *se3di_mesh_corner(const se3di_shape *s, uint32_t triangle, uint32_t k);
 /* Returns 0 if the solid's centre is behind it: only closed meshes have a behind. */
 int se3di_mesh_face_of(const se3di_mesh_meeting *m, uint32_t triangle, se3di_mesh_face *f);
-double se3di_mesh_height(const se3di_mesh_face *f, const double x[3]);
+static inline double se3di_mesh_height(const se3di_mesh_face *f, const double x[3])
+{
+    double d[3];
+    se3di_sub(x, f->corner, d);
+    return se3di_dot(d, f->n);
+}
+
 /* Which way a normal looks: the same while it turns little. */
 static inline uint32_t se3di_mesh_way_of(const double n[3])
 {
