@@ -22,7 +22,7 @@
 /* How a solid moves: out of a pose and back, by half-turns of a sine and a cosine. */
 typedef struct closed_way {
     double x[3], e[4];
-    double by[6][2]; /* along and about the axes */
+    double by[6][2]; /* along the axes, and about the solid's */
 } closed_way;
 
 typedef struct pressed {
@@ -33,19 +33,14 @@ typedef struct pressed {
 static void place(const closed_way *way, double part, se3di_shape_pose *at)
 {
     const double s = sin(2.0 * PI * part), c = 0.5 * cos(2.0 * PI * part) - 0.5;
-    double turn[3], e[4], whole[4];
+    double turn[3], e[4];
     *at = (se3di_shape_pose){.moves = 0};
     for (int a = 0; a < 3; ++a) {
         at->x[a] = way->x[a] + way->by[a][0] * s + way->by[a][1] * c;
         turn[a] = way->by[3 + a][0] * s + way->by[3 + a][1] * c;
     }
-    const double angle = se3di_norm(turn);
-    e[0] = cos(0.5 * angle);
-    for (int a = 0; a < 3; ++a) {
-        e[1 + a] = angle > 0.0 ? sin(0.5 * angle) * turn[a] / angle : 0.0;
-    }
-    se3di_quat_mul(e, way->e, whole);
-    se3di_quat_to_matrix(whole, at->R);
+    se3di_quat_rotate(way->e, turn, e);
+    se3di_quat_to_matrix(e, at->R);
     se3di_copy(at->x, at->c);
 }
 
