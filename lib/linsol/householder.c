@@ -1,30 +1,22 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 #include "linsol/householder.h"
 
+#include "linsol/mirrors.h"
+
 #include <math.h>
 
 /* Below this part of a square, a length that was brought up to date is measured anew. */
 static const double worn = 1.5e-8;
 
-/* In eight partial sums. */
-static double dot(const double *a, const double *b, size_t n)
+static const se3di_mirrors *find_mirrors(void)
 {
-    double sum[8] = {0.0};
-    size_t i = 0;
-    for (; i + 8 <= n; i += 8) {
-        for (size_t k = 0; k < 8; ++k) {
-            sum[k] += a[i + k] * b[i + k];
-        }
-    }
-    for (size_t k = 0; i + k < n; ++k) {
-        sum[k] += a[i + k] * b[i + k];
-    }
-    return ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+    const se3di_mirrors *avx2 = se3di_mirrors_avx2();
+    return avx2 ? avx2 : se3di_mirrors_portable();
 }
 
-double se3di_householder_reflect(size_t n, double *column)
+static double reflect(const se3di_mirrors *mirrors, size_t n, double *column)
 {
-    double rest = dot(column + 1, column + 1, n - 1), first = column[0];
+    double rest = mirrors->dot(column + 1, column + 1, n - 1), first = column[0];
     if (!(rest > 0.0)) {
         return 0.0;
     }
@@ -36,33 +28,24 @@ double se3di_householder_reflect(size_t n, double *column)
     return (beta - first) / beta;
 }
 
-/* x -= tau v v^T x, v = (1, v[1 ..)), where v[1 + i] are zeros for i below `from`, a multiple of
- * eight, and from `to` on: a sum without these is the same to the bit. */
-static inline void mirror_part(size_t from, size_t to, double tau, const double *restrict v,
-                               double *restrict x)
+double se3di_householder_reflect(size_t n, double *column)
 {
-    const double f = tau * (x[0] + dot(v + 1 + from, x + 1 + from, to - from));
-    if (f == 0.0) {
-        return; /* most pairs of columns of a sparse matrix, at first */
-    }
-    x[0] -= f;
-    for (size_t i = from; i < to; ++i) {
-        x[1 + i] -= f * v[1 + i];
-    }
+    return reflect(find_mirrors(), n, column);
 }
 
 void se3di_householder_mirror(size_t n, double tau, const double *v, double *x)
 {
-    mirror_part(0, n - 1, tau, v, x);
+    find_mirrors()->mirror(0, n - 1, tau, v, x);
 }
 
 void se3di_householder(size_t rows, size_t columns, double *A, double *tau)
 {
+    const se3di_mirrors *mirrors = find_mirrors();
     for (size_t k = 0; k < rows && k < columns; ++k) {
         double *column = A + k * rows + k;
-        tau[k] = se3di_householder_reflect(rows - k, column);
+        tau[k] = reflect(mirrors, rows - k, column);
         for (size_t j = k + 1; j < columns; ++j) {
-            se3di_householder_mirror(rows - k, tau[k], column, A + j * rows + k);
+            mirrors->mirror(0, rows - k - 1, tau[k], column, A + j * rows + k);
         }
     }
 }
@@ -77,7 +60,8 @@ static void swap_columns(size_t rows, double *a, double *b)
 }
 
 /* The length of a column below its first entry, from that of all: now, and when last measured. */
-static void shorten(size_t n, const double *column, double *now, double *measured)
+static void shorten(const se3di_mirrors *mirrors, size_t n, const double *column, double *now,
+                    double *measured)
 {
     double part = fabs(column[0]) / *now, left = (1.0 + part) * (1.0 - part);
     double since = *now / *measured;
@@ -85,16 +69,17 @@ static void shorten(size_t n, const double *column, double *now, double *measure
         *now *= sqrt(left);
         return;
     }
-    *now = *measured = sqrt(dot(column + 1, column + 1, n - 1));
+    *now = *measured = sqrt(mirrors->dot(column + 1, column + 1, n - 1));
 }
 
 void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *pivot, double *tau,
                                double *work)
 {
+    const se3di_mirrors *mirrors = find_mirrors();
     double *now = work, *measured = work + columns;
     for (size_t j = 0; j < columns; ++j) {
         pivot[j] = (int32_t)j;
-        now[j] = measured[j] = sqrt(dot(A + j * rows, A + j * rows, rows));
+        now[j] = measured[j] = sqrt(mirrors->dot(A + j * rows, A + j * rows, rows));
     }
     for (size_t k = 0; k < rows && k < columns; ++k) {
         size_t best = k;
@@ -110,7 +95,7 @@ void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *
             swap_columns(rows, A + k * rows, A + best * rows);
         }
         double *column = A + k * rows + k;
-        tau[k] = se3di_householder_reflect(rows - k, column);
+        tau[k] = reflect(mirrors, rows - k, column);
         size_t from = 0, to = rows - k - 1;
         while (to > 0 && column[to] == 0.0) {
             --to;
@@ -120,9 +105,9 @@ void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *
         }
         from -= from % 8;
         for (size_t j = k + 1; j < columns; ++j) {
-            mirror_part(from, to, tau[k], column, A + j * rows + k);
+            mirrors->mirror(from, to, tau[k], column, A + j * rows + k);
             if (now[j] > 0.0) {
-                shorten(rows - k, A + j * rows + k, &now[j], &measured[j]);
+                shorten(mirrors, rows - k, A + j * rows + k, &now[j], &measured[j]);
             }
         }
     }
@@ -131,15 +116,17 @@ void se3di_householder_pivoted(size_t rows, size_t columns, double *A, int32_t *
 void se3di_householder_apply(size_t rows, size_t count, const double *A, const double *tau,
                              double *x)
 {
+    const se3di_mirrors *mirrors = find_mirrors();
     for (size_t k = count; k-- > 0;) {
-        se3di_householder_mirror(rows - k, tau[k], A + k * rows + k, x + k);
+        mirrors->mirror(0, rows - k - 1, tau[k], A + k * rows + k, x + k);
     }
 }
 
 void se3di_householder_apply_transposed(size_t rows, size_t count, const double *A,
                                         const double *tau, double *x)
 {
+    const se3di_mirrors *mirrors = find_mirrors();
     for (size_t k = 0; k < count; ++k) {
-        se3di_householder_mirror(rows - k, tau[k], A + k * rows + k, x + k);
+        mirrors->mirror(0, rows - k - 1, tau[k], A + k * rows + k, x + k);
     }
 }

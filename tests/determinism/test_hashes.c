@@ -15,6 +15,7 @@
 #include "linsol/block_cg_core.h"
 #include "linsol/kkt_internal.h"
 #include "linsol/kkt_lanes_internal.h"
+#include "linsol/mirrors.h"
 #include "particles/set.h"
 #include "tree/core.h"
 #include "tree/lanes.h"
@@ -49,6 +50,7 @@ AT_LEVEL(se3di_kkt_lane_core, kkt_lane_core_avx512, 2)
 AT_LEVEL(se3di_kernels, particle_kernels_fma, 0)
 AT_LEVEL(se3di_kernels, particle_kernels_avx2, 1)
 AT_LEVEL(se3di_kernels, particle_kernels_avx512, 2)
+AT_LEVEL(se3di_mirrors, mirrors_avx2, 1)
 AT_LEVEL(se3di_sums, sums_avx2, 1)
 AT_LEVEL(se3di_tyre_core, tyre_core_avx2, 1)
 AT_LEVEL(se3di_tree_core, tree_core_avx2, 1)
