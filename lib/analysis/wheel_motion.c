@@ -130,17 +130,40 @@ static void place(const se3di_wheel_motion *m, equations *e, size_t row, uint32_
     }
 }
 
-/* Scale a row to unit length, its right-hand side with it. */
-static void scale_row(equations *e, size_t row)
+/* The next column that one of these bodies begins at, -1: none. */
+static int32_t find_next(const se3di_wheel_motion *m, const uint32_t *bodies, uint32_t count,
+                         int32_t after)
+{
+    int32_t next = -1;
+    for (uint32_t b = 0; b < count; ++b) {
+        const int32_t own = m->column[bodies[b]];
+        next = own > after && (next < 0 || own < next) ? own : next;
+    }
+    return next;
+}
+
+/* Scale a row of these bodies to unit length, its right-hand side with it. */
+static void scale_row(const se3di_wheel_motion *m, equations *e, size_t row, const uint32_t *bodies,
+                      uint32_t count)
 {
     double square = 0.0;
-    for (size_t c = 0; c < e->columns; ++c) {
-        square += e->A[c * e->rows + row] * e->A[c * e->rows + row];
+    for (int32_t at = find_next(m, bodies, count, -1); at >= 0;
+         at = find_next(m, bodies, count, at)) {
+        for (size_t c = (size_t)at; c < (size_t)at + 6; ++c) {
+            square += e->A[c * e->rows + row] * e->A[c * e->rows + row];
+        }
     }
-    for (size_t c = 0; c < e->columns && square > 0.0; ++c) {
-        e->A[c * e->rows + row] /= sqrt(square);
+    if (!(square > 0.0)) {
+        return;
     }
-    e->g[row] /= square > 0.0 ? sqrt(square) : 1.0;
+    const double length = sqrt(square);
+    for (int32_t at = find_next(m, bodies, count, -1); at >= 0;
+         at = find_next(m, bodies, count, at)) {
+        for (size_t c = (size_t)at; c < (size_t)at + 6; ++c) {
+            e->A[c * e->rows + row] /= length;
+        }
+    }
+    e->g[row] /= length;
 }
 
 /* Whether body k of a constraint is one of those before. */
@@ -190,7 +213,7 @@ static se3d_status fill_constraint(const se3di_wheel_motion *m, equations *e, si
         if (curved) {
             SE3DI_TRY(eval_curve(e, constraint, r, &e->g[*row]));
         }
-        scale_row(e, *row);
+        scale_row(m, e, *row, constraint->bodies, constraint->body_count);
     }
     return SE3D_OK;
 }
@@ -212,6 +235,7 @@ static void fill_prescribed(const se3di_wheel_motion *m, equations *e, size_t ro
 {
     const se3di_wheel *wheel = p->wheel;
     const se3di_frame *frame = &e->view->frames[wheel->body];
+    uint32_t bodies[3] = {wheel->body, wheel->body, wheel->body};
     double axes[9];
     double block[6] = {0.0};
     double local[3];
@@ -220,6 +244,8 @@ static void fill_prescribed(const se3di_wheel_motion *m, equations *e, size_t ro
     e->g[row] = curved ? 0.0 : p->rate;
     if (p->coordinate == SE3DI_WHEEL_LENGTH) {
         fill_length(m, e, row, wheel);
+        bodies[1] = m->model->forces[wheel->spring].body_i;
+        bodies[2] = m->model->forces[wheel->spring].body_j;
     } else if (p->coordinate == SE3DI_WHEEL_TURN) {
         se3di_copy(local, block + 3);
     } else {
@@ -232,7 +258,7 @@ static void fill_prescribed(const se3di_wheel_motion *m, equations *e, size_t ro
         e->g[row] -= curved ? se3di_dot(local, centripetal) : 0.0;
     }
     place(m, e, row, wheel->body, block);
-    scale_row(e, row);
+    scale_row(m, e, row, bodies, 3);
 }
 
 static se3d_status fill(const se3di_wheel_motion *m, equations *e, int curved)
