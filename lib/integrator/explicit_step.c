@@ -563,13 +563,16 @@ static se3d_status find_all(se3di_explicit *m, double t)
     return se3di_acceleration_solve(m->equations, t);
 }
 
-/* The model's state is y, at t. */
-static se3d_status show(se3di_explicit *m, const double *y, double t, int project)
+static double find_rough(const se3di_integration *integration)
 {
-    const se3di_integration *integration = m->step.integration;
+    return se3di_state_rough(integration->equations->assembly.model, integration->shows_motion,
+                             integration->settings.tolerance);
+}
+
+/* The model's state is y, at t; `rough` of now. */
+static se3d_status show(se3di_explicit *m, const double *y, double t, int project, double rough)
+{
     const double *work = y + m->count - SE3DI_STATE_WORK;
-    const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
-                                           integration->settings.tolerance);
     int is_finite = 0;
     if (rough > 0.0 && !project) {
         is_finite = m->motion->set_frames(m->equations, y);
@@ -595,7 +598,7 @@ static se3d_status publish(se3di_explicit *m, int at_end)
 {
     const double t = at_end ? m->past->at.time : m->past->at.begin;
     se3di_forces_show(m->assembly->model, !at_end);
-    return show(m, at_end ? m->y1 : m->y0, t, 0);
+    return show(m, at_end ? m->y1 : m->y0, t, 0, find_rough(m->step.integration));
 }
 
 /* Hairer, Norsett, Wanner 1993, sec. II.4: from the derivative and its change over a small step,
@@ -909,11 +912,8 @@ static se3d_status measure_gap(se3di_explicit *m, double limit)
 
 /* *needed: a row of the motion within the last step is to be projected onto the constraints; of
  * a motion that a step keeps well within them all along it is not even compared with them. */
-static se3d_status needs_projection(se3di_explicit *m, int *needed)
+static se3d_status needs_projection(se3di_explicit *m, double rough, int *needed)
 {
-    const se3di_integration *integration = m->step.integration;
-    const double rough = se3di_state_rough(m->assembly->model, integration->shows_motion,
-                                           integration->settings.tolerance);
     *needed = 1;
     if (!(rough > 0.0)) {
         return SE3D_OK;
@@ -923,30 +923,34 @@ static se3d_status needs_projection(se3di_explicit *m, int *needed)
     return SE3D_OK;
 }
 
-int se3di_explicit_is_within(const se3di_integration *integration, double t)
+static int lies_within(const se3di_integration *integration, double t, double rough)
 {
-    const se3di_model *model = integration->equations->assembly.model;
-    const se3di_explicit_past *past = se3di_explicit_past_of(model);
-    const double rough =
-        se3di_state_rough(model, integration->shows_motion, integration->settings.tolerance);
+    const se3di_explicit_past *past =
+        se3di_explicit_past_of(integration->equations->assembly.model);
     return past->dense > 0.0 && t > past->at.begin && t < past->at.time && rough > 0.0 &&
            past->gap >= 0.0 && past->gap <= GAP_PART * rough;
 }
 
+int se3di_explicit_is_within(const se3di_integration *integration, double t)
+{
+    return lies_within(integration, t, find_rough(integration));
+}
+
 /* Nothing is solved on the way: what the solvers need is not made. */
-static se3d_status show_within(se3di_integration *integration, double t)
+static se3d_status show_within(se3di_integration *integration, double t, double rough)
 {
     se3di_explicit m = se3di_explicit_point(integration);
     m.step.integration = integration;
     se3di_forces_show(m.assembly->model, 1);
     m.methods->interpolate(&m, t, m.y);
-    return show(&m, m.y, t, 0);
+    return show(&m, m.y, t, 0, rough);
 }
 
 se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
 {
-    if (se3di_explicit_is_within(integration, t_end)) {
-        return show_within(integration, t_end);
+    double rough = find_rough(integration);
+    if (lies_within(integration, t_end, rough)) {
+        return show_within(integration, t_end, rough);
     }
     se3di_explicit m = se3di_explicit_begin(integration, 1);
     const int at_begin = !(t_end > m.past->at.begin);
@@ -957,10 +961,11 @@ se3d_status se3di_explicit_run(se3di_integration *integration, double t_end)
         return publish(&m, m.past->at.time <= t_end);
     }
     int needs;
+    rough = find_rough(integration); /* contacts may have come */
     se3di_forces_show(m.assembly->model, 1);
-    SE3DI_TRY(needs_projection(&m, &needs));
+    SE3DI_TRY(needs_projection(&m, rough, &needs));
     m.methods->interpolate(&m, t_end, m.y);
-    return show(&m, m.y, t_end, needs);
+    return show(&m, m.y, t_end, needs, rough);
 }
 
 static int is_count(double value)
