@@ -447,13 +447,10 @@ static se3d_status eval_quantity(const se3di_channel *channel, se3di_sample *sam
     return status;
 }
 
-se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sample, double value[4])
+static se3d_status eval_combination(const se3di_combination *c, se3di_sample *sample,
+                                    double value[4])
 {
-    const se3di_combination *c = channel->combination;
     double x[SE3D_EXPRESSION_VARIABLE_MAX] = {0.0};
-    if (!c) {
-        return eval_quantity(channel, sample, value);
-    }
     memset(value, 0, 4 * sizeof *value);
     se3d_status status = se3d_system_get_time(sample->system, x);
     for (size_t k = 0; k < c->count && status >= 0; ++k) {
@@ -466,4 +463,10 @@ se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sampl
     }
     value[0] = x[1];
     return c->expression ? se3d_expression_eval(c->expression, x, value) : SE3D_OK;
+}
+
+se3d_status se3di_channel_eval(const se3di_channel *channel, se3di_sample *sample, double value[4])
+{
+    return channel->combination ? eval_combination(channel->combination, sample, value)
+                                : eval_quantity(channel, sample, value);
 }

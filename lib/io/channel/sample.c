@@ -67,7 +67,7 @@ se3d_status se3di_sample_list_contacts(se3di_sample *sample, const se3d_particle
     return SE3D_OK;
 }
 
-se3di_answer *se3di_sample_find(se3di_sample *sample, se3di_question question, size_t index)
+se3di_answer *se3di_sample_make(se3di_sample *sample, se3di_question question, size_t index)
 {
     while (index >= sample->capacity[question]) {
         const size_t count = sample->capacity[question];

@@ -48,7 +48,14 @@ void se3di_sample_renew(se3di_sample *sample, const se3d_solver_stats *stats);
  * last step, which is usual. The list is valid until the state changes. */
 se3d_status se3di_sample_list_contacts(se3di_sample *sample, const se3d_particles *set,
                                        se3di_particle_contacts *contacts);
-/* A place for the answer to a question about element `index`. @return NULL: out of memory */
-se3di_answer *se3di_sample_find(se3di_sample *sample, se3di_question question, size_t index);
+/* A place for the answer to a question about element `index`, which is made if it is not there.
+ * @return NULL: out of memory */
+se3di_answer *se3di_sample_make(se3di_sample *sample, se3di_question question, size_t index);
+static inline se3di_answer *se3di_sample_find(se3di_sample *sample, se3di_question question,
+                                              size_t index)
+{
+    return index < sample->capacity[question] ? &sample->answers[question][index]
+                                              : se3di_sample_make(sample, question, index);
+}
 
 #endif
