@@ -25,10 +25,11 @@ se3d_status se3di_drawing_get_poses(const se3d_model *model, double *pose)
 {
     se3d_status status = SE3D_OK;
     for (size_t k = 0; k < model->body_count && status >= 0; ++k, pose += SE3DI_POSE) {
-        const se3d_body body = model->bodies[k].body;
-        status = se3d_body_get_position(model->system, body, pose);
+        se3d_body_motion motion;
+        status = se3d_body_get_motion(model->system, model->bodies[k].body, &motion);
         if (status >= 0) {
-            status = se3d_body_get_orientation(model->system, body, pose + 3);
+            memcpy(pose, motion.r, sizeof motion.r);
+            memcpy(pose + 3, motion.p, sizeof motion.p);
         }
     }
     return status;
@@ -47,36 +48,58 @@ typedef struct box {
     double high[3];
 } box;
 
-/* The box around a shape's own box, in the ground frame. */
-static void widen_shape(const se3di_shape_entry *entry, const double *pose, box *b)
+/* The corners of a shape's own box, in the frame of its body; returns whether it has one. */
+static bool find_corners(const se3di_shape_entry *entry, double corners[8][3])
 {
     const se3d_model_shape *s = &entry->shape;
     const se3di_shape_row *row = se3di_shape_row_of(s);
     double half[3] = {0.0, 0.0, 0.0};
     double on_body[9];
-    double on_ground[9];
     if (!row->enclose && !entry->mesh) {
-        return;
+        return false;
     }
     if (row->enclose) {
         row->enclose(s, half);
     }
     se3di_rotation_to_matrix(s->orientation, on_body);
-    se3di_rotation_to_matrix(pose + 3, on_ground);
     for (int k = 0; k < 8; ++k) {
-        double at[3];
         double corner[3];
         for (int i = 0; i < 3; ++i) {
             const double low = entry->mesh ? entry->mesh->low[i] : -half[i];
             corner[i] = !(k & 1 << i) ? low : entry->mesh ? entry->mesh->high[i] : half[i];
         }
-        se3di_drawing_turn(s->position, on_body, corner, at);
-        se3di_drawing_turn(pose, on_ground, at, at);
-        widen(at, b->low, b->high);
+        se3di_drawing_turn(s->position, on_body, corner, corners[k]);
+    }
+    return true;
+}
+
+/* Of the samples of a motion every so many are measured. */
+static size_t stride_of(const se3di_poses *poses)
+{
+    return 1 + poses->count / 64;
+}
+
+/* The box around a shape's own box at these times, in the ground frame. */
+static void widen_shape(const se3d_model *model, const se3di_shape_entry *entry,
+                        const se3di_poses *poses, box *b)
+{
+    const size_t body = se3di_drawing_find_body(model, entry->shape.body);
+    double corners[8][3];
+    if (!find_corners(entry, corners)) {
+        return;
+    }
+    for (size_t s = 0; s < poses->count; s += stride_of(poses)) {
+        const double *pose = poses->values + (s * poses->bodies + body) * SE3DI_POSE;
+        double on_ground[9], at[3];
+        se3di_rotation_to_matrix(pose + 3, on_ground);
+        for (int k = 0; k < 8; ++k) {
+            se3di_drawing_turn(pose, on_ground, corners[k], at);
+            widen(at, b->low, b->high);
+        }
     }
 }
 
-/* The box around all at one time. */
+/* The box around all but shapes at one time. */
 static void widen_all(const se3d_model *model, const double *poses, box *b)
 {
     double at[3];
@@ -93,10 +116,6 @@ static void widen_all(const se3d_model *model, const double *poses, box *b)
     }
     for (size_t k = 0; k < model->body_count; ++k) {
         widen(poses + SE3DI_POSE * k, b->low, b->high);
-    }
-    for (size_t k = 0; k < model->shape_count; ++k) {
-        const size_t body = se3di_drawing_find_body(model, model->shapes[k].shape.body);
-        widen_shape(&model->shapes[k], poses + SE3DI_POSE * body, b);
     }
 }
 
@@ -170,7 +189,10 @@ void se3di_drawing_measure(const se3d_model *model, const se3di_poses *poses, se
     box b = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     double own = 0.0; /* the largest at one time */
     const bool is_vehicle = model->body_count > 2 && !is_grounded(model);
-    for (size_t s = 0; s < poses->count; s += 1 + poses->count / 64) {
+    for (size_t k = 0; k < model->shape_count; ++k) {
+        widen_shape(model, &model->shapes[k], poses, &b);
+    }
+    for (size_t s = 0; s < poses->count; s += stride_of(poses)) {
         box now = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
         const double *at = poses->values + s * poses->bodies * SE3DI_POSE;
         widen_all(model, at, &b);

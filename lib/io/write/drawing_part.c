@@ -28,6 +28,10 @@ void se3di_drawing_to_ground(const double pose[SE3DI_POSE], const double local[3
 
 size_t se3di_drawing_find_body(const se3d_model *model, se3d_body body)
 {
+    const size_t usual = body.index1 - (size_t)1; /* they were made in this order */
+    if (usual < model->body_count && model->bodies[usual].body.index1 == body.index1) {
+        return usual;
+    }
     for (size_t k = 0; k < model->body_count; ++k) {
         if (model->bodies[k].body.index1 == body.index1) {
             return k;

@@ -88,12 +88,22 @@ static void flush(batch *b)
     b->used = 0;
 }
 
+/* Two bytes or four, which compilers make one store of. */
 static void put_little(batch *b, uint32_t value, size_t size)
 {
     if (b->used + size > sizeof b->bytes) {
         flush(b);
     }
-    se3di_little_put(b->bytes + b->used, value, size);
+    unsigned char *at = b->bytes + b->used;
+    if (size == 2) {
+        at[0] = (unsigned char)value;
+        at[1] = (unsigned char)(value >> 8);
+    } else {
+        at[0] = (unsigned char)value;
+        at[1] = (unsigned char)(value >> 8);
+        at[2] = (unsigned char)(value >> 16);
+        at[3] = (unsigned char)(value >> 24);
+    }
     b->used += size;
 }
 
@@ -174,13 +184,22 @@ long se3di_glb_add_floats(se3di_glb *glb, const double *values, size_t count, se
     return view;
 }
 
+/* A component of a unit quaternion in steps of 1/32767, halves away from zero. */
+static int32_t to_short(double x)
+{
+    const double cut = !(x < 1.0) ? 1.0 : x < -1.0 ? -1.0 : x;
+    const double size = 32767.0 * fabs(cut);
+    const int32_t whole = (int32_t)size;
+    const int32_t near = whole + (size - whole >= 0.5);
+    return cut < 0.0 ? -near : near;
+}
+
 long se3di_glb_add_rotations(se3di_glb *glb, const double *values, size_t count)
 {
     const long view = begin(glb, count * 8, 0);
     batch numbers = {.glb = glb};
     for (size_t k = 0; k < 4 * count; ++k) {
-        const long value = lround(32767.0 * fmax(-1.0, fmin(1.0, values[k])));
-        put_little(&numbers, (uint32_t)(value & 0xffff), 2);
+        put_little(&numbers, (uint32_t)to_short(values[k]) & 0xffff, 2);
     }
     flush(&numbers);
     describe(glb, view, NUMBER_SHORT, count, "VEC4");
