@@ -561,23 +561,47 @@ double se3di_loop_system_cost(const se3di_loop_system *s)
 
 /* ---- factors and solutions ---- */
 
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+typedef int64_t pair_mask __attribute__((vector_size(16)));
+#define PAIR 2
+
+static const pair *pair_at(const double *x)
+{
+    return (const pair *)(const void *)x;
+}
+
+static void find_bounds(se3di_loop_system *s)
+{
+    for (int32_t k = 0; k < SE3DI_STRIP * s->row_strips; k += PAIR) {
+        const pair bound = *pair_at(s->least + k) * *pair_at(s->weight + k);
+        memcpy(s->bound + k, &bound, sizeof bound);
+    }
+}
+
+/* Which pivots are small. Lanes without a row have the weight 0. */
+static void look_at_pivots(se3di_loop_system *s)
+{
+    pair_mask is_refined = {0}, is_near = {0};
+    for (int32_t k = 0; k < SE3DI_STRIP * s->row_strips; k += PAIR) {
+        const pair pivot = *pair_at(s->pivot + k);
+        is_refined |= pivot * EXACT * *pair_at(s->weight + k) > 1.0;
+        is_near |= pivot * *pair_at(s->bound + k) > CLEAR / NEAR;
+    }
+    s->is_refined = (is_refined[0] | is_refined[1]) != 0;
+    s->is_near = (is_near[0] | is_near[1]) != 0;
+}
+
 int se3di_loop_system_factor(se3di_loop_system *s, const se3di_tree *tree)
 {
-    const int32_t rows = SE3DI_STRIP * s->row_strips;
     if (s->is_dull) {
         s->is_fine = 0;
         return 0;
     }
-    for (int32_t k = 0; k < rows; ++k) {
-        s->bound[k] = s->least[k] * s->weight[k];
-    }
+    find_bounds(s);
     s->is_fine = s->core->factor(s, tree);
     s->is_refined = s->is_near = 0;
-    for (int32_t k = 0; k < s->row_strips && s->is_fine; ++k) {
-        for (int32_t at = SE3DI_STRIP * k; at < SE3DI_STRIP * k + s->strips[k].count; ++at) {
-            s->is_refined |= s->pivot[at] * EXACT * s->weight[at] > 1.0;
-            s->is_near |= s->pivot[at] * s->bound[at] > CLEAR / NEAR;
-        }
+    if (s->is_fine) {
+        look_at_pivots(s);
     }
     return s->is_fine;
 }

@@ -646,7 +646,7 @@ static se3d_status scatter_strips(se3di_tree_loops *loops)
     const se3di_loop_system *system = &loops->system;
     const se3di_constraint *constraints = loops->tree->model->constraints;
     double sum = 0.0;
-    for (uint32_t k = 0; k < loops->count; ++k) {
+    for (uint32_t k = 0; k < loops->count && !loops->is_whole; ++k) {
         memset(loops->lambda + constraints[loops->constraints[k]].row_begin, 0,
                (size_t)loops->rows[k] * sizeof *loops->lambda);
     }
