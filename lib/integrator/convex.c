@@ -414,12 +414,12 @@ static se3d_status conclude(se3di_convex *c, se3di_equations *equations, double 
     se3di_convex_follow(c, model);
     model->contacts.followed = c->followed;
     model->contacts.followed_count = c->followed_count;
-    const se3d_status status = se3di_state_prepare(equations, t1);
+    se3d_status status = se3di_state_prepare(equations, t1);
     model->contacts.followed = NULL;
     model->contacts.followed_count = 0;
     if (status >= 0) {
         se3di_convex_record(c, model);
-        se3di_convex_store(c, &equations->assembly, taken);
+        status = se3di_convex_store(c, &equations->assembly, taken, equations->error);
     }
     model->contacts.frozen = NULL;
     SE3DI_TRY(status);

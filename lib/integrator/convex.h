@@ -168,6 +168,8 @@ typedef struct se3di_convex {
     double *marks; /* [6 * contacts of the list] */
     se3di_body_contact *followed;
     size_t followed_count, mark_capacity, followed_capacity;
+    double *lawful; /* [contacts at the end]: the energy of their springs by their laws */
+    size_t lawful_capacity;
     size_t changed;     /* slopes of contacts since the preconditioner was made */
     size_t drifting;    /* free bodies */
     int32_t sleeps;     /* it is wanted */
@@ -234,6 +236,15 @@ static inline void se3di_convex_press(const se3di_convex_contact *contact, doubl
             se3di_add_scaled(sign, turning, body + 3);
         }
     }
+}
+/* A body without constraints, by its place, less what an impulse on it [6] makes of its velocity. */
+static inline void se3di_convex_let_go(const se3di_convex *c, size_t body, const double p[6])
+{
+    const double *mobility = c->mobility + 10 * body;
+    double *v = c->v + 6 * body, turned[3];
+    se3di_mul(mobility + 1, p + 3, turned);
+    se3di_add_scaled(-mobility[0], p, v);
+    se3di_sub(v + 3, turned, v + 3);
 }
 /* The impulse at a velocity of the point, and minus its derivative [3 x 3]; `slope` may be NULL. */
 void se3di_convex_impulse(const se3di_convex_contact *contact, double h, const double v[3],
@@ -391,8 +402,9 @@ int se3di_convex_gains(const se3di_convex *c, const se3di_assembly *assembly);
 /* The energy that the springs of the contacts hold at the start of the step; */
 void se3di_convex_hold(const se3di_convex *c, const se3di_model *model);
 /* those of the contacts that were found at the end of the step, after `taken` [J] was taken
- * from the bodies: no more than they held before and that. */
-void se3di_convex_store(const se3di_convex *c, const se3di_assembly *assembly, double taken);
+ * from the bodies: no more than they held before and that. @return OK, NO_MEMORY */
+se3d_status se3di_convex_store(se3di_convex *c, const se3di_assembly *assembly, double taken,
+                               se3di_error *error);
 
 /* convex_jam.c: what is driven against something that cannot give way goes by its law. Returns
  * whether anything did not. */

@@ -599,12 +599,14 @@ static void record_contact(const se3di_convex *convex, const se3di_convex_contac
 {
     se3di_body_contact *nearest = NULL;
     double least = 1.0;
-    for (; next < end && !se3di_convex_is_before(c->record, next); ++next) {
-        const double distance = distance_of(c, model, next);
-        if (next->kind == SE3DI_CONTACT_NEW && is_same(c->record, next)) {
-            record_one(convex, c, model, next);
+    for (se3di_body_contact *r = next; r < end && !se3di_convex_is_before(c->record, r); ++r) {
+        if (r->kind == SE3DI_CONTACT_NEW && is_same(c->record, r)) {
+            record_one(convex, c, model, r);
             return;
         }
+    }
+    for (; next < end && !se3di_convex_is_before(c->record, next); ++next) {
+        const double distance = distance_of(c, model, next);
         if (distance < least) {
             least = distance;
             nearest = next;
@@ -635,7 +637,6 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
         memset(r->roll, 0, sizeof r->roll);
         memset(r->wander, 0, sizeof r->wander);
         r->twist = 0.0;
-        set_anchors(model, r, none);
     }
     for (size_t k = 0; k < convex->shape_count; ++k) {
         const se3di_convex_contact *c = &convex->contacts[k];
@@ -643,5 +644,11 @@ void se3di_convex_record(const se3di_convex *convex, se3di_model *model)
             ++next;
         }
         record_contact(convex, c, model, next, end);
+    }
+    for (se3di_body_contact *r = model->contacts.next; r < end; ++r) {
+        if (r->kind == SE3DI_CONTACT_NEW && /* none acted there */
+            !se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
+            set_anchors(model, r, none);
+        }
     }
 }

@@ -236,11 +236,11 @@ static double law_energy(const se3di_model *model, const se3di_body_contact *r)
 }
 
 /* At the end of a step, when the velocities were those of the state: of what is followed half a
- * step ago, when it was as much deeper as its record says until now. */
-static double energy_then(const se3di_model *model, const se3di_body_contact *r)
+ * step ago, when it was as much deeper as its record says until now; `lawful` is that of now. */
+static double energy_then(const se3di_model *model, const se3di_body_contact *r, double lawful)
 {
     if (!(fabs(r->energy) > 0.0)) {
-        return law_energy(model, r);
+        return lawful;
     }
     se3di_body_contact then = *r;
     then.overlap = fmax(0.0, r->overlap + r->energy);
@@ -274,6 +274,15 @@ static double gather(const se3di_convex *convex, const se3di_body_contact *r, si
     return sum;
 }
 
+/* The springs of a contact at the end, as if nothing limited them. */
+static double store_one(const se3di_convex *convex, const se3di_model *model, size_t at)
+{
+    se3di_body_contact *r = &model->contacts.next[at];
+    convex->lawful[at] = law_energy(model, r);
+    r->energy = energy_then(model, r, convex->lawful[at]);
+    return r->energy;
+}
+
 /* The springs of each pair. Returns what all hold. */
 static double store_pairs(const se3di_convex *convex, se3di_model *model)
 {
@@ -285,8 +294,7 @@ static double store_pairs(const se3di_convex *convex, se3di_model *model)
         const int frozen = se3di_contact_is_frozen(model, next[k].shape_i, next[k].shape_j);
         double most = 0.0;
         for (end = k; end < count && !se3di_convex_is_before(&next[k], &next[end]); ++end) {
-            next[end].energy = frozen ? next[end].energy : energy_then(model, &next[end]);
-            most += next[end].energy;
+            most += frozen ? 0.0 : store_one(convex, model, end);
         }
         if (frozen) {
             continue;
@@ -318,7 +326,7 @@ static double keep_leaps(const se3di_convex *convex, const se3di_assembly *assem
         for (size_t k = 0; k < model->contacts.next_count && (!pass || room > 0.0); ++k) {
             se3di_body_contact *r = &model->contacts.next[k];
             if (!se3di_contact_is_frozen(model, r->shape_i, r->shape_j)) {
-                const double gap = fmax(0.0, law_energy(model, r) - r->energy);
+                const double gap = fmax(0.0, convex->lawful[k] - r->energy);
                 room += pass ? 0.0 : gap;
                 r->energy += pass ? share * gap : 0.0;
             }
@@ -327,9 +335,15 @@ static double keep_leaps(const se3di_convex *convex, const se3di_assembly *assem
     return fmin(lent, room);
 }
 
-void se3di_convex_store(const se3di_convex *convex, const se3di_assembly *assembly, double taken)
+se3d_status se3di_convex_store(se3di_convex *convex, const se3di_assembly *assembly, double taken,
+                               se3di_error *error)
 {
     se3di_model *model = assembly->model;
+    if (se3di_array_reserve_at(&model->allocator, &convex->lawful, &convex->lawful_capacity,
+                               model->contacts.next_count, sizeof *convex->lawful) < 0) {
+        return se3di_error_set(error, SE3D_ERR_NO_MEMORY, "t = %g s: no memory for %zu contacts",
+                               model->time, model->contacts.next_count);
+    }
     double sum = store_pairs(convex, model), most = taken;
     for (size_t k = 0; k < convex->shape_count; ++k) {
         most += convex->contacts[k].held;
@@ -342,4 +356,5 @@ void se3di_convex_store(const se3di_convex *convex, const se3di_assembly *assemb
             r->energy *= most / sum;
         }
     }
+    return SE3D_OK;
 }

@@ -63,6 +63,7 @@ void se3di_convex_destroy(se3di_convex *c, const se3d_allocator *allocator)
     se3di_free(allocator, c->asleep, c->sleep_capacity, 1);
     se3di_free(allocator, c->marks, c->mark_capacity, 6 * sizeof *c->marks);
     se3di_free(allocator, c->followed, c->followed_capacity, sizeof *c->followed);
+    se3di_free(allocator, c->lawful, c->lawful_capacity, sizeof *c->lawful);
     se3di_free(allocator, c->nest, c->nest_capacity, sizeof *c->nest);
     se3di_free(allocator, c->reach, c->reach_capacity, sizeof *c->reach);
     se3di_free(allocator, c->ended, c->ended_capacity, sizeof *c->ended);

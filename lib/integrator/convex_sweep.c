@@ -301,11 +301,7 @@ int se3di_convex_sweep(se3di_convex *c, const se3di_convex_island *island)
 void se3di_convex_relax(se3di_convex *c, const se3di_convex_island *island)
 {
     for (size_t k = island->body; k < island->body_end; ++k) {
-        const double *mobility = c->mobility + 10 * k, *gradient = c->gradient + 6 * k;
-        double turned[3];
-        se3di_mul(mobility + 1, gradient + 3, turned);
-        se3di_add_scaled(-mobility[0], gradient, c->v + 6 * k);
-        se3di_sub(c->v + 6 * k + 3, turned, c->v + 6 * k + 3);
+        se3di_convex_let_go(c, k, c->gradient + 6 * k);
     }
     (void)sweep_all(c, island, SWEEPS_BETWEEN);
 }

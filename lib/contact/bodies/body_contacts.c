@@ -70,6 +70,7 @@ typedef struct visit {
     void *ctx;
     se3di_pair_visitor keep; /* of a pair that stays; NULL: it is looked at as others are */
     se3di_model *noting;     /* the model, if what is found may be kept */
+    int places_only;         /* no forces: those of the step under way are known without */
 } visit;
 
 /* What joints leave of places that are 0 is 0, so that those of a body at rest are the same. */
@@ -129,7 +130,9 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
     }
     se3di_encounter_share(points, manifold.count);
     for (uint32_t k = 0; k < manifold.count; ++k) {
-        se3di_encounter_eval(&points[k]);
+        if (!v->places_only) {
+            se3di_encounter_eval(&points[k]);
+        }
         SE3DI_TRY(v->visitor(v->ctx, &points[k]));
     }
     return SE3D_OK;
@@ -138,7 +141,7 @@ static se3d_status visit_pair(void *ctx, uint32_t i, uint32_t j)
 se3d_status se3di_contacts_visit(const se3di_model *model, double t, se3di_contact_visitor visitor,
                                  void *ctx)
 {
-    visit v = {model, t - model->contacts.time, visitor, ctx, NULL, NULL};
+    visit v = {model, t - model->contacts.time, visitor, ctx, NULL, NULL, 0};
     return se3di_broad_visit(model, visit_pair, &v);
 }
 
@@ -358,7 +361,12 @@ static se3d_status note(void *ctx, const se3di_encounter *e)
                                contacts->next_count + 1);
     }
     contacts->kept += e->memory ? 1 : 0;
-    se3di_encounter_record(e, &contacts->next[contacts->next_count++]);
+    se3di_body_contact *record = &contacts->next[contacts->next_count++];
+    if (p->model->steps_apart) {
+        se3di_encounter_record_place(e, record);
+    } else {
+        se3di_encounter_record(e, record);
+    }
     return SE3D_OK;
 }
 
@@ -409,7 +417,8 @@ static se3d_status note_all(se3di_model *model, double t, double overlap_limit, 
     model->contacts.next_count = 0;
     model->contacts.kept = 0;
     model->contacts.next_time = t;
-    visit v = {model, t - model->contacts.time, note, &p, keep_pair, model};
+    const int places_only = model->steps_apart;
+    visit v = {model, t - model->contacts.time, note, &p, keep_pair, model, places_only};
     return model->shape_slots.count < 2 ? SE3D_OK : se3di_broad_visit(model, visit_pair, &v);
 }
 

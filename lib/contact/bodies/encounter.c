@@ -382,13 +382,26 @@ double se3di_encounter_power(const se3di_encounter *e)
     return -se3di_dot(e->force, e->v) - se3di_dot(e->moment, spin);
 }
 
-void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record)
+void se3di_encounter_record_place(const se3di_encounter *e, se3di_body_contact *record)
 {
-    double xi[3], at[3], half[3];
+    const double *pi = e->model->frames[e->body[0]].p;
+    const double back[4] = {pi[0], -pi[1], -pi[2], -pi[3]};
     memset(record, 0, sizeof *record);
     record->shape_i = e->shape_i;
     record->shape_j = e->shape_j;
     record->feature = e->at->feature;
+    se3di_quat_mul(back, e->model->frames[e->body[1]].p, record->turn);
+    se3di_copy(e->at->point, record->point);
+    se3di_copy(e->at->normal, record->normal);
+    record->overlap = e->at->overlap;
+    record->inverse_mass = settled_mass(e);
+    se3di_encounter_spins(e, record->spin);
+}
+
+void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record)
+{
+    double xi[3], at[3], half[3];
+    se3di_encounter_record_place(e, record);
     settled_xi(e, xi);
     settled_roll(e, record->roll, &record->twist);
     for (int k = 0; k < 2; ++k) {
@@ -399,14 +412,6 @@ void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record
         se3di_mul_transposed(e->model->frames[e->body[k]].A, at,
                              k ? record->anchor_j : record->anchor_i);
     }
-    const double *pi = e->model->frames[e->body[0]].p;
-    const double back[4] = {pi[0], -pi[1], -pi[2], -pi[3]};
-    se3di_quat_mul(back, e->model->frames[e->body[1]].p, record->turn);
-    se3di_copy(e->at->point, record->point);
-    se3di_copy(e->at->normal, record->normal);
-    record->overlap = e->at->overlap;
-    record->inverse_mass = settled_mass(e);
-    se3di_encounter_spins(e, record->spin);
     se3di_copy(e->force, record->force);
     se3di_copy(e->moment, record->torque);
 }

@@ -128,7 +128,8 @@ void se3di_encounter_wander_rate(const se3di_encounter *e, const double middle[3
 /* J^-1 a of a body, ground frame; zero if it has no inertia. */
 void se3di_encounter_turn_by(const se3di_body *body, const se3di_frame *frame, const double a[3],
                              double out[3]);
-/* What is remembered of it. */
+/* What is remembered of it; of one that has no forces yet, where it is alone. */
 void se3di_encounter_record(const se3di_encounter *e, se3di_body_contact *record);
+void se3di_encounter_record_place(const se3di_encounter *e, se3di_body_contact *record);
 
 #endif
