@@ -194,10 +194,12 @@ static int is_small(const se3di_convex_contact *contact, const double change[9])
 static void set_slope(se3di_convex *c, se3di_convex_contact *contact, const double slope[9])
 {
     double change[9];
+    int differs = 0; /* those of what sticks, and of what has parted, do not */
     for (int k = 0; k < 9; ++k) {
         change[k] = slope[k] - contact->slope[k];
+        differs |= change[k] != 0.0;
     }
-    if (is_small(contact, change)) {
+    if (!differs || is_small(contact, change)) {
         return;
     }
     memcpy(contact->slope, slope, sizeof contact->slope);

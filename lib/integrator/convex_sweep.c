@@ -201,8 +201,11 @@ static double settle(se3di_convex *c, se3di_convex_contact *contact)
     }
     se3di_sub(p, contact->impulse, change);
     se3di_copy(p, contact->impulse);
-    apply(c, contact, change);
-    return se3di_norm(change);
+    const double size = se3di_norm(change);
+    if (!(size <= 0.0)) { /* most do not touch any more where much parts */
+        apply(c, contact, change);
+    }
+    return size;
 }
 
 double se3di_convex_foresee(const se3di_convex *c, se3di_convex_contact *contact, double ahead[3])
