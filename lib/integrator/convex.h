@@ -84,6 +84,7 @@ typedef struct se3di_convex_island {
     int is_traced;           /* nothing acts but impacts whose impulses are known */
     double gain;             /* energy that the step itself gave [J] */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
+    double accuracy;         /* of impulses: what may be left of the gradient */
     int32_t is_struck;       /* something in it was an impact, see convex_control.c */
     int32_t reserved;
 } se3di_convex_island;
@@ -237,7 +238,7 @@ static inline void se3di_convex_press(const se3di_convex_contact *contact, doubl
         }
     }
 }
-/* A body without constraints, by its place, less what an impulse on it [6] makes of its velocity. */
+/* A body without constraints, by place, less what an impulse on it [6] makes of its velocity. */
 static inline void se3di_convex_let_go(const se3di_convex *c, size_t body, const double p[6])
 {
     const double *mobility = c->mobility + 10 * body;

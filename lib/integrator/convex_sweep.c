@@ -11,9 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-#define SWEEPS         10
+#define SWEEPS         4
 #define SWEEPS_AT_REST 2    /* impulses are those of the step before */
-#define SWEEPS_BETWEEN 8    /* guesses of all contacts at once */
+#define SWEEPS_BETWEEN 16   /* guesses of all contacts at once */
 #define LOOKS          3    /* for an impulse of a spring that is not linear */
 #define CALM           1e-3 /* of the largest impulse: changes that need no other sweep */
 #define PASSED_ON      0.2  /* of such a change: those on the same bodies are looked at again */
