@@ -358,6 +358,9 @@ typedef struct se3d_run_options {
     se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
     const char *temporary; /* folder in which packed units (`fmus`) are unpacked, into a private one
                               that is removed with the end of their analysis; NULL: /tmp */
+    int32_t keep;     /* not 0: a run.checkpoint of the last rows before those at the end stays when
+                         the run is complete, to go on with a longer duration */
+    int32_t reserved; /* 0 */
 } se3d_run_options;
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */
@@ -376,8 +379,10 @@ static inline se3d_run_options se3d_run_options_default(void)
  * analysis fails, the rows so far are kept; if it is interrupted, they end with one at the time
  * that was reached. A run that resumes leaves the same files as one that was never ended, to the
  * byte; it must be of the same model files, options and version of the library, and the results
- * must be as they were left. The checkpoint is removed when a run is complete, or when one begins
- * anew. One that cannot be written is told to the log, and the one before stays.
+ * must be as they were left. Durations of analyses may be others in files and options, of the one
+ * under way where nothing that was done depends on it, and of later ones. The checkpoint is removed
+ * when a run is complete, unless it is to be kept, or when one begins anew. One that cannot be
+ * written is told to the log, and the one before stays.
  * @param[in] options  NULL: the defaults
  * @param[out] error   filled on failure: when, where, why and what to try; may be NULL
  * @return OK or INFO_* of the last analysis, NULL, INVALID_ARGUMENT (options), STATE (no analysis,

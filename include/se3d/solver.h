@@ -270,6 +270,14 @@ SE3D_API se3d_status se3d_solver_get_formulation(const se3d_solver *solver, cons
 SE3D_API se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time,
                                             const char **left);
 
+/* Get whether the steps so far would be others if the runs had another end (`horizon`): without
+ * `step` methods of equal steps choose theirs by the whole run, and the first step of others is no
+ * longer than that. Else a solver with another horizon goes on with the same bits.
+ * @param[out] foresees  0, 1
+ * @return OK, NULL.
+ * @since 0.1 */
+SE3D_API se3d_status se3d_solver_get_foresight(const se3d_solver *solver, int32_t *foresees);
+
 /* Write what a solver knows beside the state of its system (se3d_snapshot_write) as bytes, which
  * are the same on every machine: what it has counted, the records of its events and what it has
  * seen of them in the step under way, the start that it has changed, the method it has left.
@@ -281,9 +289,10 @@ SE3D_API se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *t
 SE3D_API se3d_status se3d_solver_write(const se3d_solver *solver, void *bytes, size_t capacity,
                                        size_t *size);
 
-/* Read what se3d_solver_write wrote into a new solver of the same definition, with the same events,
- * made in the same order, of a system whose state was restored (se3d_snapshot_restore). It goes on
- * as if it had run from the beginning. After a failure it is as new.
+/* Read what se3d_solver_write wrote into a new solver of the same definition (but for the horizon,
+ * see se3d_solver_get_foresight), with the same events, made in the same order, of a system whose
+ * state was restored (se3d_snapshot_restore). It goes on as if it had run from the beginning.
+ * After a failure it is as new.
  * @param[in] bytes  [size]
  * @param[in] size   of `bytes`
  * @return OK, NULL, INVALID_ARGUMENT (no such bytes), STATE (of another analysis), NO_MEMORY, or a

@@ -347,6 +347,7 @@ se3d_status se3di_equal_steps_choose(se3di_integration *integration, double t_en
                .t_end = t_end,
                .h = fmin(STEP_LONG, integration->settings.step_most),
                .speed = {1e-12, 1e-12}};
+    integration->foresees = 1;
     const se3d_status status = choose(&t);
     integration->at_kink = 0;
     const int came_to_end = !(model->time < t_end);

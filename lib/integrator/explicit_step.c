@@ -610,6 +610,7 @@ static se3d_status choose_first(se3di_explicit *m, double *first)
     const double rest = m->step.integration->end - m->past->at.time;
     double h0 = 0.01 / (fmax(d1 * m->tolerance, 1e-5));
     h0 = limit > 0.0 ? fmin(h0, limit) : h0;
+    m->step.integration->foresees |= rest > 0.0 && rest < h0;
     h0 = rest > 0.0 ? fmin(h0, rest) : h0;
     se3di_error ignored = {0};
     se3di_error *error = m->equations->error;

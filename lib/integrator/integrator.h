@@ -143,7 +143,7 @@ struct se3di_integration {
     const se3di_step_list *repeat; /* and these are made, whatever their errors; NULL: own ones */
     size_t repeated;               /* how many of them are over, */
     uint64_t repeated_number;      /* of this motion */
-    int32_t reserved;
+    int32_t foresees;              /* `end` has made some step another one */
 };
 
 /* The methods but AUTO, X(METHOD, name): se3di_integrator_<name> is the table of

@@ -128,6 +128,7 @@ static se3d_status place_start(se3di_integration *integration, double h)
     se3d_status status = estimate_jerk(integration, h, past.vdot, past.a);
     if (rest > 0.0 && rest < h &&
         se3di_adaptive_may_cut(integration->equations, status, integration->end, &told)) {
+        integration->foresees = 1;
         status = estimate_jerk(integration, rest, past.vdot, past.a);
     }
     SE3DI_TRY(status);

@@ -349,3 +349,12 @@ se3d_status se3d_solver_get_switch(const se3d_solver *solver, double *time, cons
     *left = run->left ? run->left->name : "";
     return SE3D_OK;
 }
+
+se3d_status se3d_solver_get_foresight(const se3d_solver *solver, int32_t *foresees)
+{
+    if (!solver || !foresees) {
+        return SE3D_ERR_NULL;
+    }
+    *foresees = solver->run.integration.foresees;
+    return SE3D_OK;
+}

@@ -7,10 +7,11 @@
 #include "system/solver.h"
 
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 #define MARK    UINT64_C(0x564C4F5344334553) /* "SE3DSOLV" */
-#define VERSION UINT64_C(9)
+#define VERSION UINT64_C(10)
 #define FRAME   (3 * sizeof(uint64_t)) /* mark, version, checksum */
 
 static void code_counters(se3di_coder *c, se3di_run *run)
@@ -25,6 +26,10 @@ static void code_counters(se3di_coder *c, se3di_run *run)
         se3di_code_numbers(c, numbers[k], 1);
     }
     se3di_code_flag(c, &run->integration.owes);
+    se3di_code_flag(c, &run->integration.foresees);
+    if (c->in && g->steps > 0.0 && isfinite(run->horizon)) { /* which may be another one now */
+        g->end = run->horizon;
+    }
 }
 
 /* A method by its number; 0: none. */

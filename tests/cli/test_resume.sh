@@ -166,7 +166,7 @@ refused() {
 cut_short swing.yaml
 resume="$program run $dir/swing.yaml -o $c -q --resume"
 refused 'other options' $resume --method rattle
-refused 'other options' $resume --duration 3
+refused 'other options' $resume --step 1e-4
 cp "$dir/swing.yaml" "$dir/kept.yaml"
 sed -i.bak 's/mass: 1,/mass: 1.5,/' "$dir/swing.yaml"
 refused 'another model' $resume

@@ -143,6 +143,7 @@ CALL(solver_get_formulation, a->solver, a->out[0])
 CALL(solver_get_tolerance, a->solver, a->out[0])
 CALL(solver_get_step, a->solver, a->out[0])
 CALL(solver_get_switch, a->solver, a->out[0], a->out[1])
+CALL(solver_get_foresight, a->solver, a->out[0])
 CALL(solver_write, a->solver, NULL, 0, a->out[0])
 static se3d_status call_solver_read(arguments *a)
 {
@@ -640,6 +641,7 @@ static const row rows[] = {
     {"se3d_solver_get_tolerance", call_solver_get_tolerance, "vo0", NULL, NULL},
     {"se3d_solver_get_step", call_solver_get_step, "vo0", NULL, NULL},
     {"se3d_solver_get_switch", call_solver_get_switch, "vo0o1", NULL, NULL},
+    {"se3d_solver_get_foresight", call_solver_get_foresight, "vo0", NULL, NULL},
     {"se3d_solver_write", call_solver_write, "vo0", NULL, NULL},
     {"se3d_solver_read", call_solver_read, "vj", NULL, NULL},
     {"se3d_check_create", call_check_create, "Sh0", NULL, NULL},

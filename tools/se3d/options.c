@@ -90,6 +90,7 @@ static int *flag_target(options *o, const char *name)
                  {"--merge-fixed", &o->merge_fixed},
                  {"--free-base", &o->free_base},
                  {"--resume", &o->resume},
+                 {"--keep", &o->keep},
                  {"--strict", &o->strict},
                  {"--no-estimate", &o->no_estimate},
                  {"--merge", &o->merge},

@@ -51,6 +51,7 @@ typedef struct options {
     int merge_fixed;
     int free_base;
     int resume;
+    int keep;
     int strict;
     int no_estimate;
     int merge;

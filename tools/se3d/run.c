@@ -524,6 +524,7 @@ static void ask(const options *o, se3d_scene *scene, se3d_run_options *how)
 {
     how->checkpoint = o->checkpoint ? fmax(strtod(o->checkpoint, NULL), EVERY_ROW) : 0.0;
     how->resume = o->resume;
+    how->keep = o->keep;
     how->scene = scene;
     how->temporary = getenv("TMPDIR");
     how->estimate = !o->no_estimate && (o->json || o->strict || !o->quiet);
@@ -781,7 +782,9 @@ const command_entry run_entry = {
              "beside the results; 0: at every row"},
             {"--resume", NULL, NULL,
              "go on with a run that was ended, from its last checkpoint, or begin if there is "
-             "none: the results are the same to the byte"},
+             "none: the results are the same to the byte; --duration may be longer than before"},
+            {"--keep", NULL, NULL,
+             "leave a checkpoint when the run is complete, to --resume with a longer --duration"},
             {"--no-estimate", NULL, NULL,
              "do not estimate the error of a given step of methods that control none, which takes "
              "half as much time again"},

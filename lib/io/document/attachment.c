@@ -76,5 +76,6 @@ bool se3di_read_attachment(se3di_reader *reader, const se3di_node *map, const ch
     *size = good ? (size_t)length : 0;
     reader->attached += *size;
     reader->content = se3di_hash_bytes(reader->content, *text, *size);
+    reader->timeless = se3di_hash_bytes(reader->timeless, *text, *size);
     return good || fail(reader, map, key, file, "is empty, too large or cannot be read");
 }

@@ -40,7 +40,7 @@ typedef struct se3di_reader {
     se3d_status status;
     se3di_fault fault;                /* what the report is about */
     size_t attached;                  /* bytes of other files that were read */
-    uint64_t content;                 /* hash of them */
+    uint64_t content, timeless;       /* hash of them, behind those of the document */
     const se3di_attached_file *files; /* these, the last first; one may be there several times */
     const se3di_named *values;        /* [value_count] in place of parameters of the model */
     size_t value_count;

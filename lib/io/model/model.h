@@ -163,7 +163,8 @@ struct se3d_model {
     size_t listed_count;
     const se3di_attached_file *attached; /* files that were read beside its own, the last first */
     uint64_t content;                    /* hash of the bytes of all its files, */
-    uint64_t asked;                      /* of the options that it was read with */
+    uint64_t asked;                      /* of the options that it was read with, */
+    uint64_t timeless[2];                /* and of both without the durations of analyses */
     se3d_log_callback log;               /* the user's; NULL: none */
     void *log_ctx;
 };

@@ -10,6 +10,7 @@
 #include "io/base/sized.h"
 #include "io/document/document.h"
 #include "io/document/function.h"
+#include "io/document/omitted.h"
 #include "io/document/reader.h"
 #include "io/document/setting.h"
 #include "io/document/value.h"
@@ -266,6 +267,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
                            .options = attempt->options,
                            .error = attempt->error,
                            .content = model->content,
+                           .timeless = model->timeless[0],
                            .values = attempt->values,
                            .value_count = attempt->value_count,
                            .study = attempt->study};
@@ -276,6 +278,7 @@ se3d_status se3di_model_fill(se3di_attempt *attempt)
     attempt->attached = reader.attached;
     (void)se3d_system_set_kept(model->system, 1); /* who is handed it does not destroy it */
     model->content = reader.content;
+    model->timeless[0] = reader.timeless;
     model->attached = reader.files;
     return good ? SE3D_OK : reader.status < 0 ? reader.status : SE3D_ERR_MODEL;
 }
@@ -300,17 +303,20 @@ static uint64_t hash_text(uint64_t hash, const char *text)
 }
 
 /* Of what makes another model of the same files. */
-static uint64_t hash_options(const se3d_model_options *o)
+static uint64_t hash_options(const se3d_model_options *o, bool durations)
 {
-    const char *const texts[] = {o->analysis, o->formulation, o->method,
-                                 o->step,     o->duration,    o->tolerance};
+    const char *const texts[] = {
+        o->analysis, o->formulation, o->method, o->step, durations ? o->duration : NULL,
+        o->tolerance};
     const char *const mass = o->mass_optional ? "mass" : NULL;
     uint64_t hash = hash_text(SE3DI_HASH_START, mass);
     for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k) {
         hash = hash_text(hash, texts[k]);
     }
     for (size_t k = 0; k < o->setting_count; ++k) {
-        hash = hash_text(hash_text(hash, o->settings[k].name), o->settings[k].value);
+        if (durations || !se3di_setting_is_duration(&o->settings[k])) {
+            hash = hash_text(hash_text(hash, o->settings[k].name), o->settings[k].value);
+        }
     }
     return hash;
 }
@@ -380,7 +386,10 @@ static se3d_status read_text(const char *text, size_t length, const char *name,
         fail_early(error, status, "", "out of memory");
     } else {
         status = se3di_document_parse(&model->pool, model->file, text, length, &model->root, error);
-        status = status < 0 ? status : apply_paths(model, &used, error);
+        if (status >= 0) {
+            model->timeless[0] = se3di_hash_without_durations(text, length, model->root);
+            status = apply_paths(model, &used, error);
+        }
     }
     model->library = se3di_iopool_alloc(&model->pool, sizeof *model->library);
     if (status >= 0 && !model->library) {
@@ -392,7 +401,8 @@ static se3d_status read_text(const char *text, size_t length, const char *name,
         model->library->pool = &model->pool;
     }
     model->content = se3di_hash_bytes(SE3DI_HASH_START, text, length);
-    model->asked = hash_options(&used);
+    model->asked = hash_options(&used, true);
+    model->timeless[1] = hash_options(&used, false);
     if (status < 0) {
         se3di_mistakes_report_one(&attempt, status);
     } else {

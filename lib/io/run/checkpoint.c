@@ -19,7 +19,7 @@
 
 #define FILE_NAME "run.checkpoint"
 #define MARK      UINT64_C(0x544B504344334553) /* "SE3DCPKT" */
-#define VERSION   UINT64_C(5)
+#define VERSION   UINT64_C(6)
 #define LIBRARY                                                                                    \
     (((uint64_t)SE3D_VERSION_MAJOR << 32) + ((uint64_t)SE3D_VERSION_MINOR << 16) +                 \
      (uint64_t)SE3D_VERSION_PATCH)
@@ -52,7 +52,12 @@ struct se3di_resume {
     se3di_csv_mark events;
     blob state, solver, scene, guests;
     se3di_place place;
-    double *next; /* [outputs] numbers of the rows to come */
+    size_t analysis;    /* the one under way */
+    double *durations;  /* [analyses] [s] */
+    double *next;       /* [outputs] numbers of the rows to come, */
+    double *every;      /* [outputs] and how far they are apart [s] */
+    int32_t foresees;   /* the steps so far depend on the end of the analysis */
+    int32_t has_guests; /* and so do units of other programs */
     char problem[SE3DI_GUEST_PROBLEM];
 };
 
@@ -101,6 +106,25 @@ static void pack_mark(se3di_coder *p, se3di_csv_mark *mark)
     se3di_code_word(p, &mark->hash);
 }
 
+/* What of the analyses depends on how long they are. */
+static void pack_course(se3di_coder *p, const se3di_runner *r, struct se3di_resume *c)
+{
+    size_t analyses = r->model->analysis_count;
+    se3di_code_size(p, &analyses);
+    se3di_code_size(p, &c->analysis);
+    p->failed = p->failed || analyses != r->model->analysis_count || c->analysis >= analyses;
+    if (p->failed) {
+        return;
+    }
+    se3di_code_numbers(p, c->durations, analyses);
+    se3di_code_numbers(p, c->next, r->model->output_count);
+    se3di_code_numbers(p, c->every, r->model->output_count);
+    se3di_code_numbers(p, &c->place.start, 1);
+    se3di_code_numbers(p, &c->place.reached, 1);
+    se3di_code_flag(p, &c->foresees);
+    se3di_code_flag(p, &c->has_guests);
+}
+
 static void pack_marks(se3di_coder *p, const se3di_runner *r, struct se3di_resume *c)
 {
     size_t count = r->model->output_count;
@@ -110,6 +134,7 @@ static void pack_marks(se3di_coder *p, const se3di_runner *r, struct se3di_resum
         pack_mark(p, &c->marks[k]);
     }
     pack_mark(p, &c->events);
+    pack_course(p, r, c);
     se3di_pack_bytes(p, &c->state.bytes, &c->state.size);
     se3di_pack_bytes(p, &c->solver.bytes, &c->solver.size);
     se3di_pack_bytes(p, &c->scene.bytes, &c->scene.size);
@@ -140,9 +165,8 @@ static void pack_analysis(se3di_coder *p, se3di_iopool *pool, se3d_run_analysis 
 static void pack_analyses(se3di_coder *p, se3di_runner *r)
 {
     size_t done = r->run->analysis_count > 0 ? r->run->analysis_count - 1 : 0;
-    se3di_code_size(p, &r->analysis);
     se3di_code_size(p, &done);
-    if (done > r->analysis || r->analysis >= r->model->analysis_count) {
+    if (done > r->analysis) {
         p->failed = 1;
         return;
     }
@@ -222,11 +246,10 @@ static void pack_files(se3di_coder *p, se3d_run *run)
     }
 }
 
-static void pack_outputs(se3di_coder *p, const se3di_runner *r, double *next)
+static void pack_outputs(se3di_coder *p, const se3di_runner *r)
 {
     for (size_t k = 0; k < r->file_count; ++k) {
         se3di_output_file *file = &r->files[k];
-        se3di_code_numbers(p, &next[k], 1);
         if (file->vtk) {
             se3di_vtk_pack(file->vtk, p);
         } else {
@@ -258,22 +281,20 @@ static void pack_told(se3di_coder *p, struct se3di_told *told)
 static void pack_rest(se3di_coder *p, se3di_runner *r, struct se3di_resume *c)
 {
     pack_analyses(p, r);
-    se3di_code_numbers(p, &c->place.start, 1);
-    se3di_code_numbers(p, &c->place.reached, 1);
     se3di_code_numbers(p, &c->place.cpu, 1);
     se3di_code_int32(p, &c->place.last);
     se3di_code_numbers(p, &r->time, 1);
     pack_events(p, r);
     pack_files(p, r->run);
-    pack_outputs(p, r, c->next);
+    pack_outputs(p, r);
     pack_told(p, r->told);
 }
 
 /* What it is: the words before the content. */
 static void list_frame(const se3di_runner *r, uint64_t words[FRAME_WORDS])
 {
-    const uint64_t frame[FRAME_WORDS] = {MARK, VERSION, LIBRARY, r->model->content,
-                                         r->model->asked};
+    const uint64_t frame[FRAME_WORDS] = {MARK, VERSION, LIBRARY, r->model->timeless[0],
+                                         r->model->timeless[1]};
     memcpy(words, frame, sizeof frame);
 }
 
@@ -286,6 +307,16 @@ static void pack_all(se3di_coder *p, se3di_runner *r, struct se3di_resume *c)
     }
     pack_marks(p, r, c);
     pack_rest(p, r, c);
+}
+
+static bool reserve(const se3di_runner *r, se3di_iopool *pool, struct se3di_resume *c)
+{
+    const size_t count = r->model->output_count;
+    c->marks = se3di_iopool_array(pool, count, sizeof *c->marks);
+    c->next = se3di_iopool_array(pool, count, sizeof *c->next);
+    c->every = se3di_iopool_array(pool, count, sizeof *c->every);
+    c->durations = se3di_iopool_array(pool, r->model->analysis_count, sizeof *c->durations);
+    return c->marks && c->next && c->every && c->durations;
 }
 
 /* ---- writing ---- */
@@ -353,6 +384,7 @@ static bool mark_files(se3di_runner *r, struct se3di_resume *c)
     bool good = true;
     for (size_t k = 0; k < r->file_count; ++k) {
         c->next[k] = r->files[k].next;
+        c->every[k] = r->files[k].every;
         good =
             good && (r->files[k].vtk || se3di_csv_mark_here(&r->files[k].csv, sync, &c->marks[k]));
     }
@@ -397,11 +429,15 @@ static se3d_status write_bytes(se3di_runner *r, se3di_iopool *pool, struct se3di
 static se3d_status write_all(se3di_runner *r, se3di_iopool *pool, struct se3di_resume *c,
                              const char *path)
 {
-    c->marks = se3di_iopool_array(pool, r->model->output_count, sizeof *c->marks);
-    c->next = se3di_iopool_array(pool, r->model->output_count, sizeof *c->next);
-    if (!c->marks || !c->next) {
+    if (!reserve(r, pool, c)) {
         return SE3D_ERR_NO_MEMORY;
     }
+    c->analysis = r->analysis;
+    for (size_t k = 0; k < r->model->analysis_count; ++k) {
+        c->durations[k] = r->model->analyses[k].analysis.duration;
+    }
+    c->has_guests = r->guests != NULL;
+    (void)se3d_solver_get_foresight(r->solver, &c->foresees);
     if (!mark_files(r, c)) {
         return SE3D_ERR_IO;
     }
@@ -499,6 +535,72 @@ static se3d_status refuse_content(se3di_runner *r)
                                  : refuse(r, SE3D_ERR_STATE, "it is malformed");
 }
 
+static bool is_same(double a, double b)
+{
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
+/* Rows of an output that another duration would give other times, or that would be over. */
+static bool check_rows(const se3di_runner *r, const struct se3di_resume *c, size_t k,
+                       char text[TEXT_SIZE])
+{
+    const se3di_output_entry *output = &r->model->outputs[k];
+    double every;
+    const double count = se3di_output_count_rows(output, &r->model->analyses[c->analysis], &every);
+    if (!is_same(every, c->every[k])) {
+        snprintf(
+            text, TEXT_SIZE,
+            "rows of `%.100s` are a 500th of the duration apart, of which there is another one "
+            "now: say `every`",
+            output->file);
+        return false;
+    }
+    if (c->next[k] > count) {
+        snprintf(text, TEXT_SIZE, "rows of `%.100s` go to t = %.9g s, beyond the end of the run",
+                 output->file, c->place.reached);
+        return false;
+    }
+    return true;
+}
+
+/* Durations may be others where they change nothing of what was done. */
+static se3d_status check_course(se3di_runner *r, const struct se3di_resume *c)
+{
+    char text[TEXT_SIZE];
+    for (size_t k = 0; k < c->analysis; ++k) {
+        const double now = r->model->analyses[k].analysis.duration;
+        if (!is_same(now, c->durations[k])) {
+            snprintf(text, sizeof text,
+                     "analysis %zu is over and took %.9g s, its duration is %.9g s now", k + 1,
+                     c->durations[k], now);
+            return refuse(r, SE3D_ERR_STATE, text);
+        }
+    }
+    const double before = c->durations[c->analysis];
+    const double now = r->model->analyses[c->analysis].analysis.duration;
+    if (is_same(now, before)) {
+        return SE3D_OK;
+    }
+    if (!(c->place.reached < c->place.start + now)) {
+        snprintf(text, sizeof text, "it is of t = %.9g s, the run is to end at t = %.9g s",
+                 c->place.reached, c->place.start + now);
+        return refuse(r, SE3D_ERR_STATE, text);
+    }
+    if (c->foresees || c->has_guests) {
+        snprintf(text, sizeof text, "%s for an end at t = %.9g s, not at %.9g s%s",
+                 c->foresees ? "steps were chosen" : "units of `fmus` were started",
+                 c->place.start + before, c->place.start + now,
+                 c->foresees ? ": only with a `step` can it be another one" : "");
+        return refuse(r, SE3D_ERR_STATE, text);
+    }
+    for (size_t k = 0; k < r->model->output_count; ++k) {
+        if (!check_rows(r, c, k, text)) {
+            return refuse(r, SE3D_ERR_STATE, text);
+        }
+    }
+    return SE3D_OK;
+}
+
 /* Its state can be restored here. */
 static se3d_status check_state(se3di_runner *r, const struct se3di_resume *c)
 {
@@ -524,12 +626,7 @@ se3d_status se3di_checkpoint_open(se3di_runner *r)
         return status;
     }
     struct se3di_resume *c = se3di_iopool_alloc(&r->run->pool, sizeof *c);
-    const size_t count = r->model->output_count;
-    if (c) {
-        c->marks = se3di_iopool_array(&r->run->pool, count, sizeof *c->marks);
-        c->next = se3di_iopool_array(&r->run->pool, count, sizeof *c->next);
-    }
-    if (!c || !c->marks || !c->next) {
+    if (!c || !reserve(r, &r->run->pool, c)) {
         return refuse(r, SE3D_ERR_NO_MEMORY, "out of memory");
     }
     c->coder = (se3di_coder){.in = (const unsigned char *)bytes, .size = size};
@@ -538,7 +635,8 @@ se3d_status se3di_checkpoint_open(se3di_runner *r)
         return refuse(r, SE3D_ERR_STATE, why);
     }
     pack_marks(&c->coder, r, c);
-    status = c->coder.failed ? refuse_content(r) : check_state(r, c);
+    status = c->coder.failed ? refuse_content(r) : check_course(r, c);
+    status = status < 0 ? status : check_state(r, c);
     r->resume = status < 0 ? NULL : c;
     return status;
 }
@@ -570,6 +668,7 @@ static void tell_again(const se3di_runner *r)
 se3d_status se3di_checkpoint_take(se3di_runner *r)
 {
     struct se3di_resume *c = r->resume;
+    r->analysis = c->analysis;
     pack_rest(&c->coder, r, c);
     if (!c->coder.failed && r->options->scene && c->scene.size > 0) {
         se3di_coder scene = {.in = c->scene.bytes, .size = c->scene.size};

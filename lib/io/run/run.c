@@ -262,18 +262,33 @@ static double cpu_time(const se3di_runner *r)
            se3di_estimate_get_time(r->estimate);
 }
 
-/* A checkpoint, if it is time for one. */
-static void save(se3di_runner *r, double start, double reached, se3d_status last)
+static void save(se3di_runner *r, const se3di_place *reached)
+{
+    se3di_place place = *reached;
+    place.cpu = cpu_time(r);
+    se3di_checkpoint_write(r, &place);
+    r->saved = se3di_files_time_of_day();
+}
+
+/* A checkpoint, if it is time for one. None is of the end of an analysis, which may have rows that
+ * are there for the end's sake; so one goes on from it also where the analysis takes longer. */
+static void save_in_time(se3di_runner *r, const se3di_place *reached, double end)
 {
     const double now = se3di_files_time_of_day();
-    if (!(r->options->checkpoint > 0.0) || r->stopped ||
-        (now - r->saved < r->options->checkpoint && now >= r->saved)) {
-        return;
+    if (r->options->checkpoint > 0.0 && !r->stopped && reached->reached < end &&
+        !(now - r->saved < r->options->checkpoint && now >= r->saved)) {
+        save(r, reached);
     }
-    se3di_checkpoint_write(
-        r, &(se3di_place){
-               .start = start, .reached = reached, .cpu = cpu_time(r), .last = (int32_t)last});
-    r->saved = se3di_files_time_of_day();
+}
+
+/* The checkpoint that stays: of the last rows before those at the end. */
+static void save_before_end(se3di_runner *r, const se3di_place *reached, double time, double end)
+{
+    if (r->options->keep && !(time < end) && reached->reached < end &&
+        reached->reached > -HUGE_VAL && r->analysis + 1 == r->model->analysis_count) {
+        save(r, reached);
+        r->kept = true;
+    }
 }
 
 /* At a communication point: units go on, and what they say acts from here. */
@@ -297,10 +312,11 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
     const double duration = entry->analysis.duration;
     const double start = place->start;
     se3d_status last = (se3d_status)place->last;
+    se3di_place at = *place;
     double time = start;
-    double reached = place->reached;
     while (next_time(r, start, duration, &time) && !r->stopped) {
         time = se3di_guests_limit(r->guests, merge_times(r, start, duration, time));
+        save_before_end(r, &at, time, start + duration);
         last = r->model->particles ? se3di_tagged_advance(r->model, &entry->solver, r->solver, time)
                                    : run_to(r, start, duration, time);
         last = meet_guests(r, time, last);
@@ -314,14 +330,15 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
         if (ends) {
             se3d_system_get_time(r->model->system, &time);
         }
-        const bool has_row = last < 0 && !(time > reached);
+        const bool has_row = last < 0 && !(time > at.reached);
         const se3d_status status = has_row ? SE3D_OK
                                    : ends  ? sample_stop(r, time)
                                            : sample_files(r, start, duration, time);
         if (status < 0) {
             return status;
         }
-        reached = time;
+        at.reached = time;
+        at.last = (int32_t)last;
         if (collect_events(r, index, SE3D_OK) < 0) {
             return SE3D_ERR_NO_MEMORY;
         }
@@ -333,7 +350,7 @@ static se3d_status run_rows(se3di_runner *r, size_t index, const se3di_analysis_
         if (ends) {
             break;
         }
-        save(r, start, reached, last);
+        save_in_time(r, &at, start + duration);
     }
     return last < 0 ? fail_analysis(r, entry, last, time) : last;
 }
@@ -393,7 +410,7 @@ static se3d_status begin_analysis(se3di_runner *r, const se3di_analysis_entry *e
     if (r->model->guest_count > 0 && se3di_analysis_has_motion(entry)) {
         char problem[SE3DI_GUEST_PROBLEM];
         const double span[2] = {start, start + entry->analysis.duration};
-        const bool keeps = r->options->checkpoint > 0.0 || r->options->resume;
+        const bool keeps = se3di_runner_has_checkpoints(r);
         status =
             se3di_guests_open(r->model, span, r->options->temporary, keeps, &r->guests, problem);
         if (status < 0) {
@@ -473,6 +490,16 @@ static se3d_run *create_run(const se3d_model *model)
     return run;
 }
 
+/* No checkpoint could be kept. */
+static void tell_of_none(const se3di_runner *r)
+{
+    if (r->options->keep && r->model->log) {
+        r->model->log(r->model->log_ctx, SE3D_LOG_WARNING, SE3D_LOG_CHECKPOINT,
+                      "no checkpoint is kept: an event has ended the last analysis, or it has no "
+                      "rows before its end");
+    }
+}
+
 static se3d_status run_all(se3di_runner *r)
 {
     se3d_status status = se3di_files_begin(r);
@@ -500,10 +527,11 @@ static se3d_status run_all(se3di_runner *r)
     }
     status = se3di_files_close_all(r, status);
     const bool ended = status >= 0 && !r->stopped;
-    if (ended) {
+    if (ended && !r->kept) {
+        tell_of_none(r);
         se3di_checkpoint_remove(r);
     }
-    if (ended || !(r->options->checkpoint > 0.0 || r->options->resume)) {
+    if (ended ? !r->kept : !se3di_runner_has_checkpoints(r)) {
         se3di_files_tidy(r);
     }
     return status;

@@ -118,11 +118,6 @@ static void put_sums_head(se3di_output_file *file)
     }
 }
 
-static bool has_checkpoints(const se3di_runner *r)
-{
-    return r->options->checkpoint > 0.0 || r->options->resume;
-}
-
 /* The file of the next output. */
 static se3d_status open_csv(const se3di_runner *r, se3di_csv *csv, const char *path, size_t columns)
 {
@@ -131,7 +126,7 @@ static se3d_status open_csv(const se3di_runner *r, se3di_csv *csv, const char *p
                                    ? se3di_csv_continue(csv, pool, path, columns,
                                                         se3di_checkpoint_get_mark(r, r->file_count))
                                    : se3di_csv_open(csv, pool, path, columns);
-    csv->keeps_hash = has_checkpoints(r);
+    csv->keeps_hash = se3di_runner_has_checkpoints(r);
     return status;
 }
 
@@ -240,7 +235,7 @@ static se3d_status open_events(se3di_runner *r)
     }
     const se3d_status status = se3di_event_list_open(
         events, &r->run->pool, path, r->resume ? se3di_checkpoint_get_events(r) : NULL);
-    events->csv.keeps_hash = has_checkpoints(r);
+    events->csv.keeps_hash = se3di_runner_has_checkpoints(r);
     return status < 0 ? fail_path(r, path, events->csv.failure) : SE3D_OK;
 }
 
@@ -548,7 +543,7 @@ se3d_status se3di_files_close_all(se3di_runner *r, se3d_status status)
 
 se3d_status se3di_files_begin(se3di_runner *r)
 {
-    if (has_checkpoints(r)) {
+    if (se3di_runner_has_checkpoints(r)) {
         if (!se3di_checkpoint_listen(r)) {
             return se3di_files_fail(r, SE3D_ERR_NO_MEMORY, "out of memory");
         }

@@ -71,6 +71,13 @@ typedef struct se3di_runner {
     clock_t begin;               /* of that in this one */
     double flushed; /* when the rows so far were last written to the disk, by the clock [s] */
     bool stopped;
+    bool kept; /* the checkpoint that stays is written */
 } se3di_runner;
+
+/* Whether files may have to be gone on with later. */
+static inline bool se3di_runner_has_checkpoints(const se3di_runner *r)
+{
+    return r->options->checkpoint > 0.0 || r->options->resume || r->options->keep;
+}
 
 #endif
