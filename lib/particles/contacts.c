@@ -83,20 +83,23 @@ static const se3di_roll *roll_of(const se3di_particles *set, uint32_t b)
 static int pair_contact(const se3di_particles *set, uint32_t b, int lane,
                         se3d_particles_contact *out)
 {
-    couple c;
-    copy_lane(set, &set->blocks[b], roll_of(set, b), lane, &c);
-    c.block.j[0] = 1;
-    c.particles[1] = set->particles[set->blocks[b].j[lane]];
-    c.spins[1] = set->spins[set->blocks[b].j[lane]];
+    const se3di_particle_block *block = &set->blocks[b];
+    const se3di_particle *first = &set->particles[block->i[lane]];
+    const se3di_particle *second = &set->particles[block->j[lane]];
     double d[3], v[3] = {0.0, 0.0, 0.0};
-    se3di_sub(c.particles[0].x, c.particles[1].x, d);
+    se3di_sub(first->x, second->x, d);
     se3di_particles_nearest(set, d, v);
-    se3di_sub(c.particles[1].v, v, c.particles[1].v);
     double distance = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    double overlap = c.particles[0].radius + c.particles[1].radius - distance;
+    double overlap = first->radius + second->radius - distance;
     if (!(overlap > 0.0 && distance > 0.0)) {
         return 0;
     }
+    couple c; /* of many that are near each other few touch: only these are copied */
+    copy_lane(set, block, roll_of(set, b), lane, &c);
+    c.block.j[0] = 1;
+    c.particles[1] = *second;
+    c.spins[1] = set->spins[block->j[lane]];
+    se3di_sub(c.particles[1].v, v, c.particles[1].v);
     double arm = c.particles[0].radius - 0.5 * overlap;
     for (int a = 0; a < 3; ++a) {
         c.particles[1].x[a] = c.particles[0].x[a] - d[a];

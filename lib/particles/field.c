@@ -22,6 +22,7 @@
 #include <string.h>
 
 #define SAMPLES 5
+enum { CLOUD = 512, ROW = 32 }; /* cells at once */
 
 typedef struct gridding {
     const se3di_particles *set;
@@ -78,48 +79,151 @@ static span reach_of(const gridding *g, const double x[3])
     return s;
 }
 
-/* Lucy's kernel without its factor, at the middle of a cell. */
-static double kernel(const gridding *g, const double x[3], const int64_t cell[3])
+/* Cells in reach of a place, one after the other along x, y, z, with Lucy's kernel there, without
+ * its factor. */
+typedef struct cloud {
+    size_t count;
+    size_t cell[CLOUD];
+    double phi[CLOUD];
+    double sum; /* of the kernel over all of them, also those that there was no room for */
+    int is_whole;
+} cloud;
+
+/* Amounts that are to be given to cells, from their number `first` on. */
+typedef struct gift {
+    const double *amounts;
+    int first, count;
+    double factor;
+} gift;
+
+/* The squares of the distances become kernels. */
+static void weigh(const gridding *g, cloud *c)
 {
-    double square = 0.0;
-    for (int a = 0; a < 3; ++a) {
-        const double d = g->grid->lower[a] + ((double)cell[a] + 0.5) * g->step[a] - x[a];
-        square += d * d;
+    const double width = g->grid->width;
+    for (size_t k = 0; k < c->count; ++k) {
+        const double part = sqrt(c->phi[k]) / width, rest = 1.0 - part;
+        c->phi[k] = rest > 0.0 ? (1.0 + 3.0 * part) * rest * rest * rest : 0.0;
     }
-    const double part = sqrt(square) / g->grid->width, rest = 1.0 - part;
-    return rest > 0.0 ? (1.0 + 3.0 * part) * rest * rest * rest : 0.0;
+    for (size_t k = 0; k < c->count; ++k) {
+        c->sum += c->phi[k];
+    }
 }
 
-static double *cell_of(const gridding *g, const int64_t cell[3])
+/* With a count that the compiler knows. */
+static inline void add_parts(double *restrict values, const double *restrict amounts, int count,
+                             double part)
 {
-    size_t index = 0;
-    for (int a = 2; a >= 0; --a) {
-        const int64_t n = g->grid->cells[a], k = (cell[a] % n + n) % n;
-        index = index * (size_t)n + (size_t)k;
+    for (int n = 0; n < count; ++n) {
+        values[n] += part * amounts[n];
     }
-    return g->values + index * SE3D_FIELD_VALUES;
 }
 
-/* The sum of the kernel over the cells (amounts NULL), or give each its part of the amounts. */
-static double visit(const gridding *g, const double x[3], double factor, const double *amounts,
-                    int first, int count)
+static void give(const gridding *g, const cloud *c, const gift *given)
+{
+    double *values = g->values + given->first;
+    for (size_t k = 0; k < c->count; ++k) {
+        double *of_cell = values + c->cell[k] * SE3D_FIELD_VALUES;
+        const double part = c->phi[k] * given->factor;
+        switch (given->count) {
+        case SE3D_FIELD_VALUES - SE3D_FIELD_CONTACT_STRESS:
+            add_parts(of_cell, given->amounts, SE3D_FIELD_VALUES - SE3D_FIELD_CONTACT_STRESS, part);
+            break;
+        case SE3D_FIELD_CONTACT_STRESS:
+            add_parts(of_cell, given->amounts, SE3D_FIELD_CONTACT_STRESS, part);
+            break;
+        default:
+            add_parts(of_cell, given->amounts, given->count, part);
+            break;
+        }
+    }
+}
+
+/* There is no room for more cells. */
+static void pass_on(const gridding *g, cloud *c, const gift *given)
+{
+    weigh(g, c);
+    if (given) {
+        give(g, c, given);
+    }
+    c->is_whole = 0;
+    c->count = 0;
+}
+
+/* The square of the distance of x from the middle of a cell, along an axis. */
+static double square_of(const gridding *g, const double x[3], int axis, int64_t cell)
+{
+    const double d = g->grid->lower[axis] + ((double)cell + 0.5) * g->step[axis] - x[axis];
+    return d * d;
+}
+
+static size_t wrap_cell(const gridding *g, int axis, int64_t cell)
+{
+    const int64_t n = g->grid->cells[axis];
+    return (size_t)(cell >= 0 && cell < n ? cell : (cell % n + n) % n);
+}
+
+/* The cells of a row from `begin` on, so many that there is room. */
+static void add_row(const gridding *g, const double x[3], int64_t begin, int64_t end, size_t row,
+                    const double squares[2], cloud *c)
+{
+    const double width = g->grid->width, reach = width * width;
+    const double lower = g->grid->lower[0], step = g->step[0], at = x[0];
+    const int is_inside = begin >= 0 && end <= g->grid->cells[0];
+    double middle = (double)begin + 0.5;
+    size_t count = c->count;
+    for (int64_t k = begin; k < end; ++k) {
+        const double d = lower + middle * step - at, square = d * d + squares[0] + squares[1];
+        c->phi[count] = square;
+        c->cell[count] = row + (is_inside ? (size_t)k : wrap_cell(g, 0, k));
+        count += square < reach;
+        middle += 1.0;
+    }
+    c->count = count;
+}
+
+/* The cells in reach of x and, if there are more than fit, give them the gift, if there is one. */
+static void gather(const gridding *g, const double x[3], const gift *given, cloud *c)
 {
     const span s = reach_of(g, x);
-    double sum = 0.0;
-    int64_t cell[3];
-    for (cell[2] = s.begin[2]; cell[2] < s.end[2]; ++cell[2]) {
-        for (cell[1] = s.begin[1]; cell[1] < s.end[1]; ++cell[1]) {
-            for (cell[0] = s.begin[0]; cell[0] < s.end[0]; ++cell[0]) {
-                const double phi = kernel(g, x, cell);
-                double *values = cell_of(g, cell) + first;
-                sum += phi;
-                for (int k = 0; amounts && k < count; ++k) {
-                    values[k] += phi * factor * amounts[k];
+    const double reach = 1.0000001 * g->grid->width * g->grid->width;
+    double squares[2];
+    c->count = 0;
+    c->sum = 0.0;
+    c->is_whole = 1;
+    for (int64_t z = s.begin[2]; z < s.end[2]; ++z) {
+        squares[1] = square_of(g, x, 2, z);
+        const size_t layer = wrap_cell(g, 2, z) * (size_t)g->grid->cells[1];
+        for (int64_t y = s.begin[1]; y < s.end[1]; ++y) {
+            squares[0] = square_of(g, x, 1, y);
+            if (squares[0] + squares[1] > reach) {
+                continue;
+            }
+            const size_t row = (layer + wrap_cell(g, 1, y)) * (size_t)g->grid->cells[0];
+            for (int64_t k = s.begin[0]; k < s.end[0]; k += ROW) {
+                if (c->count > CLOUD - ROW) {
+                    pass_on(g, c, given);
                 }
+                const int64_t end = s.end[0] - k > ROW ? k + ROW : s.end[0];
+                add_row(g, x, k, end, row, squares, c);
             }
         }
     }
-    return sum;
+    weigh(g, c);
+}
+
+/* The cell that x is in. */
+static void choose_own(const gridding *g, const double x[3], cloud *c)
+{
+    size_t index = 0;
+    for (int a = 2; a >= 0; --a) {
+        const double k = floor((x[a] - g->grid->lower[a]) / g->step[a]);
+        const int64_t own = (int64_t)fmin(k, g->grid->cells[a] - 1.0);
+        index = index * (size_t)g->grid->cells[a] + wrap_cell(g, a, own);
+    }
+    c->cell[0] = index;
+    c->phi[0] = c->sum = 1.0;
+    c->count = 1;
+    c->is_whole = 1;
 }
 
 /* Spread amounts at x over the cells, to their numbers from `first` on; all to the cell that x is
@@ -127,47 +231,49 @@ static double visit(const gridding *g, const double x[3], double factor, const d
 static void spread(const gridding *g, const double x[3], int first, int count,
                    const double *amounts)
 {
+    cloud c;
     double at[3];
     se3di_copy(x, at);
     if (!to_grid(g, at)) {
         return;
     }
-    const double sum = visit(g, at, 0.0, NULL, 0, 0);
-    if (sum > 1e-12) {
-        (void)visit(g, at, 1.0 / (sum * g->volume), amounts, first, count);
-        return;
+    gather(g, at, NULL, &c);
+    if (!(c.sum > 1e-12)) {
+        choose_own(g, at, &c);
     }
-    int64_t cell[3];
-    for (int a = 0; a < 3; ++a) {
-        const double k = floor((at[a] - g->grid->lower[a]) / g->step[a]);
-        cell[a] = (int64_t)fmin(k, g->grid->cells[a] - 1.0);
+    const gift all = {amounts, first, count, 1.0 / (c.sum * g->volume)};
+    if (!c.is_whole) {
+        gather(g, at, &all, &c);
     }
-    double *values = cell_of(g, cell) + first;
-    for (int k = 0; k < count; ++k) {
-        values[k] += amounts[k] / g->volume;
-    }
+    give(g, &c, &all);
 }
 
+/* Volume is where the sphere is, all else where the particle or clump is. */
 static void add_motion(const gridding *g)
 {
     size_t id = 0;
     for (size_t n = 0; n < g->set->count; ++n) {
         const size_t k = se3di_particles_next(g->set, &id);
-        double mass, x[3], v[3];
+        double mass, x[3], v[3], amounts[SE3D_FIELD_CONTACT_STRESS] = {0.0};
         if (!is_meant(g, k)) {
             continue;
         }
-        const double volume = se3di_particles_volume(g->set, k);
-        spread(g, g->set->particles[k].x, SE3D_FIELD_SOLID_FRACTION, 1, &volume);
-        if (se3di_particles_whole(g->set, k, &mass, x, v)) {
+        amounts[SE3D_FIELD_SOLID_FRACTION] = se3di_particles_volume(g->set, k);
+        const int is_whole = se3di_particles_whole(g->set, k, &mass, x, v);
+        if (!is_whole || se3di_clump_find(g->set, k)) {
+            spread(g, g->set->particles[k].x, SE3D_FIELD_SOLID_FRACTION, 1,
+                   amounts + SE3D_FIELD_SOLID_FRACTION);
+            amounts[SE3D_FIELD_SOLID_FRACTION] = 0.0;
+        }
+        if (is_whole) {
             const double p[3] = {mass * v[0], mass * v[1], mass * v[2]};
-            double flux[6];
+            amounts[SE3D_FIELD_DENSITY] = mass;
+            se3di_copy(p, amounts + SE3D_FIELD_VELOCITY);
             for (int c = 0; c < 6; ++c) {
-                flux[c] = p[se3di_stress_row[c]] * v[se3di_stress_column[c]];
+                amounts[SE3D_FIELD_KINETIC_STRESS + c] =
+                    p[se3di_stress_row[c]] * v[se3di_stress_column[c]];
             }
-            spread(g, x, SE3D_FIELD_DENSITY, 1, &mass);
-            spread(g, x, SE3D_FIELD_VELOCITY, 3, p);
-            spread(g, x, SE3D_FIELD_KINETIC_STRESS, 6, flux);
+            spread(g, x, 0, SE3D_FIELD_CONTACT_STRESS, amounts);
         }
     }
 }

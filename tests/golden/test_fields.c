@@ -5,6 +5,7 @@
 #include "support/particle_worlds.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define PI 3.14159265358979323846
 
@@ -94,9 +95,9 @@ static void sums_are_what_there_is(void)
         se3d_particles *set;
         se3d_system *system = run_world(kinds[k], 1, &set);
         const int periodic = kinds[k] == PARTICLES_PERIOD;
-        const se3d_field_grid grids[3] = {grid_of(1, 1, 1, 0.02), grid_of(7, 9, 20, 0.03),
-                                          grid_of(10, 10, 12, 0.001)};
-        for (int g = 0; g < 3; ++g) {
+        const se3d_field_grid grids[4] = {grid_of(1, 1, 1, 0.02), grid_of(7, 9, 20, 0.03),
+                                          grid_of(10, 10, 12, 0.001), grid_of(10, 10, 20, 0.12)};
+        for (int g = 0; g < 4; ++g) {
             double sum[SE3D_FIELD_VALUES], all[SE3D_FIELD_VALUES] = {0.0};
             const size_t cells = add_up(set, &grids[g], sum);
             get_average(set, &grids[g], all);
@@ -166,6 +167,56 @@ static void uniform_beds_are_uniform(void)
     grid.tag = 3;
     (void)add_up(set, &grid, sum);
     CHECK(!(sum[SE3D_FIELD_DENSITY] > 0.0));
+    se3d_system_destroy(system);
+}
+
+/* The kernel as it is written down, over one cell after the other; with few cells in reach, with
+ * more than are kept at once, and with rows that are longer than what is taken at once. */
+static void each_cell_gets_the_part_of_the_kernel(void)
+{
+    const se3d_field_grid grids[4] = {grid_of(7, 9, 20, 0.03), grid_of(10, 10, 20, 0.12),
+                                      grid_of(100, 4, 5, 0.08), grid_of(100, 4, 5, 0.3)};
+    const double x[3] = {0.0131, -0.0722, 0.1047}, v[3] = {0.3, -0.5, 0.7}, radius = 0.004;
+    se3d_system *system;
+    se3d_material_def stuff = se3d_material_def_default();
+    se3d_material material;
+    se3d_particles *set;
+    double sum[SE3D_FIELD_VALUES];
+    CHECK(!se3d_system_create(NULL, &system));
+    stuff.density = 2000.0;
+    stuff.stiffness = 1e4;
+    CHECK(!se3d_material_create(system, &stuff, &material));
+    CHECK(!se3d_particles_create(system, NULL, &set));
+    CHECK(!se3d_particles_add(set, material, 1, x, &radius, v, NULL, NULL));
+    for (int n = 0; n < 4; ++n) {
+        const se3d_field_grid *g = &grids[n];
+        const size_t cells = add_up(set, g, sum);
+        double *phi = calloc(cells, sizeof *phi), whole = 0.0;
+        CHECK(phi);
+        for (size_t k = 0; phi && k < cells; ++k) {
+            const size_t nx = (size_t)g->cells[0], ny = (size_t)g->cells[1];
+            const size_t at[3] = {k % nx, k / nx % ny, k / nx / ny};
+            double square = 0.0;
+            for (int a = 0; a < 3; ++a) {
+                const double step = (g->upper[a] - g->lower[a]) / g->cells[a];
+                const double d = g->lower[a] + ((double)at[a] + 0.5) * step - x[a];
+                square += d * d;
+            }
+            const double part = sqrt(square) / g->width;
+            phi[k] = part < 1.0 ? (1.0 + 3.0 * part) * pow(1.0 - part, 3.0) : 0.0;
+            whole += phi[k];
+        }
+        const double mass = 2000.0 * 4.0 / 3.0 * PI * radius * radius * radius;
+        const double volume = 0.2 * 0.2 * 0.42 / (double)cells;
+        for (size_t k = 0; phi && k < cells; ++k) {
+            const double *f = fields + k * SE3D_FIELD_VALUES;
+            const double density = mass / volume * phi[k] / whole;
+            CHECK_NEAR(f[SE3D_FIELD_DENSITY], density, 1e-12 * mass / volume);
+            CHECK_NEAR(f[SE3D_FIELD_SOLID_FRACTION], density / 2000.0, 1e-12 * mass / volume);
+            CHECK_NEAR(f[SE3D_FIELD_VELOCITY + 1], phi[k] > 0.0 ? v[1] : 0.0, 1e-12);
+        }
+        free(phi);
+    }
     se3d_system_destroy(system);
 }
 
@@ -305,6 +356,7 @@ int main(void)
     RUN(uniform_beds_are_uniform);
     RUN(triangles_know_who_slides_on_them);
     RUN(patches_of_a_funnel_know_who_rests_on_them);
+    RUN(each_cell_gets_the_part_of_the_kernel);
     RUN(fields_do_not_depend_on_threads);
     return check_finish();
 }
