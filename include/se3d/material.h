@@ -39,6 +39,9 @@ typedef struct se3d_material_def {
     /* [N/m], kt in place of tangential_ratio; of hertz_mindlin at any overlap. Of two in series, or
      * of the one that has it. @since 0.1 */
     double tangential_stiffness;
+    /* [N/m], of rolling and torsion in place of rolling_ratio; hertz_mindlin at any overlap, and so
+     * is their damping. Of two in series, or of the one that has it. @since 0.1 */
+    double rolling_stiffness;
 } se3d_material_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_def_default. @since 0.1 */
@@ -118,6 +121,7 @@ typedef struct se3d_material_pair_def {
     int32_t law;
     int32_t reserved;
     double tangential_stiffness; /* [N/m], in place of tangential_ratio. @since 0.1 */
+    double rolling_stiffness;    /* [N/m], in place of rolling_ratio. @since 0.1 */
 } se3d_material_pair_def;
 
 /* Fill `def`, of `size` bytes, with the defaults: see se3d_material_pair_def_default. @since 0.1 */

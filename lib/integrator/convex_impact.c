@@ -69,7 +69,7 @@ static double step_of(const tracing *t)
                                : 1.0;
         const double kt = se3di_pair_kt(p->pair, s);
         const double stiffest =
-            p->presser ? p->pair->kr * s : fmax(kn * (hertz ? 1.5 : 1.0) * s, kt);
+            p->presser ? se3di_pair_kr(p->pair, s) : fmax(kn * (hertz ? 1.5 : 1.0) * s, kt);
         rate2 += stiffest * (W[0] + W[4] + W[8]);
     }
     return PHASE / sqrt(rate2);
@@ -81,7 +81,8 @@ static void roll_by_law(const point *p, double xi[3], double force[3])
     const double *n = p->contact->normal, normal = p->presser->normal;
     const double s =
         se3di_pair_is_hertz(p->pair) ? sqrt(p->radius * fmax(0.0, p->presser->delta)) : 1.0;
-    const double k = p->pair->kr * s, damping = p->pair->dr * p->presser->root_mass * sqrt(s);
+    const double k = se3di_pair_kr(p->pair, s);
+    const double damping = p->pair->dr * p->presser->root_mass * sqrt(se3di_pair_turn(p->pair, s));
     double stretch[2][3];
     se3di_scale(se3di_dot(xi, n), n, stretch[0]);
     se3di_sub(xi, stretch[0], stretch[1]);

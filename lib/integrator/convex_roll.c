@@ -27,8 +27,8 @@ static double stiffness_of(const se3di_model *model, const se3di_body_contact *r
     const se3di_pair *pair = se3di_pair_of(model, r->shape_i, r->shape_j);
     const int hertz = se3di_pair_is_hertz(pair);
     const double s = hertz ? sqrt(se3di_convex_radius(model, r) * r->overlap) : 1.0;
-    *damping = pair->dr * sqrt(s / r->inverse_mass);
-    return pair->kr * s;
+    *damping = pair->dr * sqrt(se3di_pair_turn(pair, s) / r->inverse_mass);
+    return se3di_pair_kr(pair, s);
 }
 
 /* What an impulse does to u at most. */

@@ -25,6 +25,7 @@ typedef struct se3di_material {
     double damping_rate;  /* of particles; 0: by restitution, < 0 none */
     double tangential_ratio_hertz, tangential_damping, rolling_ratio, rolling_damping;
     double tangential_stiffness; /* [N/m], at any overlap; 0: by the ratio, < 0 none */
+    double rolling_stiffness;    /* the same */
     uint32_t users;              /* shapes and sets of particles */
     uint32_t reserved;
 } se3di_material;
@@ -49,7 +50,8 @@ typedef struct se3di_material {
     X(rolling_damping, 0.0, 10.0)                                                                  \
     X(young, 1e-30, 1e30)                                                                          \
     X(poisson, 0.0, 0.5)                                                                           \
-    X(tangential_stiffness, 0.0, 1e30)
+    X(tangential_stiffness, 0.0, 1e30)                                                             \
+    X(rolling_stiffness, 0.0, 1e30)
 
 typedef struct se3di_override {
 #define SE3DI_MEMBER(name, least, most) double name;
@@ -69,7 +71,7 @@ typedef struct se3di_override {
  *
  *     Fn = max(0, kn s delta - dn sqrt(m* s) vn)      Ft = -kt s xi - dt sqrt(m* s) vt
  *
- * with Ft = -kt xi - ... if kt is constant.
+ * with Ft = -kt xi - ... if kt is constant; if kr is, dr is, too.
  *
  * Of particles rn m* s and rt m* s stand in place of the two dampings, if rn is not below 0.
  *
@@ -84,7 +86,9 @@ typedef struct se3di_pair {
     double restitution;
     double rn, rt;
     int32_t law;         /* se3di_contact_law, not MIXED */
-    int32_t kt_constant; /* of hertz_mindlin: at any overlap */
+    int32_t kt_constant; /* of hertz_mindlin: at any overlap, */
+    int32_t kr_constant; /* and this one */
+    int32_t reserved;
 } se3di_pair;
 
 static inline int se3di_pair_is_hertz(const se3di_pair *pair)
@@ -95,7 +99,7 @@ static inline int se3di_pair_is_hertz(const se3di_pair *pair)
 /* The law of lanes with such pairs: what is apart from the two laws is mixed. */
 static inline int32_t se3di_pair_lanes(const se3di_pair *pair)
 {
-    return pair->kt_constant ? (int32_t)SE3DI_LAW_MIXED : pair->law;
+    return pair->kt_constant || pair->kr_constant ? (int32_t)SE3DI_LAW_MIXED : pair->law;
 }
 
 /* What kt is multiplied by: s of the law, or nothing. */
@@ -108,6 +112,18 @@ static inline double se3di_pair_tangent(const se3di_pair *pair, double s)
 static inline double se3di_pair_kt(const se3di_pair *pair, double s)
 {
     return pair->kt * se3di_pair_tangent(pair, s);
+}
+
+/* What kr is multiplied by, and, with the root of s, dr. */
+static inline double se3di_pair_turn(const se3di_pair *pair, double s)
+{
+    return pair->kr_constant ? 1.0 : s;
+}
+
+/* The stiffness of rolling and torsion where that of the law is kr s. */
+static inline double se3di_pair_kr(const se3di_pair *pair, double s)
+{
+    return pair->kr * se3di_pair_turn(pair, s);
 }
 
 #define SE3DI_PAIR_SIZE 11 /* doubles in an se3di_pair that forces need, but rn and rt */

@@ -96,8 +96,7 @@ static void add_contact(const se3di_pair *pair, double radius, double overlap, c
 {
     const int hertz = se3di_pair_is_hertz(pair);
     const double s = hertz ? sqrt(radius * overlap) : 1.0;
-    const double kn = s * pair->kn, kr = s * pair->kr;
-    const double kt = se3di_pair_kt(pair, s);
+    const double kn = s * pair->kn, kt = se3di_pair_kt(pair, s), kr = se3di_pair_kr(pair, s);
     const double pull = sqrt(radius * pair->pull_off * kn * overlap) * overlap;
     elastic[0] += (hertz ? 0.4 : 0.5) * kn * overlap * overlap -
                   0.5 * radius * pair->cohesion * overlap * overlap -

@@ -194,7 +194,8 @@ static se3di_material read_material(const se3d_material_def *def)
                             .rolling_ratio = def->rolling_ratio,
                             .rolling_damping = def->rolling_damping,
                             .damping_rate = def->damping_rate,
-                            .tangential_stiffness = def->tangential_stiffness};
+                            .tangential_stiffness = def->tangential_stiffness,
+                            .rolling_stiffness = def->rolling_stiffness};
 }
 
 /* What may be the law's own. */
@@ -209,7 +210,8 @@ static se3d_status check_choices(se3d_system *system, const se3d_material_def *d
                    {"rolling_ratio", def->rolling_ratio, 100.0},
                    {"rolling_damping", def->rolling_damping, 10.0},
                    {"damping_rate", def->damping_rate, 1e30},
-                   {"tangential_stiffness", def->tangential_stiffness, 1e30}};
+                   {"tangential_stiffness", def->tangential_stiffness, 1e30},
+                   {"rolling_stiffness", def->rolling_stiffness, 1e30}};
     for (size_t k = 0; k < sizeof choices / sizeof *choices; ++k) {
         if (!(isfinite(choices[k].value) && choices[k].value <= choices[k].most)) {
             return SE3DI_FAIL_OF(system, choices[k].what, SE3D_ERR_INVALID_ARGUMENT,
@@ -222,6 +224,11 @@ static se3d_status check_choices(se3d_system *system, const se3d_material_def *d
         return SE3DI_FAIL_OF(system, "tangential_stiffness", SE3D_ERR_INVALID_ARGUMENT,
                              " = %g, in place of `tangential_ratio_hertz`, must not be beside it",
                              def->tangential_stiffness);
+    }
+    if (def->rolling_stiffness != 0.0 && def->rolling_ratio != 0.0) {
+        return SE3DI_FAIL_OF(system, "rolling_stiffness", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, in place of `rolling_ratio`, must not be beside it",
+                             def->rolling_stiffness);
     }
     const se3di_material data = read_material(def);
     return check_damping(system, system->model.contact.law, &data);
@@ -323,7 +330,8 @@ se3d_status se3d_material_get(const se3d_system *system, se3d_material material,
                                     .rolling_ratio = data->rolling_ratio,
                                     .rolling_damping = data->rolling_damping,
                                     .damping_rate = data->damping_rate,
-                                    .tangential_stiffness = data->tangential_stiffness};
+                                    .tangential_stiffness = data->tangential_stiffness,
+                                    .rolling_stiffness = data->rolling_stiffness};
     return se3di_sized_give(def, size, &full, sizeof full);
 }
 
@@ -375,6 +383,11 @@ static se3d_status check_pair(se3d_system *system, const se3d_material_pair_def 
         return SE3DI_FAIL_OF(system, "tangential_stiffness", SE3D_ERR_INVALID_ARGUMENT,
                              " = %g, in place of `tangential_ratio`, must not be beside it",
                              def->tangential_stiffness);
+    }
+    if (def->rolling_stiffness >= 0.0 && def->rolling_ratio >= 0.0) {
+        return SE3DI_FAIL_OF(system, "rolling_stiffness", SE3D_ERR_INVALID_ARGUMENT,
+                             " = %g, in place of `rolling_ratio`, must not be beside it",
+                             def->rolling_stiffness);
     }
     if (def->law > SE3D_CONTACT_LAW_HERTZ_MINDLIN) {
         return SE3DI_FAIL_OF(system, "law", SE3D_ERR_INVALID_ARGUMENT,

@@ -142,7 +142,8 @@ class System:
                  damping_ratio: float | None = ..., tangential_ratio_hertz: float | None = ...,
                  tangential_damping: float | None = ..., rolling_ratio: float | None = ...,
                  rolling_damping: float | None = ..., damping_rate: float | None = ...,
-                 tangential_stiffness: float | None = ...) -> Material: ...
+                 tangential_stiffness: float | None = ...,
+                 rolling_stiffness: float | None = ...) -> Material: ...
     def contact(self, *, law: Word | None = ..., step: float | None = ...,
                 overlap_limit: float | None = ...) -> None: ...
     def shape(self, type: str, *, vertices: ArrayLike | None = ...,

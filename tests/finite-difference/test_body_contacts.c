@@ -111,7 +111,8 @@ static trial begin(const meeting *m, double mu, double rolling, int law, uint64_
     def.restitution = 0.6;
     def.rolling_friction = rolling;
     def.torsional_friction = 0.5 * rolling;
-    def.rolling_ratio = 0.6;
+    def.rolling_ratio = rolling > 0.0 && rolling < 1.0 ? 0.0 : 0.6;
+    def.rolling_stiffness = rolling > 0.0 && rolling < 1.0 ? 300.0 : 0.0;
     def.tangential_damping = 0.7;
     def.tangential_stiffness = rolling > 0.0 ? 400.0 : 0.0;
     def.cohesion = rolling > 0.0 && rolling < 1.0 ? 3e3 : 0.0;

@@ -274,6 +274,41 @@ static void torsion_swings_as_given(void)
     }
 }
 
+/* The same of hertz_mindlin with a stiffness that is given, whatever the load. */
+static void torsion_of_hertz_swings_at_any_overlap(void)
+{
+    static const double given[4][2] = {{600.0, 600.0}, {900.0, 0.0}, {400.0, 1200.0}, {-1.0, 5.0}};
+    static const double is[4] = {600.0, 900.0, 600.0, 0.0}, damping = 0.2;
+    const double mass = 1e3 * 4.0 / 3.0 * PI * pow(RADIUS, 3.0);
+    for (int k = 0; k < 8 * EVERYONE; ++k) {
+        se3d_material_def of = stuff(), plane = stuff();
+        const double kr = is[k / EVERYONE % 4], load = (k < 4 * EVERYONE ? 1.0 : 8.0) * G;
+        const double modulus = of.young / (2.0 * (1.0 - of.poisson * of.poisson));
+        const double depth = pow(mass * load / (4.0 / 3.0 * modulus * sqrt(RADIUS)), 2.0 / 3.0);
+        const double g[3] = {0.0, 0.0, -load}, spin = 1e-2;
+        double v[3] = {0.0, 0.0, 0.0}, w[3] = {0.0, 0.0, spin};
+        of.damping_ratio = plane.damping_ratio = 0.5;
+        of.torsional_friction = plane.torsional_friction = 1e6;
+        of.rolling_stiffness = given[k / EVERYONE % 4][0];
+        plane.rolling_stiffness = given[k / EVERYONE % 4][1];
+        of.rolling_damping = plane.rolling_damping = damping;
+        ball b = begin(everyone[k % EVERYONE], SE3D_CONTACT_LAW_HERTZ_MINDLIN, &of, &plane,
+                       RADIUS - depth, v, w);
+        CHECK(se3d_system_set_gravity(b.s.system, g) == SE3D_OK);
+        const double w0 = sqrt(2.5 * fmax(kr, 600.0) / b.mass);
+        const double ratio = 1.25 * damping * sqrt(kr / b.mass) / w0;
+        const double wd = w0 * sqrt(1.0 - ratio * ratio);
+        for (int n = 1; n < 6; ++n) {
+            const double t = 0.37 * n * 2.0 * PI / w0;
+            const double swings =
+                exp(-ratio * w0 * t) * (cos(wd * t) - ratio * w0 / wd * sin(wd * t));
+            run(&b, t, v, w);
+            CHECK_NEAR(w[2] / spin, kr > 0.0 ? swings : 1.0, 5e-3);
+        }
+        end(&b);
+    }
+}
+
 static void what_no_contact_could_be_is_refused(void)
 {
     scene s = scene_begin(SE3D_CONTACT_LAW_HOOKE, 0.5, 0.5, 1e4);
@@ -287,7 +322,15 @@ static void what_no_contact_could_be_is_refused(void)
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
     CHECK_CONTAINS(se3d_system_get_error(s.system), "rolling_ratio = 101");
     def.rolling_ratio = 3.0;
+    def.rolling_stiffness = 2.0;
+    CHECK(se3d_material_create(s.system, &def, &made) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "rolling_stiffness = 2, in place of");
+    def.rolling_stiffness = 0.0;
     CHECK(se3d_material_create(s.system, &def, &made) == SE3D_OK);
+    se3d_material_pair_def pair = se3d_material_pair_def_default();
+    pair.rolling_ratio = pair.rolling_stiffness = 1.0;
+    CHECK(se3d_material_set_pair(s.system, made, made, &pair) == SE3D_ERR_INVALID_ARGUMENT);
+    CHECK_CONTAINS(se3d_system_get_error(s.system), "rolling_stiffness = 1, in place of");
     CHECK(se3d_material_get(s.system, made, &def) == SE3D_OK);
     CHECK_NEAR(def.rolling_ratio, 3.0, 0.0);
     scene_end(&s);
@@ -360,11 +403,13 @@ static void model_files_say_so_too(void)
 }
 
 /* Of a material and of a pair; 0 is none. */
-static void model_files_say_a_tangential_stiffness(void)
+static void model_files_say_a_constant_stiffness(void)
 {
     const char *const texts[4] = {
-        "law: hertz_mindlin, pairs: [{material_1: m, material_2: m, tangential_stiffness: 0}]",
-        "law: hooke, pairs: [{material_1: m, material_2: m, tangential_stiffness: 4}]",
+        "law: hertz_mindlin, pairs: [{material_1: m, material_2: m, tangential_stiffness: 0, "
+        "rolling_stiffness: 3}]",
+        "law: hooke, pairs: [{material_1: m, material_2: m, tangential_stiffness: 4, "
+        "rolling_stiffness: 0}]",
         "law: hertz_mindlin", "law: hooke"};
     char text[600], written[4000];
     size_t length;
@@ -374,9 +419,9 @@ static void model_files_say_a_tangential_stiffness(void)
         se3d_material material;
         snprintf(text, sizeof text,
                  "se3d: 1\ncontact: {%s}\nmaterials: [{name: m, density: 1, young: 1, stiffness: "
-                 "1, tangential_stiffness: %d}]\nparticles: [{material: m, radius: 1, lower: [0, "
-                 "0, 0], upper: [9, 9, 9]}]\n",
-                 texts[k / 2], k / 2 % 2 ? 7 : 0);
+                 "1, tangential_stiffness: %d, rolling_stiffness: %d}]\nparticles: [{material: m, "
+                 "radius: 1, lower: [0, 0, 0], upper: [9, 9, 9]}]\n",
+                 texts[k / 2], k / 2 % 2 ? 7 : 0, k / 2 % 2 ? 0 : 6);
         se3d_model *model = read_model(k % 2 ? written : text, &error);
         CHECK(model != NULL);
         if (model) {
@@ -385,6 +430,8 @@ static void model_files_say_a_tangential_stiffness(void)
             CHECK(se3d_system_get_material(system, 0, &material) == SE3D_OK);
             CHECK(se3d_material_get_pair(system, material, material, &pair) == SE3D_OK);
             CHECK_NEAR(pair.tangential_stiffness, k / 2 == 0 ? 0.0 : k / 2 == 1 ? 4.0 : -1.0, 0.0);
+            CHECK_NEAR(get_material(model).rolling_stiffness, k / 2 % 2 ? -1.0 : 6.0, 0.0);
+            CHECK_NEAR(pair.rolling_stiffness, k / 2 == 0 ? 3.0 : k / 2 == 1 ? 0.0 : -1.0, 0.0);
             CHECK(se3d_model_write_text(model, NULL, written, sizeof written, &length, &error) ==
                   SE3D_OK);
         }
@@ -395,6 +442,11 @@ static void model_files_say_a_tangential_stiffness(void)
                       "[0, 0, 0], upper: [9, 9, 9]}]\n",
                       &error));
     CHECK_CONTAINS(error.message, "tangential_stiffness: stands beside `tangential_ratio`");
+    CHECK(!read_model("se3d: 1\nmaterials: [{name: m, density: 1, stiffness: 1, rolling_ratio: "
+                      "0.5, rolling_stiffness: 1}]\nparticles: [{material: m, radius: 1, lower: "
+                      "[0, 0, 0], upper: [9, 9, 9]}]\n",
+                      &error));
+    CHECK_CONTAINS(error.message, "rolling_stiffness: stands beside `rolling_ratio`");
 }
 
 static void model_files_say_one_damping(void)
@@ -565,8 +617,9 @@ int main(void)
     RUN(a_damping_rate_holds_for_the_pair);
     RUN(steps_follow_a_damping_rate);
     RUN(torsion_swings_as_given);
+    RUN(torsion_of_hertz_swings_at_any_overlap);
     RUN(model_files_say_so_too);
-    RUN(model_files_say_a_tangential_stiffness);
+    RUN(model_files_say_a_constant_stiffness);
     RUN(model_files_say_one_damping);
     RUN(a_pair_may_say_what_both_could);
     RUN(pairs_of_model_files_say_so_too);

@@ -153,11 +153,12 @@ static void hold(const trial *g, se3d_material a, se3d_material b)
 {
     se3d_material_pair_def pair = se3d_material_pair_def_default();
     pair.tangential_stiffness = 3e4;
+    pair.rolling_stiffness = 2e4;
     CHECK(!se3d_material_set_pair(g->s.system, a, b, &pair));
 }
 
-/* The same of pairs of hertz_mindlin whose tangential stiffness is constant. */
-static void a_tangential_stiffness_is_that_of_the_pair(void)
+/* The same of pairs of hertz_mindlin whose springs along the tangent and of rolling are given. */
+static void a_constant_stiffness_is_that_of_the_pair(void)
 {
     double last[2][PLACES][9];
     for (size_t k = 0; k < KINDS; ++k) {
@@ -194,8 +195,9 @@ static void stick(const trial *g, se3d_material material)
 {
     se3d_material_def def = se3d_material_def_default();
     CHECK(!se3d_material_get(g->s.system, material, &def));
-    def.friction = 1e6;
+    def.friction = def.rolling_friction = def.torsional_friction = 1e6;
     def.restitution = 1.0;
+    def.rolling_damping = -1.0;
     CHECK(!se3d_material_set(g->s.system, material, &def));
 }
 
@@ -220,6 +222,8 @@ static void energy_of_constant_springs_is_held(void)
         held = fmax(held, d.elastic / first);
         CHECK_NEAR(all / first, 1.0, 1e-3);
         CHECK_NEAR(d.tangential / first, 0.0, 1e-3);
+        CHECK_NEAR(d.rolling / first, 0.0, 1e-3);
+        CHECK_NEAR(d.torsion / first, 0.0, 1e-3);
     }
     CHECK(held > 0.1);
     end(&g);
@@ -408,7 +412,7 @@ static void a_pair_may_say_all_that_its_law_needs(void)
 int main(void)
 {
     RUN(particles_move_by_the_law_of_their_pair);
-    RUN(a_tangential_stiffness_is_that_of_the_pair);
+    RUN(a_constant_stiffness_is_that_of_the_pair);
     RUN(energy_of_constant_springs_is_held);
     RUN(energy_and_forces_are_those_of_the_law_of_the_pair);
     RUN(bodies_move_by_the_law_of_their_pair);

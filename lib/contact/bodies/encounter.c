@@ -237,8 +237,8 @@ static void eval_rolling(se3di_encounter *e)
     if (!(e->pair.rolling > 0.0 || e->pair.torsion > 0.0)) {
         return;
     }
-    double k = e->pair.kr * e->s;
-    double c = e->pair.dr * e->root_mass * e->root;
+    double k = se3di_pair_kr(&e->pair, e->s);
+    double c = e->pair.dr * e->root_mass * se3di_pair_turn(&e->pair, e->root);
     se3di_encounter_spin(e, spin);
     double turn = se3di_dot(spin, n);
     project(n, spin);
@@ -331,7 +331,7 @@ static void settled_xi(const se3di_encounter *e, double xi[3])
 static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 {
     double out[3];
-    double k = e->pair.kr * e->s;
+    double k = se3di_pair_kr(&e->pair, e->s);
     const double wring[3] = {e->wring, 0.0, 0.0};
     const double now[3] = {e->twist, 0.0, 0.0};
     se3di_encounter_settle(k, e->pair.rolling * e->normal, e->yield, e->bend, e->rho, rho);
@@ -341,7 +341,7 @@ static void settled_roll(const se3di_encounter *e, double rho[3], double *twist)
 
 void se3di_encounter_spring(const se3di_encounter *e, double wrench[12])
 {
-    const double kt = se3di_pair_kt(&e->pair, e->s), kr = e->pair.kr * e->s;
+    const double kt = se3di_pair_kt(&e->pair, e->s), kr = se3di_pair_kr(&e->pair, e->s);
     se3di_encounter kept = *e;
     double xi[3], rho[3], twist;
     settled_xi(e, xi);
@@ -365,10 +365,12 @@ double se3di_encounter_energy(const se3di_encounter *e)
     settled_xi(e, xi);
     settled_roll(e, rho, &twist);
     double share = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 0.4 : 0.5;
-    const double rolled = se3di_dot(rho, rho) + twist * twist;
+    const double rolled = e->pair.kr * (se3di_dot(rho, rho) + twist * twist);
     const double slid = e->pair.kt * se3di_dot(xi, xi);
-    const double springs = (e->pair.kt_constant ? 0.0 : slid) + e->pair.kr * rolled;
-    const double constant = e->pair.kt_constant ? 0.5 * slid : 0.0;
+    const double springs =
+        (e->pair.kt_constant ? 0.0 : slid) + (e->pair.kr_constant ? 0.0 : rolled);
+    const double constant =
+        0.5 * ((e->pair.kt_constant ? slid : 0.0) + (e->pair.kr_constant ? rolled : 0.0));
     /* the integrals of the attractions over the overlap */
     double depth = e->law == SE3DI_LAW_HERTZ_MINDLIN ? 4.0 / 7.0 : 2.0 / 3.0;
     double stuck = (0.5 * (e->attraction - e->stick) + depth * e->stick) * e->at->overlap;

@@ -265,10 +265,12 @@ static void move_rolling(const se3di_encounter *e, rates *d)
 {
     const double *n = e->at->normal;
     double spin[3], dspin[3], raw[3], dbend[3], dm[3], wring[3] = {e->wring, 0.0, 0.0};
-    double k = e->pair.kr * e->s;
-    double c = e->pair.dr * e->root_mass * e->root * e->radius;
-    double dk = e->pair.kr * d->s;
-    double dc = e->pair.dr * e->radius * (d->root_mass * e->root + e->root_mass * d->root);
+    const double root = se3di_pair_turn(&e->pair, e->root);
+    const double droot = e->pair.kr_constant ? 0.0 : d->root;
+    double k = se3di_pair_kr(&e->pair, e->s);
+    double c = e->pair.dr * e->root_mass * root * e->radius;
+    double dk = e->pair.kr_constant ? 0.0 : e->pair.kr * d->s;
+    double dc = e->pair.dr * e->radius * (d->root_mass * root + e->root_mass * droot);
     se3di_encounter_spin(e, raw);
     se3di_sub(d->w[1], d->w[0], dspin);
     se3di_add(dspin, d->surface_spin, dspin);

@@ -83,20 +83,17 @@ static double mean_rate(double a, double b)
     return sqrt(own(one, 0.0) * own(other, 0.0));
 }
 
-/* A tangential stiffness in place of what the law makes of its ratio. Of two in series. */
-static void hold(const se3di_material *a, const se3di_material *b, const se3di_override *o,
-                 se3di_pair *pair)
+/* A stiffness in place of what the law makes of a ratio, `ratio` of the pair, or below 0. Of two in
+ * series. @return whether there is one */
+static int in_place(double one, double other, double of_pair, double ratio, double *stiffness)
 {
-    const double one = a->tangential_stiffness, other = b->tangential_stiffness;
-    const int is_ours = o->tangential_stiffness >= 0.0;
-    if (!is_ours && (o->tangential_ratio >= 0.0 || !is_given(one, other))) {
-        return;
+    if (!(of_pair >= 0.0) && (ratio >= 0.0 || !is_given(one, other))) {
+        return 0;
     }
     const double k = own(is_given(one, 0.0) ? one : other, 0.0);
     const double l = own(is_given(other, 0.0) ? other : one, 0.0);
-    const double both = k > 0.0 && l > 0.0 ? 2.0 * k * l / (k + l) : 0.0;
-    pair->kt = choose(o->tangential_stiffness, both);
-    pair->kt_constant = pair->law == SE3DI_LAW_HERTZ_MINDLIN;
+    *stiffness = choose(of_pair, k > 0.0 && l > 0.0 ? 2.0 * k * l / (k + l) : 0.0);
+    return 1;
 }
 
 /* Damping along the tangent, from what it is over that along the normal. */
@@ -120,6 +117,9 @@ static void roll(const se3di_material *a, const se3di_material *b, const se3di_o
     pair->kr =
         choose(o->rolling_ratio, sqrt(own(a->rolling_ratio, 1.0) * own(b->rolling_ratio, 1.0)));
     pair->kr *= pair->kt;
+    pair->kr_constant = in_place(a->rolling_stiffness, b->rolling_stiffness, o->rolling_stiffness,
+                                 o->rolling_ratio, &pair->kr) &&
+                        se3di_pair_is_hertz(pair);
     pair->dr = o->rolling_damping >= 0.0 ? o->rolling_damping
                : is_given(a->rolling_damping, b->rolling_damping)
                    ? sqrt(own(a->rolling_damping, damping) * own(b->rolling_damping, damping))
@@ -157,7 +157,7 @@ void se3di_pair_mix(se3di_contact_law of_all, const se3di_material *a, const se3
         hertz(a, b, o, e, pair);
     }
     pair->law = (int32_t)law;
-    pair->kt_constant = 0;
+    pair->kt_constant = pair->kr_constant = 0;
     pair->restitution = e;
     pair->friction = choose(o->friction, sqrt(a->friction * b->friction));
     if (law == SE3DI_LAW_CALLBACK) {
@@ -174,7 +174,9 @@ void se3di_pair_mix(se3di_contact_law of_all, const se3di_material *a, const se3
                    : -1.0;
     drag(a, b, o, pair);
     roll(a, b, o, pair);
-    hold(a, b, o, pair); /* rolling is over the stiffness of the law */
+    pair->kt_constant = in_place(a->tangential_stiffness, b->tangential_stiffness,
+                                 o->tangential_stiffness, o->tangential_ratio, &pair->kt) &&
+                        se3di_pair_is_hertz(pair); /* rolling is over the stiffness of the law */
 }
 
 void se3di_pair_mix_all(se3di_model *model)
@@ -203,7 +205,8 @@ double se3di_pair_step(const se3di_material *a, const se3di_override *over, cons
         return HUGE_VAL;
     }
     const double tangent = pair->kt_constant ? 0.0 : pair->kt;
-    const double stiffest = fmax(tangent, pair->kr) / pair->kn;
+    const double turn = pair->kr_constant ? 0.0 : pair->kr;
+    const double stiffest = fmax(tangent, turn) / pair->kn;
     if (pair->law == SE3DI_LAW_HOOKE) {
         double rate = sqrt(pair->kn * fmax(1.0, stiffest) / reduced_mass);
         const double damping = pair->rn < 0.0 ? pair->dn / sqrt(reduced_mass) : pair->rn;
@@ -218,7 +221,8 @@ double se3di_pair_step(const se3di_material *a, const se3di_override *over, cons
                         (stiffest > 1.5001 ? sqrt(stiffest / 1.5) : 1.0);
     const double circle = 0.3 * radius; /* of contact, at a tenth of the radius on a wall */
     const double alone = step / (1.0 + step * fmax(pair->rn, 0.0) * circle / (0.02 * PI));
-    return pair->kt_constant && pair->kt > 0.0
-               ? fmin(alone, 0.02 * PI * sqrt(reduced_mass / pair->kt)) /* as of hooke */
-               : alone;
+    const double constant =
+        fmax(pair->kt_constant ? pair->kt : 0.0, pair->kr_constant ? pair->kr : 0.0);
+    return constant > 0.0 ? fmin(alone, 0.02 * PI * sqrt(reduced_mass / constant)) /* as of hooke */
+                          : alone;
 }

@@ -43,6 +43,9 @@ static const se3di_key material_keys[] = {
     {"tangential_stiffness", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, tangential_stiffness),
      .text = "in place of tangential_ratio, also of hertz_mindlin the same at any overlap [N/m]"},
+    {"rolling_stiffness", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
+     SE3DI_INTO(se3d_material_def, rolling_stiffness),
+     .text = "in place of rolling_ratio, also of hertz_mindlin the same at any overlap [N/m]"},
     {"tangential_damping", SE3DI_KIND_NUMBER, SE3DI_NOT_NEGATIVE,
      SE3DI_INTO(se3d_material_def, tangential_damping), .standard = "of the law",
      .text = "over that along the normal, at most 10"},
@@ -113,6 +116,11 @@ static bool read_choices(se3di_reader *reader, const se3di_node *entry, se3d_mat
         return se3di_reader_fail_key(reader, entry, "tangential_stiffness",
                                      "stands beside `tangential_ratio`: one follows from the "
                                      "other");
+    }
+    choose(entry, "rolling_stiffness", &def->rolling_stiffness);
+    if (se3di_node_get(entry, "rolling_stiffness") && se3di_node_get(entry, "rolling_ratio")) {
+        return se3di_reader_fail_key(reader, entry, "rolling_stiffness",
+                                     "stands beside `rolling_ratio`: one follows from the other");
     }
     return !(se3di_node_get(entry, "damping_ratio") && se3di_node_get(entry, "restitution")) ||
            se3di_reader_fail_key(reader, entry, "damping_ratio",

@@ -418,6 +418,7 @@ static void save_material(se3di_save *s, se3d_material material)
     save_choice(s, "rolling_ratio", def.rolling_ratio);
     save_choice(s, "rolling_damping", def.rolling_damping);
     save_choice(s, "tangential_stiffness", def.tangential_stiffness);
+    save_choice(s, "rolling_stiffness", def.rolling_stiffness);
 }
 
 void se3di_save_materials(se3di_save *s)
@@ -457,7 +458,8 @@ static bool save_pair(se3di_save *s, se3d_material a, se3d_material b)
                   {"rolling_damping", def.rolling_damping},
                   {"young", def.young},
                   {"poisson", def.poisson},
-                  {"tangential_stiffness", def.tangential_stiffness}};
+                  {"tangential_stiffness", def.tangential_stiffness},
+                  {"rolling_stiffness", def.rolling_stiffness}};
     bool any = def.law >= 0;
     for (size_t k = 0; k < sizeof values / sizeof *values; ++k) {
         any = any || values[k].value >= 0.0;
