@@ -43,17 +43,21 @@ size_t se3di_explicit_work_count(const se3di_assembly *assembly)
  * below what rounding allows. On open trees with nothing but plain forces the estimates of long
  * steps, which are of low orders, are far above the error: at 0.1 by three orders of magnitude;
  * those of gauss are at every tolerance. */
-static double inner_tolerance(const se3di_integration *integration, const se3di_motion *motion)
+static double inner_tolerance(const se3di_integration *integration, int is_plain)
 {
     const double tolerance = integration->settings.tolerance;
-    const se3di_integrator *method = integration->method;
-    const int is_gauss = method->tag == SE3D_METHOD_GAUSS;
-    const int is_plain = (is_gauss || method->tag == SE3D_METHOD_DOP853) &&
-                         motion->are_all_plain(integration->equations);
+    const int is_gauss = integration->method->tag == SE3D_METHOD_GAUSS;
     const int is_loose = is_plain && tolerance > SE3DI_EXPLICIT_LOOSE;
     const double more = is_loose ? sqrt(tolerance / SE3DI_EXPLICIT_LOOSE) : 1.0;
     const double part = is_plain && is_gauss ? GAUSS_PART : SE3DI_EXPLICIT_PART;
     return fmax(part * more * tolerance, SE3DI_EXPLICIT_LEAST);
+}
+
+static int find_plain(const se3di_integration *integration, const se3di_motion *motion)
+{
+    const uint64_t tag = integration->method->tag;
+    return (tag == SE3D_METHOD_GAUSS || tag == SE3D_METHOD_DOP853) &&
+           motion->are_all_plain(integration->equations);
 }
 
 double se3di_gauss_get_reach(const se3di_integration *integration, const se3di_model *model)
@@ -96,6 +100,7 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration)
     const se3di_motion *motion = se3di_motion_find(integration->equations);
     const size_t count = motion->count(integration->equations);
     const size_t memories = SE3DI_FORCE_STATES * assembly->model->force_slots.count;
+    const int is_plain = find_plain(integration, motion);
     double *history = assembly->model->history;
     double *memory = integration->work + (SE3DI_EXPLICIT_ROWS + 3) * count;
     const se3di_sums *avx2 = se3di_sums_avx2();
@@ -118,7 +123,8 @@ se3di_explicit se3di_explicit_point(const se3di_integration *integration)
         .sum3 = integration->work + (SE3DI_EXPLICIT_ROWS + 2) * count,
         .memory = memory,
         .bodies = {memory + memories, memory + memories + se3di_state_count(assembly)},
-        .tolerance = inner_tolerance(integration, motion),
+        .is_plain = is_plain,
+        .tolerance = inner_tolerance(integration, is_plain),
     };
 }
 

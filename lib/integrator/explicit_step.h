@@ -111,6 +111,7 @@ struct se3di_explicit {
     int laid_out;       /* gauss: the stages that lanes are laid out for; 0: none yet */
     int is_closed;      /* gauss: its stages are closed, and so is its end before all else */
     int is_bare;        /* no frames are made between steps */
+    int is_plain;       /* gauss, dop853: an open tree with plain forces */
     int is_met;         /* gauss: a stage or the end is too near to a singular position */
     int knows_turns;    /* `turns`: y_1 is the end of a bare step of this call */
     int stands;         /* the frames are at y_1: a step of this call has ended there */

@@ -23,16 +23,10 @@
 #define LARGE           8
 #define MANY_OF_FEW     1e-3 /* and on those of fewer; of loops in lanes always */
 #define CONTRACTION_AIM 0.3  /* of the iterations: fewer, longer steps cost more iterations */
-#define CONTRACTION_MAX 0.7  /* above, the step is given up, */
-#define FIRST_MAX       1.2  /* above this by the first two changes: one is that of the guess */
 #define ITERATIONS_MAX  12
 #define EXACT_MAX       100   /* iterations to rounding, for a step that is not controlled */
 #define ROUNDING        1e-14 /* a relative change that is only noise */
-#define LEFT            0.1   /* of the local tolerance may be left of the iterations */
 #define NOISE           0.5   /* the same of a change that does not get less */
-#define GUESS           0.5   /* contraction of a step that nothing is known of */
-#define SAFETY          0.8
-#define FAR             0.6 /* into a step: where its prediction is to be at its best */
 #define GROWTH          2.0
 #define EASY            0.01 /* an error that would allow far longer steps */
 #define SHORT           0.02 /* step times that rate: singular positions are not avoided by less */
@@ -41,6 +35,32 @@
 #define SLOW_MAX        0.05 /* step times the rate of the motion, if stiffness holds it */
 #define STATES          (SE3DI_GAUSS_MAX + 1) /* first vector of work for the states of stages */
 #define END             SE3DI_GAUSS_FORMS     /* the form that is the derivative at the end */
+
+/* What steps are held to. */
+typedef struct control {
+    double part;            /* of the local tolerance: what the estimate of the error may be, */
+    double left;            /* and of that, what may be left of the iterations */
+    double safety;          /* of the length that the error allows */
+    double contraction_max; /* of the iterations; above, the step is given up, */
+    double first_max;       /* above this by the first two changes: one is that of the guess */
+    double guess;           /* contraction of a step that nothing is known of */
+    double far;             /* into a step: where its prediction is to be at its best */
+} control;
+
+static const control careful = {1.0, 0.1, 0.8, 0.7, 1.2, 0.5, 0.6};
+static const control eager = {4.0, 0.05, 0.75, 0.9, 1.5, 0.3, 0.5};
+
+/* The estimates of four stages are the farther above the error, and where nothing but plain forces
+ * act steps that are longer stay within the tolerance. */
+static int is_eager(const se3di_explicit *m)
+{
+    return m->is_plain && m->stages == 4;
+}
+
+static const control *get_control(const se3di_explicit *m)
+{
+    return is_eager(m) ? &eager : &careful;
+}
 
 static double *stage_rate(const se3di_explicit *m, int i)
 {
@@ -144,7 +164,7 @@ static void find_prediction(const se3di_explicit *m, const se3di_gauss_rule *rul
     }
     const double part = h / (m->past->at.time - m->past->at.begin);
     const se3di_gauss_rule *last = se3di_gauss_find((int)m->past->stages);
-    const int count = count_forms(m, last, 1.0 + FAR * part);
+    const int count = count_forms(m, last, 1.0 + get_control(m)->far * part);
     prediction->forms = count - 1;
     for (int i = 0; i < rule->stages; ++i) {
         double basis[SE3DI_GAUSS_FORMS];
@@ -210,6 +230,8 @@ static se3d_status sweep(se3di_explicit *m, const se3di_gauss_rule *rule, double
 static int judge(const se3di_explicit *m, int iteration, double change, double rate)
 {
     const int is_controlled = isfinite(m->tolerance);
+    const control *own = get_control(m);
+    const double tolerance = own->part * m->tolerance;
     if (!isfinite(change)) {
         return -1;
     }
@@ -219,11 +241,11 @@ static int judge(const se3di_explicit *m, int iteration, double change, double r
         return has_settled ? 1 : iteration + 1 < EXACT_MAX ? 0 : -1;
     }
     const double left = rate < 0.9 ? change * rate / (1.0 - rate) : HUGE_VAL;
-    if (left <= LEFT * m->tolerance || change <= ROUNDING) {
+    if (left <= own->left * tolerance || change <= ROUNDING) {
         return 1;
     }
-    if (iteration > 0 && rate > (iteration == 1 ? FIRST_MAX : CONTRACTION_MAX)) {
-        return change <= NOISE * m->tolerance ? 1 : -1;
+    if (iteration > 0 && rate > (iteration == 1 ? own->first_max : own->contraction_max)) {
+        return change <= NOISE * tolerance ? 1 : -1;
     }
     return iteration + 1 >= ITERATIONS_MAX ? -1 : 0;
 }
@@ -231,11 +253,12 @@ static int judge(const se3di_explicit *m, int iteration, double change, double r
 /* What the contraction of the first iteration is likely to be. */
 static double guess_rate(const se3di_explicit *m, double h)
 {
+    const double guess = get_control(m)->guess;
     if (is_continued(m) && m->past->contraction > 0.0) {
         const double part = h / (m->past->at.time - m->past->at.begin);
-        return fmin(GUESS, m->past->contraction * part * part);
+        return fmin(guess, m->past->contraction * part * part);
     }
-    return GUESS;
+    return guess;
 }
 
 /* Iteration k has made `change`. */
@@ -374,6 +397,13 @@ static void find_defects(const se3di_explicit *m, double *begin, double *end)
     }
 }
 
+/* Of the coefficients of the polynomial, of which the last and first are in the ratio of `part`: by
+ * one degree. */
+static double find_decay(const se3di_explicit *m, double part)
+{
+    return is_eager(m) ? sqrt(sqrt(part)) : se3di_pow(part, 1.0 / (m->stages + 1));
+}
+
 /* The defects at both ends, integrated, are the error of u within the step, of local order s + 1;
  * that of the interpolation through both ends is less by a factor that their size tells. */
 static double estimate_end(se3di_explicit *m, double h, double error)
@@ -399,7 +429,7 @@ static double estimate_end(se3di_explicit *m, double h, double error)
     if (!(size > 0.0)) {
         return size == 0.0 ? 0.0 : HUGE_VAL;
     }
-    return rule->largest * size * se3di_pow(part, 1.0 / (rule->stages + 1)) / m->tolerance;
+    return rule->largest * size * find_decay(m, part) / (get_control(m)->part * m->tolerance);
 }
 
 /* What the next step is predicted and this one interpolated from. */
@@ -444,11 +474,12 @@ static double contract(double rate)
 static double follow_error(const se3di_explicit *m, double error, double most)
 {
     const int order = m->stages + 2;
+    const double safety = get_control(m)->safety, ratio = most / safety;
     double power = error;
     for (int k = 0; k < order; ++k) {
-        power *= most * (1.0 / SAFETY);
+        power *= ratio;
     }
-    return power < 1.0 ? most : fmin(most, fmax(0.2, SAFETY * se3di_pow(error, -1.0 / order)));
+    return power < 1.0 ? most : fmin(most, fmax(0.2, safety * se3di_pow(error, -1.0 / order)));
 }
 
 static double next_step(const se3di_explicit *m, double h, double error)
@@ -467,7 +498,7 @@ static double shrink(const se3di_explicit *m, se3d_status status, double error)
         return ASIDE;
     }
     const double factor = isfinite(error) && error > 0.0
-                              ? SAFETY * se3di_pow(error, -1.0 / (m->stages + 2))
+                              ? get_control(m)->safety * se3di_pow(error, -1.0 / (m->stages + 2))
                               : fmin(0.6, contract(m->contraction));
     return fmax(0.2, fmin(0.8, factor));
 }

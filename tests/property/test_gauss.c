@@ -192,7 +192,7 @@ static void freedoms_and_tolerance_choose_the_stages(void)
         double tolerance;
         int32_t order;
     } rows[] = {{"chain_revolute", 8, 1e-2, 8},  {"chain_revolute", 8, 1e-5, 8},
-                {"chain_revolute", 8, 1e-6, 16}, {"chain_ball", 3, 1e-3, 8},
+                {"chain_revolute", 8, 1e-6, 16}, {"chain_ball", 3, 7e-4, 8},
                 {"chain_revolute", 7, 1e-2, 8},  {"chain_revolute", 7, 1e-4, 16},
                 {"chain_ball", 2, 1e-2, 8},      {"chain_ball", 2, 1e-4, 16},
                 {"four_bar", 3, 1e-2, 16}};
