@@ -138,15 +138,16 @@ static double length_of(const se3di_explicit *m, const double *rates)
     return sqrt(sum);
 }
 
-/* How many forms of the last step's polynomial tell of the motion until x: those after the least
- * part of the sum there are what the iterations have left, which grows with the degree. */
-static int count_forms(const se3di_explicit *m, const se3di_gauss_rule *last, double x)
+/* How many forms of the last step's polynomial tell of the motion until some time, where they are
+ * multiplied by basis[form * SE3DI_GAUSS_POINTS]: those after the least part of the sum there are
+ * what the iterations have left, which grows with the degree. */
+static int count_forms(const se3di_explicit *m, const se3di_gauss_rule *last, const double *basis)
 {
-    double basis[SE3DI_GAUSS_FORMS], least = HUGE_VAL;
+    double least = HUGE_VAL;
     int count = 1;
-    se3di_gauss_basis(last, x, basis);
     for (int k = 1; k < last->stages + 2; ++k) {
-        const double part = (basis[k] - 1.0) * length_of(m, m->forms + (size_t)k * m->count);
+        const double part =
+            (basis[k * SE3DI_GAUSS_POINTS] - 1.0) * length_of(m, m->forms + (size_t)k * m->count);
         if (part <= least) {
             least = part;
             count = k + 1;
@@ -162,15 +163,21 @@ static void find_prediction(const se3di_explicit *m, const se3di_gauss_rule *rul
     if (!is_continued(m)) {
         return;
     }
+    const int s = rule->stages;
     const double part = h / (m->past->at.time - m->past->at.begin);
     const se3di_gauss_rule *last = se3di_gauss_find((int)m->past->stages);
-    const int count = count_forms(m, last, 1.0 + get_control(m)->far * part);
+    double x[SE3DI_GAUSS_POINTS], bases[SE3DI_GAUSS_FORMS * SE3DI_GAUSS_POINTS];
+    for (int i = 0; i < s; ++i) {
+        x[i] = 1.0 + part * rule->c[i];
+    }
+    x[s] = 1.0 + get_control(m)->far * part;
+    se3di_gauss_bases(last, s + 1, x, bases);
+    const int count = count_forms(m, last, bases + s);
     prediction->forms = count - 1;
-    for (int i = 0; i < rule->stages; ++i) {
-        double basis[SE3DI_GAUSS_FORMS];
-        se3di_gauss_basis(last, 1.0 + part * rule->c[i], basis);
-        for (int k = 1; k < count; ++k) {
-            prediction->weights[(k - 1) * SE3DI_GAUSS_MAX + i] = basis[k] - 1.0;
+    for (int k = 1; k < count; ++k) {
+        for (int i = 0; i < s; ++i) {
+            prediction->weights[(k - 1) * SE3DI_GAUSS_MAX + i] =
+                bases[k * SE3DI_GAUSS_POINTS + i] - 1.0;
         }
     }
 }

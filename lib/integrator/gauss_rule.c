@@ -97,11 +97,25 @@ static void legendre(int s, double xi, double P[SE3DI_GAUSS_FORMS])
     }
 }
 
-void se3di_gauss_basis(const se3di_gauss_rule *rule, double x, double basis[SE3DI_GAUSS_FORMS])
+void se3di_gauss_bases(const se3di_gauss_rule *rule, int points, const double *x, double *bases)
 {
-    const double xi = 2.0 * x - 1.0;
-    legendre(rule->stages, xi, basis);
-    basis[rule->stages + 1] = xi * basis[rule->stages];
+    double xi[SE3DI_GAUSS_POINTS];
+    for (int i = 0; i < points; ++i) {
+        xi[i] = 2.0 * x[i] - 1.0;
+        bases[i] = 1.0;
+        bases[SE3DI_GAUSS_POINTS + i] = xi[i];
+    }
+    double *now = bases + SE3DI_GAUSS_POINTS;
+    for (int k = 1; k < rule->stages; ++k, now += SE3DI_GAUSS_POINTS) { /* as legendre() */
+        const double *before = now - SE3DI_GAUSS_POINTS;
+        double *next = now + SE3DI_GAUSS_POINTS;
+        for (int i = 0; i < points; ++i) {
+            next[i] = ((2 * k + 1) * xi[i] * now[i] - k * before[i]) / (k + 1);
+        }
+    }
+    for (int i = 0; i < points; ++i) {
+        now[SE3DI_GAUSS_POINTS + i] = xi[i] * now[i];
+    }
 }
 
 /* int_0^x P_n = (P_{n+1} - P_{n-1}) / (2 (2n + 1)), and

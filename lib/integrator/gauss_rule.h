@@ -16,7 +16,8 @@
 #define SE3DI_GAUSS_MAX 8 /* stages */
 /* Of the polynomial through both ends: a_0 ... a_{s-1} of P_k, then (d_0 + d_1)/2 of P_s and
  * (d_1 - d_0)/2 of xi P_s. */
-#define SE3DI_GAUSS_FORMS 10
+#define SE3DI_GAUSS_FORMS  10
+#define SE3DI_GAUSS_POINTS (SE3DI_GAUSS_MAX + 1) /* the most at which forms are asked for at once */
 
 typedef struct se3di_gauss_rule {
     int stages;
@@ -36,8 +37,10 @@ typedef struct se3di_gauss_prediction {
 /* Of 4 or 8 stages. */
 const se3di_gauss_rule *se3di_gauss_find(int stages);
 
-/* What the s + 2 forms are multiplied by at x, all 1 at the end; and the integrals from 0 to x. */
-void se3di_gauss_basis(const se3di_gauss_rule *rule, double x, double basis[SE3DI_GAUSS_FORMS]);
+/* What the s + 2 forms are multiplied by at points x, side by side: bases[form *
+ * SE3DI_GAUSS_POINTS + point], all 1 at the end. */
+void se3di_gauss_bases(const se3di_gauss_rule *rule, int points, const double *x, double *bases);
+/* Integrals of the forms from 0 to x. */
 void se3di_gauss_integral(const se3di_gauss_rule *rule, double x,
                           double integral[SE3DI_GAUSS_FORMS]);
 
