@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Batches: CPU time of a step of a state, rk4 at 1 ms with new efforts before every step, and of
  * accelerations and efforts (inverse dynamics), for arms of six revolutes (bench/arm.h).
- * Arguments: states and threads (4096 1); peers/mujoco_batch.c does the same. */
+ * Arguments: states and threads (4096 1), and `plane` for arms whose axes are all parallel;
+ * peers/mujoco_batch.c does the same. */
 #define _POSIX_C_SOURCE 200809L
 #include "arm.h"
 #include "clock.h"
@@ -23,7 +24,7 @@ static void need(se3d_status status, const char *what, const char *why)
     }
 }
 
-static se3d_system *make_arm(void)
+static se3d_system *make_arm(int in_plane)
 {
     se3d_system *system = NULL;
     se3d_body before;
@@ -41,7 +42,7 @@ static se3d_system *make_arm(void)
         for (int c = 0; c < 3; ++c) {
             def.point_i[c] = link->at[c] - (k > 0 ? centre_before[c] : 0.0);
             def.point_j[c] = -link->centre[c];
-            def.axis_i[c] = def.axis_j[c] = link->axis[c];
+            def.axis_i[c] = def.axis_j[c] = in_plane ? c == 1 : link->axis[c];
             joint[c] += link->at[c];
             body.position[c] = joint[c] + link->centre[c];
             body.inertia[c] = link->inertia[c];
@@ -106,7 +107,8 @@ int main(int argc, char **argv)
 {
     const size_t count = argc > 1 ? (size_t)strtoul(argv[1], NULL, 10) : 4096;
     const int threads = argc > 2 ? atoi(argv[2]) : 1;
-    se3d_system *system = make_arm();
+    const int in_plane = argc > 3 && strcmp(argv[3], "plane") == 0;
+    se3d_system *system = make_arm(in_plane);
     work w = {.count = count, .seed = 1};
     need(se3d_batch_create(system, count, threads, &w.batch), "batch",
          se3d_system_get_error(system));
@@ -115,8 +117,8 @@ int main(int argc, char **argv)
     if (!w.effort || !w.qddot) {
         return 1;
     }
-    printf("se3d, %zu arms, %d threads, %zu lanes\n", count, threads,
-           se3d_batch_count_lanes(w.batch));
+    printf("se3d, %zu arms%s, %d threads, %zu lanes\n", count, in_plane ? " in the plane" : "",
+           threads, se3d_batch_count_lanes(w.batch));
     measure(&w, step, "rk4 step");
     measure(&w, accelerate, "accelerations");
     measure(&w, find_efforts, "efforts");

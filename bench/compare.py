@@ -396,6 +396,8 @@ class Bench:
         print("\n## Batches: arms of six revolutes, 1 ms steps with new efforts", flush=True)
         self.show_program("bench_batch", "4096", "1")
         self.show_program("mujoco_batch", "64")
+        self.show_program("bench_batch", "4096", "1", "plane")
+        self.show_program("mujoco_batch", "64", "plane")
 
     def touch(self):
         print("\n## Boxes that touch, 3 s at steps of 2 ms (1000 boxes: .5 s), about the same overlap at rest",

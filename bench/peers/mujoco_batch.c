@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* What bench_batch measures, by MuJoCo: mj_step with rk4 and with its default method, mj_forward
  * and mj_inverse, of arms of six hinges without contact, one mjData each, new efforts before every
- * step. Argument: states (64; more of them no longer fit into the cache). */
+ * step. Arguments: states (64; more of them no longer fit into the cache), and `plane` for arms
+ * whose axes are all parallel. */
 #define _POSIX_C_SOURCE 200809L
 #include "../arm.h"
 #include "../clock.h"
@@ -14,7 +15,7 @@
 
 enum { ROUNDS = 9, STEPS = 225 };
 
-static mjModel *load(void)
+static mjModel *load(int in_plane)
 {
     static char text[8192], error[256];
     static mjVFS files;
@@ -24,13 +25,15 @@ static mjModel *load(void)
         "constraint='disable'/></option><worldbody>",
         BENCH_ARM_STEP);
     for (int k = 0; k < BENCH_ARM_LINKS; ++k) {
+        static const double y[3] = {0.0, 1.0, 0.0};
         const bench_link *l = &bench_arm[k];
+        const double *axis = in_plane ? y : l->axis;
         n += (size_t)snprintf(text + n, sizeof text - n,
                               "<body pos='%g %g %g'><joint type='hinge' axis='%g %g %g'/>"
                               "<inertial pos='%g %g %g' mass='%g' diaginertia='%g %g %g'/>",
-                              l->at[0], l->at[1], l->at[2], l->axis[0], l->axis[1], l->axis[2],
-                              l->centre[0], l->centre[1], l->centre[2], l->mass, l->inertia[0],
-                              l->inertia[1], l->inertia[2]);
+                              l->at[0], l->at[1], l->at[2], axis[0], axis[1], axis[2], l->centre[0],
+                              l->centre[1], l->centre[2], l->mass, l->inertia[0], l->inertia[1],
+                              l->inertia[2]);
     }
     for (int k = 0; k < BENCH_ARM_LINKS; ++k) {
         n += (size_t)snprintf(text + n, sizeof text - n, "</body>");
@@ -94,7 +97,8 @@ static void measure(work *w, void (*compute)(work *), const char *what)
 
 int main(int argc, char **argv)
 {
-    work w = {.model = load(), .count = argc > 1 ? atoi(argv[1]) : 64, .seed = 1};
+    const int in_plane = argc > 2 && strcmp(argv[2], "plane") == 0;
+    work w = {.model = load(in_plane), .count = argc > 1 ? atoi(argv[1]) : 64, .seed = 1};
     w.data = calloc((size_t)w.count, sizeof *w.data);
     for (int k = 0; w.data && k < w.count; ++k) {
         w.data[k] = mj_makeData(w.model);

@@ -228,6 +228,9 @@ static se3d_status init_worker(se3di_batch *b, se3di_batch_worker *w)
                           {&w->scalars, 6 * (size_t)b->tree.body_count}};
     SE3DI_TRY(se3di_lanes_init(&w->lanes, &b->tree, b->core, !b->is_in_lanes));
     w->lanes.wants_points = b->spring_count > 0;
+    if (b->is_in_lanes && !b->has_loops && b->spring_count + b->load_count == 0) {
+        se3di_lanes_take_plane(&w->lanes);
+    }
     w->memory =
         take_rooms(&b->model->allocator, rooms, sizeof rooms / sizeof *rooms, &w->memory_count);
     if (!w->memory) {

@@ -146,7 +146,7 @@ void se3di_lanes_load(se3di_lanes *lanes, const double *gravity, int acts)
 void se3di_lanes_accelerate(const se3di_lanes *lanes, const double *effort, double *qddot)
 {
     if (lanes->plane) {
-        lanes->core->fall_in_plane(lanes, qddot);
+        lanes->core->fall_in_plane(lanes, effort, qddot);
         return;
     }
     lanes->core->factor(lanes, effort);

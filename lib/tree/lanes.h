@@ -133,8 +133,9 @@ typedef struct se3di_lane_core {
      * of accelerations of both, by the accelerations that were found last; wants points, with
      * gravity. */
     void (*survey)(const se3di_lanes *lanes, double *squares);
-    /* Accelerations of a tree that moves in planes by gravity alone, after place(). */
-    void (*fall_in_plane)(const se3di_lanes *lanes, double *qddot);
+    /* Accelerations of a tree that moves in planes, after place(), by gravity and effort
+     * [velocities], NULL: none. */
+    void (*fall_in_plane)(const se3di_lanes *lanes, const double *effort, double *qddot);
     /* 1.0 if all [count] numbers are finite, else not a number. */
     void (*check)(size_t count, const double *x, double *verdict);
 } se3di_lane_core;
@@ -195,8 +196,8 @@ void se3di_lanes_take_loops(se3di_lanes *lanes, const se3di_lane_loops *lane_loo
 /* Whether all that moves, moves in planes: the joints of a tree are revolutes about parallel axes
  * without inertia of their own. */
 int se3di_tree_is_planar(const se3di_tree *tree);
-/* If so, the lanes place, accelerate and measure by the three freedoms that links have in a plane,
- * for lanes on which nothing but gravity acts. */
+/* If so, the lanes place, accelerate, find efforts and measure by the three freedoms that links
+ * have in a plane, for lanes on which nothing but gravity and efforts act. */
 void se3di_lanes_take_plane(se3di_lanes *lanes);
 
 /* Accelerations of the states, with lanes->wrench as it is; effort may be NULL. */

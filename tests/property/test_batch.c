@@ -2,7 +2,7 @@
 /* Batches: the same motion as that of a solver, the same bits for any number of states and threads
  * and in any lane, states that fail alone, gravity and masses of their own, no memory in steps. */
 #include "support/counting.h"
-#include "support/tree_world.h"
+#include "support/parallel_world.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -10,6 +10,16 @@
 enum { MECHANISMS = 40, NUMBERS = 7 * TREE_BODIES_MAX, STATES = 21 };
 
 #define STEP 0.01
+
+/* Every second one moves in planes. */
+static void make_world(tree_world *w, uint64_t seed)
+{
+    if (seed % 2) {
+        tree_make_parallel(w, seed / 2, 0.0);
+    } else {
+        tree_world_init(w, seed / 2, 1 + (int)(seed / 2 % TREE_BODIES_MAX), 0);
+    }
+}
 
 /* The state of a system as coordinates, or from them. */
 static void use_coordinates(se3d_system *system, double *q, double *qdot, int sets)
@@ -47,13 +57,13 @@ static double difference(const double *a, const double *b, size_t count)
 static void a_batch_moves_as_a_solver_does(void)
 {
     static const se3d_method methods[] = {SE3D_METHOD_RK4, SE3D_METHOD_RK45, SE3D_METHOD_DOP853};
-    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+    for (uint64_t seed = 0; seed < 2 * MECHANISMS; ++seed) {
         const se3d_method method = methods[seed % 3];
         tree_world w;
         se3d_system *other;
         se3d_batch *batch;
         double q[NUMBERS], qdot[NUMBERS];
-        tree_world_init(&w, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+        make_world(&w, seed);
         use_coordinates(w.system, q, qdot, 0);
         use_coordinates(w.system, q, qdot, 1); /* velocities that joints allow */
         CHECK(!se3d_system_clone(w.system, &other));
@@ -132,9 +142,9 @@ static void bits_do_not_depend_on_count_lane_and_threads(void)
         size_t size;
         int threads;
     } ways[] = {{1, 1}, {2, 3}, {5, 2}, {9, 1}, {20, 2}, {21, 7}};
-    for (uint64_t seed = 0; seed < 12; ++seed) {
+    for (uint64_t seed = 0; seed < 24; ++seed) {
         tree_world w;
-        tree_world_init(&w, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
+        make_world(&w, seed);
         make_states(&w, &s);
         run_some(&w, &s, 0, STATES, 1, q, qdot, qddot);
         for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
@@ -151,11 +161,10 @@ static void bits_do_not_depend_on_count_lane_and_threads(void)
     }
 }
 
-/* Springs and efforts on the coordinates of joints, loads at points of the last body. */
-static void add_elements(tree_world *w)
+/* Springs and efforts on the coordinates of joints. */
+static void add_laws(tree_world *w)
 {
     se3d_force force;
-    const se3d_body last = w->bodies[w->count - 1];
     for (int k = 0; k < w->joint_count; ++k) {
         se3d_rsda_def spring = se3d_rsda_def_default();
         se3d_effort_def effort = se3d_effort_def_default();
@@ -169,6 +178,13 @@ static void add_elements(tree_world *w)
         effort.coordinate = status ? SE3D_JOINT_COORDINATE_DISPLACEMENT : effort.coordinate;
         (void)se3d_force_create_effort(w->system, &effort, &force);
     }
+}
+
+/* At points of the last body. */
+static void add_loads(tree_world *w)
+{
+    se3d_force force;
+    const se3d_body last = w->bodies[w->count - 1];
     for (int in_body = 0; in_body < 2; ++in_body) {
         se3d_load_def load = se3d_load_def_default();
         load.body = last;
@@ -186,13 +202,16 @@ static void gravity_and_masses_are_those_of_the_state(void)
     static states_of s;
     static double qddot[STATES * NUMBERS], effort[STATES * NUMBERS], alone[NUMBERS];
     int in_lanes = 0;
-    for (uint64_t seed = 0; seed < MECHANISMS; ++seed) {
+    for (uint64_t seed = 0; seed < 2 * MECHANISMS; ++seed) {
         tree_world w;
         se3d_batch *b;
         se3d_coordinates *c;
-        tree_world_init(&w, seed, 1 + (int)(seed % TREE_BODIES_MAX), 0);
-        if (seed % 2) {
-            add_elements(&w);
+        make_world(&w, seed);
+        if (seed / 2 % 2) {
+            add_laws(&w);
+        }
+        if (seed / 4 % 2) { /* in space, if it moves in planes */
+            add_loads(&w);
         }
         make_states(&w, &s);
         CHECK(!se3d_batch_create(w.system, STATES, 2, &b));
@@ -226,7 +245,7 @@ static void gravity_and_masses_are_those_of_the_state(void)
         se3d_batch_destroy(b);
         tree_world_destroy(&w);
     }
-    CHECK(in_lanes > MECHANISMS / 2);
+    CHECK(in_lanes > MECHANISMS);
 }
 
 /* A bar on a revolute about z that hangs down, and its batch. */
@@ -369,7 +388,7 @@ static void steps_and_queries_take_no_memory(void)
         se3d_batch *b;
         support_counting counting = {0};
         const se3d_allocator allocator = support_counting_allocator(&counting);
-        tree_world_init(&w, seed, 4, 0);
+        make_world(&w, seed + 6);
         make_states(&w, &s);
         w.system->model.allocator = allocator;
         CHECK(!se3d_batch_create(w.system, STATES, 2, &b));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* Several states of a tree in lanes against the same states one after the other, on random trees of
  * all joint types: the same bits at every width, in every lane, whatever is in the others. */
-#include "support/tree_world.h"
+#include "support/parallel_world.h"
 
 #include "assembly/loads.h"
 #include "tree/core.h"
@@ -322,47 +322,25 @@ static void sums_and_unit_quaternions_are_those_of_doubles(void)
     }
 }
 
-/* A revolute whose axis is `axis`, up to its sign on either body, but for `tilt`. */
-static void add_parallel_joint(tree_world *w, int i, int j, const double axis[3], double tilt)
+/* Masses and moments of inertia of each lane's own. */
+static void spread_inertias(const se3di_tree *tree, size_t w, double *inertias)
 {
-    double at[3], along[3], tilted[3];
-    se3d_joint_def def = se3d_joint_def_default();
-    tree_vector(w, at, 3, 1.5);
-    se3di_scale(tree_below(w, 2) ? 1.0 : -1.0, axis, along);
-    def.angle0 = tree_uniform(w, -4.0, 4.0);
-    def.body_i = w->bodies[i];
-    def.body_j = w->bodies[j];
-    tree_to_body(w, i, at, along, def.point_i, def.axis_i);
-    se3di_scale(tree_below(w, 2) ? 1.0 : -1.0, axis, tilted);
-    tilted[0] += tilt;
-    tilted[1] -= 0.3 * tilt;
-    tree_to_body(w, j, at, tilted, def.point_j, def.axis_j);
-    CHECK(!se3d_joint_create_revolute(w->system, &def, &w->joints[w->joint_count++]));
-}
-
-/* Bodies of any inertia, anywhere along the axes; several of them may hang on the ground or on one
- * body. */
-static void make_parallel(tree_world *w, uint64_t seed, double tilt)
-{
-    double axis[3], gravity[3];
-    tree_world_init(w, seed, 0, 0);
-    tree_unit(w, axis, 3);
-    tree_vector(w, gravity, 3, 10.0);
-    CHECK(!se3d_system_set_gravity(w->system, gravity));
-    for (int k = 1; k <= 1 + (int)(seed % TREE_BODIES_MAX); ++k) {
-        tree_add_body(w);
-        const int other = k > 1 && tree_below(w, 3) == 0 ? tree_below(w, k) : k - 1;
-        const int turned = tree_below(w, 2);
-        add_parallel_joint(w, turned ? k : other, turned ? other : k, axis, k == 2 ? tilt : 0.0);
+    for (size_t k = 0; k < tree->count * 7 * w; ++k) {
+        const se3di_tree_node *n = &tree->nodes[k / w / 7];
+        const size_t c = k / w % 7;
+        inertias[k] = (c == 0 ? n->mass : n->J[c - 1]) * (1.0 + 0.1 * (double)(k % w));
     }
 }
 
-/* Accelerations of all lanes, sizes of the rates as changes, and how fast all moves. */
+/* Accelerations of all lanes, by `effort` (NULL: none) with inertias of their own, sizes of the
+ * rates as changes, how fast all moves, and the efforts that give these accelerations. */
 enum { SURVEY = SE3DI_LANES_MAX, SIZES = 5 * SE3DI_LANES_MAX };
 
 static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_plane, const double *q,
-                 const double *qdot, double *qddot, double *sizes)
+                 const double *effort, double *qddot, double *sizes, double *needed)
 {
+    static _Alignas(SE3DI_LANES_ALIGN) double inertias[7 * LANE_NUMBERS];
+    const double *qdot = q + tree->q_count * (size_t)core->width;
     static const double scale[3] = {0.7, 1.3, 0.9};
     _Alignas(SE3DI_LANES_ALIGN) double gravity[3 * SE3DI_LANES_MAX], change[LANE_NUMBERS];
     _Alignas(SE3DI_LANES_ALIGN) double of_all[SE3DI_LANES_MAX], of_rates[SE3DI_LANES_MAX];
@@ -378,9 +356,15 @@ static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_pla
         CHECK(lanes.plane);
     }
     lanes.wants_points = 1;
+    if (effort) {
+        spread_inertias(tree, w, inertias);
+        lanes.inertias = inertias;
+    }
     core->place(&lanes, q, qdot);
-    se3di_lanes_accelerate(&lanes, NULL, qddot);
+    se3di_lanes_accelerate(&lanes, effort, qddot);
     core->survey(&lanes, sizes + SURVEY);
+    core->find_efforts(&lanes, qddot, needed);
+    core->place(&lanes, q, qdot);
     memcpy(change, qdot, count * sizeof *change);
     memcpy(change + count, qddot, count * sizeof *change);
     core->measure(&lanes, q, change, scale, sizes);
@@ -391,39 +375,54 @@ static void fall(const se3di_tree *tree, const se3di_lane_core *core, int in_pla
     se3di_lanes_destroy(&lanes);
 }
 
+/* The largest difference, relative to the largest number. */
+static double part_between(const double *a, const double *b, size_t count)
+{
+    double most = 0.0, largest = 1.0;
+    for (size_t k = 0; k < count; ++k) {
+        most = fmax(most, fabs(a[k] - b[k]));
+        largest = fmax(largest, fabs(b[k]));
+    }
+    return most / largest;
+}
+
+/* Positions, then velocities, then efforts; those of lane 0 are the same at every width. */
+static void spread_parallel(tree_world *world, size_t w, size_t freedoms, uint64_t seed, double *y)
+{
+    static const double most[3] = {3.0, 4.0, 20.0};
+    uint64_t same = seed + 1;
+    for (size_t k = 0; k < 3 * freedoms * w; ++k) {
+        uint64_t *from = k % w == 0 ? &same : &world->seed;
+        y[k] = most[k / w / freedoms] * check_random(from);
+    }
+}
+
 static void trees_of_parallel_axes_move_in_a_plane_as_in_space(void)
 {
     for (uint64_t seed = 0; seed < 3 * MECHANISMS; ++seed) {
-        _Alignas(SE3DI_LANES_ALIGN) double q[LANE_NUMBERS], qdot[LANE_NUMBERS], out[LANE_NUMBERS];
-        _Alignas(SE3DI_LANES_ALIGN) double in_space[LANE_NUMBERS], sizes[2][SIZES];
-        double alone[NUMBERS], largest = 1.0;
+        _Alignas(SE3DI_LANES_ALIGN) double y[3 * LANE_NUMBERS], out[2][LANE_NUMBERS];
+        _Alignas(SE3DI_LANES_ALIGN) double needed[2][LANE_NUMBERS], sizes[2][SIZES];
+        double alone[2][NUMBERS];
         tree_world world;
         se3di_tree tree;
-        make_parallel(&world, seed, 0.0);
+        tree_make_parallel(&world, seed, 0.0);
         CHECK(!se3di_tree_init(&tree, &world.system->model, 1, NULL));
         CHECK(se3di_tree_is_planar(&tree));
         for (size_t n = 0; n < sizeof widths / sizeof *widths; ++n) {
             const se3di_lane_core *core = se3di_lane_core_find(widths[n]);
-            const size_t w = (size_t)widths[n];
-            uint64_t same = seed + 1;
-            for (size_t k = 0; core && k < tree.v_count; ++k) { /* the same in lane 0 */
-                q[k * w] = 3.0 * check_random(&same);
-                qdot[k * w] = 4.0 * check_random(&same);
-                for (size_t lane = 1; lane < w; ++lane) {
-                    q[k * w + lane] = 3.0 * check_random(&world.seed);
-                    qdot[k * w + lane] = 4.0 * check_random(&world.seed);
-                }
-            }
+            const size_t w = (size_t)widths[n], count = tree.v_count * w;
+            const double *effort = seed % 2 ? y + 2 * count : NULL;
             if (!core) {
                 continue;
             }
-            fall(&tree, core, 0, q, qdot, in_space, sizes[0]);
-            fall(&tree, core, 1, q, qdot, out, sizes[1]);
-            for (size_t k = 0; k < tree.v_count * w; ++k) {
-                largest = fmax(largest, fabs(in_space[k]));
+            spread_parallel(&world, w, tree.v_count, seed, y);
+            for (int k = 0; k < 2; ++k) {
+                fall(&tree, core, k, y, effort, out[k], sizes[k], needed[k]);
             }
-            for (size_t k = 0; k < tree.v_count * w; ++k) {
-                CHECK_NEAR(out[k] / largest, in_space[k] / largest, 1e-11);
+            CHECK_NEAR(part_between(out[1], out[0], count), 0.0, 1e-11);
+            CHECK_NEAR(part_between(needed[1], needed[0], count), 0.0, 1e-10);
+            for (size_t k = 0; k < count; ++k) {
+                CHECK_NEAR(needed[1][k], effort ? effort[k] : 0.0, 1e-8);
             }
             for (size_t lane = 0; lane < w; ++lane) {
                 CHECK_NEAR(sizes[1][lane] / sizes[0][lane], 1.0, 1e-10);
@@ -432,8 +431,9 @@ static void trees_of_parallel_axes_move_in_a_plane_as_in_space(void)
                 CHECK_NEAR((sizes[1][k] - sizes[0][k]) / (1.0 + sizes[0][k]), 0.0, 1e-9);
             }
             for (size_t k = 0; k < tree.v_count; ++k) {
-                CHECK(w == 1 || out[k * w] == alone[k]);
-                alone[k] = out[k * w];
+                CHECK(w == 1 || (out[1][k * w] == alone[0][k] && needed[1][k * w] == alone[1][k]));
+                alone[0][k] = out[1][k * w];
+                alone[1][k] = needed[1][k * w];
             }
         }
         se3di_tree_destroy(&tree);
@@ -446,7 +446,7 @@ static void axes_that_are_not_parallel_do_not_move_in_a_plane(void)
     for (uint64_t seed = 1; seed < TREE_BODIES_MAX; ++seed) { /* two bodies or more */
         tree_world world;
         se3di_tree tree;
-        make_parallel(&world, seed, 1e-9);
+        tree_make_parallel(&world, seed, 1e-9);
         CHECK(!se3di_tree_init(&tree, &world.system->model, 1, NULL));
         int hangs = 0; /* a tilt on the ground is the plane of its own root */
         for (uint32_t k = 0; k < tree.count; ++k) {
