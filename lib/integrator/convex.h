@@ -84,7 +84,6 @@ typedef struct se3di_convex_island {
     int is_traced;           /* nothing acts but impacts whose impulses are known */
     double gain;             /* energy that the step itself gave [J] */
     double momentum;         /* the larger of those of `start` and `aim`, by the mass: 2 T */
-    double accuracy;         /* of impulses: what may be left of the gradient */
     int32_t is_struck;       /* something in it was an impact, see convex_control.c */
     int32_t reserved;
 } se3di_convex_island;

@@ -19,9 +19,7 @@
 #define ALL_FOLLOW  120  /* none of them after so many */
 #define MAY_FOLLOW  0.1  /* of impulses: what is left where they do; */
 #define PATIENCE    10   /* or after so many iterations in which they did not */
-#define ACCURACY    1e-9 /* of impulses, */
-#define MOVING      1e-6 /* of those of an island without constraints in motion: it has */
-#define MOVES       4.0  /* times the velocities that loads make of it in a step */
+#define ACCURACY    1e-9 /* of impulses */
 #define CAP_CHANGE  3e-4 /* of the largest cap: it needs no other iteration */
 #define IS_NEAR     1e-5 /* of impulses: this iteration may be the last */
 #define GO_AHEAD    1e-3 /* of impulses: what is left where caps go on as they went, */
@@ -461,20 +459,6 @@ static void place(const se3di_convex *c, const se3di_assembly *assembly, const d
     }
 }
 
-/* What may be left of the gradient of an island that starts with the momentum `moving` (2 T). */
-static double accuracy_of(const se3di_convex *c, const se3di_convex_island *island, double moving,
-                          const double *start, const double *aim)
-{
-    double *loads = c->change;
-    for (size_t k = 6 * island->body; k < 6 * island->body_end; ++k) {
-        loads[k] = aim[k] - start[k];
-    }
-    se3di_convex_mul_mass(c, island, loads, c->moved);
-    return moving > MOVES * MOVES * weigh(c, island, c->moved) && !se3di_convex_is_bound(island)
-               ? MOVING
-               : ACCURACY;
-}
-
 /* v by places, M (v - v*), the momentum. Returns 1 if contacts may be far from the optimum. */
 static int begin(se3di_convex *c, se3di_convex_island *island)
 {
@@ -484,9 +468,7 @@ static int begin(se3di_convex *c, se3di_convex_island *island)
     se3di_convex_mul_mass(c, island, aim, c->moved);
     island->momentum = weigh(c, island, c->moved);
     se3di_convex_mul_mass(c, island, start, c->moved);
-    const double moving = weigh(c, island, c->moved);
-    island->momentum = fmax(island->momentum, moving);
-    island->accuracy = accuracy_of(c, island, moving, start, aim);
+    island->momentum = fmax(island->momentum, weigh(c, island, c->moved));
     if (se3di_convex_is_bound(island)) {
         memcpy(c->v + first, start + first, count * sizeof *c->v);
         memset(c->rows.lambda + island->row, 0,
@@ -640,25 +622,15 @@ static se3d_status iterate(se3di_convex *c, se3di_equations *equations,
     return SE3D_OK;
 }
 
-/* The velocities that the impulses make, which the law then has to the accuracy of the iteration:
- * so momentum and energy are kept to rounding. */
-static void balance(se3di_convex *c, const se3di_convex_island *island)
-{
-    for (size_t k = island->body; k < island->body_end; ++k) {
-        se3di_convex_let_go(c, k, c->gradient + 6 * k);
-    }
-    see(c, island);
-}
-
 /* What linear equations may leave: the less, the faster the iteration ends (Eisenstat and Walker
  * 1996), but no less than it needs. */
-static double share_of(double rest, double before, double accuracy)
+static double share_of(double rest, double before)
 {
     if (!(rest > 0.0 && before > 0.0)) { /* a host may trap divisions by zero */
         return SHARE;
     }
     const double ratio = before < HUGE_VAL ? rest / before : 1.0;
-    return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * accuracy / rest));
+    return fmin(SHARE, fmax(ratio * sqrt(ratio), 0.1 * ACCURACY / rest));
 }
 
 /* Whether caps and gyration follow, and how often they have, or wait; how often impacts were tamed.
@@ -685,9 +657,6 @@ static void follow_in_time(se3di_convex *c, const se3di_convex_island *island, i
 static se3d_status finish(se3di_convex *c, se3di_equations *equations,
                           const se3di_convex_island *island, int follows)
 {
-    if (island->accuracy > ACCURACY) {
-        balance(c, island);
-    }
     return !follows && se3di_convex_jams(c, island)
                ? se3di_friction_refuse(equations, equations->assembly.model->time)
                : SE3D_OK;
@@ -710,14 +679,14 @@ static se3d_status solve_island(se3di_convex *c, se3di_equations *equations,
         const double before = rest;
         rest = measure(c, equations, island);
         const int stays = !f.goes_on && rest <= ENOUGH && rest >= 0.5 * before;
-        if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= island->accuracy || stays) &&
+        if ((k > 0 || !se3di_convex_is_bound(island)) && (rest <= ACCURACY || stays) &&
             !(f.waits && f.goes_on) && !(f.tamed++ < TAMED_MOST && se3di_convex_tame(c, island))) {
             return finish(c, equations, island, f.goes_on);
         }
         if (!with_slopes) {
             evaluate_slopes(c, island);
         }
-        SE3DI_TRY(iterate(c, equations, island, k == 0, share_of(rest, before, island->accuracy)));
+        SE3DI_TRY(iterate(c, equations, island, k == 0, share_of(rest, before)));
     }
     evaluate(c, island, 0);
     return rest <= ENOUGH || se3di_convex_jams(c, island) ? finish(c, equations, island, 0)
