@@ -358,9 +358,9 @@ typedef struct se3d_run_options {
     se3d_scene *scene; /* that `progress` records, kept in checkpoints; NULL: none */
     const char *temporary; /* folder in which packed units (`fmus`) are unpacked, into a private one
                               that is removed with the end of their analysis; NULL: /tmp */
-    int32_t keep;     /* not 0: a run.checkpoint of the last rows before those at the end stays when
+    int32_t keep; /* not 0: a run.checkpoint of the last rows before those at the end stays when
                          the run is complete, to go on with a longer duration */
-    int32_t reserved; /* 0 */
+    int32_t reserved_end; /* 0 */
 } se3d_run_options;
 
 /* Fill `options`, of `size` bytes, with the defaults: see se3d_run_options_default. @since 0.1 */

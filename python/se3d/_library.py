@@ -305,7 +305,7 @@ class Definition:
         self.system = system
         self.kept = []
         fields = {name: field.type for name, field in ffi.typeof(kind).fields}
-        allowed = [name for name in fields if name not in ("struct_size", "reserved")]
+        allowed = [name for name in fields if name != "struct_size" and not name.startswith("reserved")]
         for name, value in values.items():
             if name not in allowed:
                 raise TypeError(f"{name} is unknown, allowed are: {', '.join(allowed)}")
