@@ -27,11 +27,10 @@ for shards in 1 3 7; do
     folder=$dir/of$shards
     shard=1
     while [ $shard -le $shards ]; do
-        limit=2
-        until timeout -s KILL "0.0$limit" "$program" study "$model" -o "$folder" --shard $shard/$shards --resume -q \
+        limit=0.02
+        until timeout -s KILL "$limit" "$program" study "$model" -o "$folder" --shard $shard/$shards --resume -q \
             --jobs $((shard % 2 + 1)) 2>"$dir/err"; do
-            limit=$((limit + 1))
-            [ $limit -lt 10 ] || limit=9999
+            limit=$(awk "BEGIN {print $limit < 0.09 ? $limit + 0.01 : 4 * $limit}") # ever longer: slow machines
         done
         shard=$((shard + 1))
     done
